@@ -1,4 +1,6 @@
-"""What holds for every test: the tree's own source, one thread a process, and the same examples every time."""
+"""What holds for every test: the tree's own source, one thread a process, and the same examples
+every time.
+"""
 
 import gc
 import os
@@ -14,23 +16,27 @@ ROOT = Path(__file__).resolve().parent.parent
 for name in ("MAKEFLAGS", "MAKEOVERRIDES", "MFLAGS", "ARGS"):
     os.environ.pop(name, None)
 
-# Before numpy and numba are imported, which read these once. Processes that tests start inherit them.
+# Before numpy and numba are imported, which read these once. Processes that tests start inherit
+# them.
 for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
     os.environ[f"{library}_NUM_THREADS"] = "1"
 
-# A copy of the tree tests its own source, whatever the environment's path file says; so do the processes that tests start.
+# A copy of the tree tests its own source, whatever the environment's path file says; so do the
+# processes that tests start.
 SOURCE = str(ROOT / "src")
 sys.path.insert(0, SOURCE)
 os.environ["PYTHONPATH"] = os.pathsep.join([SOURCE, *filter(None, [os.environ.get("PYTHONPATH")])])
 
 from hypothesis import configuration, settings  # noqa: E402
 
-# No deadline: the first call of a compiled kernel takes longer than the usual 200 ms. Derandomized: a failure shows itself to everybody.
+# No deadline: the first call of a compiled kernel takes longer than the usual 200 ms. Derandomized:
+# a failure shows itself to everybody.
 settings.register_profile("bezierplan", deadline=None, derandomize=True, database=None)
 settings.load_profile("bezierplan")
 configuration.set_hypothesis_home_dir(ROOT / ".cache" / "hypothesis")
 
-# Files that take longest, in that order: at the end, no process has a long file to itself while the others have nothing left.
+# Files that take longest, in that order: at the end, no process has a long file to itself while the
+# others have nothing left.
 LONGEST = (
     "test_workflow.py",
     "test_cluster.py",
@@ -47,17 +53,25 @@ LONGEST = (
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """One process more than cores, for some tests wait most of the time: for Slurm, or for a process that was killed."""
+    """One process more than cores, for some tests wait most of the time: for Slurm, or for a
+    process that was killed.
+    """
     return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_modifyitems(items: list) -> None:
     """The longest files first, the others in their order."""
-    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
+    items.sort(
+        key=lambda item: (
+            LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST)
+        )
+    )
 
 
 def pytest_collection_finish() -> None:
-    """What tests import is no garbage, and few of them leave any: to look for it as often as Python does takes a seventh of the time."""
+    """What tests import is no garbage, and few of them leave any: to look for it as often as Python
+    does takes a seventh of the time.
+    """
     gc.freeze()
     gc.set_threshold(10_000, 20, 50)
     gc.enable()

@@ -9,7 +9,9 @@ from bezierplan.study import reading
 
 
 def told(file: Path, old: str, new: str, study: Path) -> str:
-    """What loading a study tells, in one line, when a file of its folder has new words in the place of old ones, which it must have."""
+    """What loading a study tells, in one line, when a file of its folder has new words in the place
+    of old ones, which it must have.
+    """
     text = file.read_text()
     assert old in text
     file.write_text(text.replace(old, new, 1))

@@ -1,4 +1,6 @@
-"""Fields and maps for tests of planners, and what holds for every path that is found in a random field."""
+"""Fields and maps for tests of planners, and what holds for every path that is found in a random
+field.
+"""
 
 from pathlib import Path as File
 
@@ -10,27 +12,48 @@ from bezierplan.workspaces import random_field
 from bezierplan.workspaces.problem import Problem
 
 # The six benchmark maps of elhoseny2017.
-BENCHMARK_MAPS = File(__file__).resolve().parents[1] / "config" / "studies" / "elhoseny2017" / "workspaces"
+BENCHMARK_MAPS = (
+    File(__file__).resolve().parents[1] / "config" / "studies" / "elhoseny2017" / "workspaces"
+)
 
 
 def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 100) -> Problem:
-    """From corner to corner of the field of a number, both pairs of corners in turn; radius: of the obstacles, as a share of the side."""
+    """From corner to corner of the field of a number, both pairs of corners in turn; radius: of the
+    obstacles, as a share of the side.
+    """
     start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
-    described = {"start": start, "target": target, "side": side, "obstacles": obstacles, "layout": number}
-    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, described, "test")
+    described = {
+        "start": start,
+        "target": target,
+        "side": side,
+        "obstacles": obstacles,
+        "layout": number,
+    }
+    grid = random_field.field(
+        {"radius": radius, "clear_ends": 2.0, "unit": "cell"}, described, "test"
+    )
     return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
 
 
 def assert_path_fits(problem: Problem, found: Plan) -> None:
-    """The path leads from start to target, touches no occupied cell, is free by the certified check, and no shorter than the least path of
-    cells.
+    """The path leads from start to target, touches no occupied cell, is free by the certified
+    check, and no shorter than the least path of cells.
     """
     grid = problem.workspace
     assert found.claimed_feasible
     assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
-    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
+    assert (
+        cell_length.occupied_cells(
+            *cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied
+        )
+        == 0
+    )
     assert check(curves.bezier_pieces(found.path), region(grid)).feasible
     octile_bound = shortest_paths.lattice_path(
         grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free"
     ).length
-    assert octile_bound <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)
+    assert (
+        octile_bound
+        <= cell_length.length8(found.path, grid)
+        <= cell_length.length4(found.path, grid)
+    )

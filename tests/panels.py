@@ -7,9 +7,13 @@ from bezierplan.figures.panels import Panel, panel_of
 
 
 def options_of(kind: ModuleType, **given: Any) -> Panel:
-    """Options of a panel of a kind, with those that it needs to name what it shows, if none are given."""
+    """Options of a panel of a kind, with those that it needs to name what it shows, if none are
+    given.
+    """
     fields = kind.Options.model_fields
-    needed = {key: "any" for key in ("data", "workspace") if key in fields and fields[key].is_required()}
+    needed = {
+        key: "any" for key in ("data", "workspace") if key in fields and fields[key].is_required()
+    }
     if "experiment" in fields and not {"data", "explicit"} & given.keys():
         needed["experiment"] = "routes"
     return kind.Options.model_validate({"kind": kind.__name__.rpartition(".")[2]} | needed | given)

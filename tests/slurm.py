@@ -1,4 +1,6 @@
-"""A Slurm of one node on the loopback, for tests: Debian's packages slurm-wlm and munge, started without systemd, stopped at the end."""
+"""A Slurm of one node on the loopback, for tests: Debian's packages slurm-wlm and munge, started
+without systemd, stopped at the end.
+"""
 
 import os
 import secrets
@@ -12,14 +14,18 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 CONFIGURATION = Path("/etc/slurm/slurm.conf")
-"""Where Slurm's programs look: the environment variable SLURM_CONF does not reach the inside of a job."""
+"""Where Slurm's programs look: the environment variable SLURM_CONF does not reach the inside of a
+job.
+"""
 
 CORES, MEMORY = 4, 16_000
 
 
 def obstacle() -> str:
     """Why a Slurm cannot be started here, in one line; empty if it can."""
-    missing = [name for name in ("munged", "slurmctld", "slurmd", "sbatch", "squeue") if not program(name)]
+    missing = [
+        name for name in ("munged", "slurmctld", "slurmd", "sbatch", "squeue") if not program(name)
+    ]
     if missing:
         return f"no {', '.join(missing)} here (Debian: apt install slurm-wlm munge)"
     if os.getuid() != 0:
@@ -72,7 +78,9 @@ PartitionName=main Nodes=node1 Default=YES MaxTime=INFINITE State=UP
 
 @contextmanager
 def running(folder: Path) -> Iterator[None]:
-    """Keep a Slurm running, with its files in a folder. Raises RuntimeError if its node is not ready within 30 s."""
+    """Keep a Slurm running, with its files in a folder. Raises RuntimeError if its node is not
+    ready within 30 s.
+    """
     for name in ("state", "spool"):
         (folder / name).mkdir(parents=True)
     folder.chmod(0o755)
@@ -84,29 +92,49 @@ def running(folder: Path) -> Iterator[None]:
     CONFIGURATION.symlink_to(folder / "slurm.conf")
     with ExitStack() as at_end:
         at_end.callback(CONFIGURATION.unlink)
-        munge = {"key-file": key, "socket": folder / "munge.socket", "pid-file": folder / "munged.pid"}
+        munge = {
+            "key-file": key,
+            "socket": folder / "munge.socket",
+            "pid-file": folder / "munged.pid",
+        }
         munge |= {"log-file": folder / "munged.log", "seed-file": folder / "munged.seed"}
         for name, words in {
             "munged": ["--force", *(f"--{key}={value}" for key, value in munge.items())],
             "slurmctld": ["-c"],
             "slurmd": ["-N", "node1"],
         }.items():
-            started = subprocess.run([program(name), *words], capture_output=True, text=True, check=False, timeout=30)
+            started = subprocess.run(
+                [program(name), *words], capture_output=True, text=True, check=False, timeout=30
+            )
             if started.returncode:
                 raise RuntimeError(f"{name}: {started.stderr.strip()}")
             at_end.callback(_stop, folder / f"{name}.pid")
-        at_end.callback(subprocess.run, ["scancel", "--user", "root"], check=False, capture_output=True, timeout=30)
+        at_end.callback(
+            subprocess.run,
+            ["scancel", "--user", "root"],
+            check=False,
+            capture_output=True,
+            timeout=30,
+        )
         deadline = time.monotonic() + 30
         while _state() != "idle":
             if time.monotonic() > deadline:
-                raise RuntimeError(f"the node is {_state() or 'not there'}; see {folder}/slurmd.log")
+                raise RuntimeError(
+                    f"the node is {_state() or 'not there'}; see {folder}/slurmd.log"
+                )
             time.sleep(0.2)
         yield
 
 
 def _state() -> str:
     """The state of the node, in Slurm's words."""
-    return subprocess.run(["sinfo", "--noheader", "--format=%T"], capture_output=True, text=True, check=False, timeout=30).stdout.strip()
+    return subprocess.run(
+        ["sinfo", "--noheader", "--format=%T"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=30,
+    ).stdout.strip()
 
 
 def _stop(pid: Path) -> None:

@@ -1,5 +1,6 @@
-"""Starts of Snakemake for tests that need many: forks of a process that has imported it, for imports take two thirds of the time of a dry
-run. Modules of this package are not among them: each start takes those of its own tree.
+"""Starts of Snakemake for tests that need many: forks of a process that has imported it, for
+imports take two thirds of the time of a dry run. Modules of this package are not among them: each
+start takes those of its own tree.
 """
 
 import cProfile
@@ -12,10 +13,27 @@ from subprocess import CompletedProcess
 from unittest.mock import patch
 
 _MODULES = [
-    *("snakemake.cli", "snakemake.dag", "snakemake.executors.dryrun", "snakemake.scheduling.greedy", "snakemake_logger_plugin_rich"),
-    *("docutils.core", "jinja2", "numba", "pandas", "pydantic", "requests", "rich.progress", "smart_open", "yaml"),
+    *(
+        "snakemake.cli",
+        "snakemake.dag",
+        "snakemake.executors.dryrun",
+        "snakemake.scheduling.greedy",
+        "snakemake_logger_plugin_rich",
+    ),
+    *(
+        "docutils.core",
+        "jinja2",
+        "numba",
+        "pandas",
+        "pydantic",
+        "requests",
+        "rich.progress",
+        "smart_open",
+        "yaml",
+    ),
 ]
-# pyarrow, which pandas imports, would start a thread: see `bezierplan.running.forks`, which is not imported, for a tree has its own.
+# pyarrow, which pandas imports, would start a thread: see `bezierplan.running.forks`, which is not
+# imported, for a tree has its own.
 _ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 # On Linux and macOS; elsewhere each start imports anew, with the same result.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
@@ -25,8 +43,8 @@ if _METHOD == "forkserver":
 
 
 def snakemake(folder: Path, *words: str, calls: Path | None = None) -> CompletedProcess:
-    """Run `python -m snakemake` with some words in a folder; its exit code and what it printed, as text. Its calls of functions are counted
-    in a file, if one is given, as cProfile writes it.
+    """Run `python -m snakemake` with some words in a folder; its exit code and what it printed, as
+    text. Its calls of functions are counted in a file, if one is given, as cProfile writes it.
     """
     with tempfile.TemporaryDirectory() as kept:
         printed = [Path(kept, name) for name in ("output", "errors")]

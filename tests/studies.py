@@ -1,4 +1,6 @@
-"""The studies of the project, read once per process. `test_studies.py` checks that each of them is free of faults."""
+"""The studies of the project, read once per process. `test_studies.py` checks that each of them is
+free of faults.
+"""
 
 from functools import cache
 from pathlib import Path
@@ -13,7 +15,9 @@ KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
 
 @cache
 def study(key: str) -> Study:
-    """A study, without the checks across its files, which take seconds. Tests share it, so none may change it."""
+    """A study, without the checks across its files, which take seconds. Tests share it, so none may
+    change it.
+    """
     return reading.read_study(FOLDER / key)
 
 
@@ -23,7 +27,9 @@ def studies() -> dict[str, Study]:
 
 
 def arguments(key: str, function: str) -> dict[str, Any]:
-    """The arguments that a study gives a function of its module, in the first place that names it."""
+    """The arguments that a study gives a function of its module, in the first place that names
+    it.
+    """
     own = study(key)
     panels = [panel for figure in own.figures.values() for panel in figure.panels]
     checks = [check for claim in own.claims for check in claim.checks]

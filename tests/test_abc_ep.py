@@ -1,4 +1,6 @@
-"""The bee colony with evolutionary programming: its paths, its parts against plain references, degenerate cases, settings."""
+"""The bee colony with evolutionary programming: its paths, its parts against plain references,
+degenerate cases, settings.
+"""
 
 import math
 
@@ -127,7 +129,9 @@ def test_start_equal_to_target_is_answered_without_a_search():
 
 
 def test_a_population_of_one_and_opponents_without_end():
-    """A parent and its child: each has the other as opponent 50 times, so that the better one survives."""
+    """A parent and its child: each has the other as opponent 50 times, so that the better one
+    survives.
+    """
     found = plan(drawn(1), population=1, opponents=50)
     assert_path_fits(drawn(1), found)
     assert found.objective < found.extra["first_length"]
@@ -140,11 +144,14 @@ def test_reach_scales_with_the_smaller_side():
     fields = [field((s / 2, s / 2, s / 5), side=s) for s in (100, 200)]
     lengths = [[plan(each, seed, generations=0).objective for seed in range(20)] for each in fields]
     assert np.median(lengths[1]) == pytest.approx(2 * np.median(lengths[0]), rel=0.02)
-    # The next point of an empty field lies as far away as the colony may look, on the way to the target.
+    # The next point of an empty field lies as far away as the colony may look, on the way to the
+    # target.
     for side, reach in ((100, 0.1), (200, 0.1), (100, 0.3)):
         colony = settings(cycles=50, reach=reach * side, step_weight=0.0, visited_weight=0.0)
         grid, path = field(side=side).workspace, np.array([[0.5, 0.5], [0.0, 0.0]])
-        abc_ep._next_point(np.random.default_rng(0), grid.occupied, np.array([side + 0.5] * 2), path, 1, colony)
+        abc_ep._next_point(
+            np.random.default_rng(0), grid.occupied, np.array([side + 0.5] * 2), path, 1, colony
+        )
         assert path[1] == pytest.approx(0.5 + reach * side, rel=0.02)
 
 
@@ -174,7 +181,18 @@ def test_lengths_are_in_units():
 def test_cut_short_goes_to_the_last_point_in_sight():
     occupied = np.zeros((20, 20), dtype=bool)
     occupied[5:, 10] = True
-    path = np.array([[1.5, 15.5], [3.5, 12.5], [5.5, 9.5], [9.5, 4.5], [10.5, 3.5], [12.5, 5.5], [14.5, 10.5], [17.5, 15.5]])
+    path = np.array(
+        [
+            [1.5, 15.5],
+            [3.5, 12.5],
+            [5.5, 9.5],
+            [9.5, 4.5],
+            [10.5, 3.5],
+            [12.5, 5.5],
+            [14.5, 10.5],
+            [17.5, 15.5],
+        ]
+    )
     assert abc_ep._cut_short(occupied, path).tolist() == [[1.5, 15.5], [10.5, 3.5], [17.5, 15.5]]
 
 
@@ -186,14 +204,19 @@ def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
     point = np.array([13.9, 14.1])
     colony = settings(reach=10.0)
     # The cones have their height in the middle of the point's cell.
-    cones = max(0, 10 - math.dist((8.5, 6.5), (13.5, 14.5))) + max(0, 10 - math.dist((10.5, 10.5), (13.5, 14.5)))
+    cones = max(0, 10 - math.dist((8.5, 6.5), (13.5, 14.5))) + max(
+        0, 10 - math.dist((10.5, 10.5), (13.5, 14.5))
+    )
     expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
-    assert abc_ep._cost(occupied, target, path, 3, point, colony) == pytest.approx(expected, rel=1e-12)
+    assert abc_ep._cost(occupied, target, path, 3, point, colony) == pytest.approx(
+        expected, rel=1e-12
+    )
     assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), colony) == abc_ep._UNSEEN
 
 
 def colony_of(places, costs, monkeypatch, cycles):
-    """The points that a colony in plain Python tries, and the weights that its onlookers choose by; no try is ever better.
+    """The points that a colony in plain Python tries, and the weights that its onlookers choose by;
+    no try is ever better.
 
     places: (sources, 2) the first sources, with their costs.
     """
@@ -215,7 +238,9 @@ def colony_of(places, costs, monkeypatch, cycles):
     colony = settings(sources=len(places), cycles=cycles, trial_limit=10**9, reach=40.0)
     path = np.array([[50.5, 50.5], [0.0, 0.0]])
     occupied = np.zeros((101, 101), dtype=bool)
-    abc_ep._next_point.py_func(np.random.default_rng(5), occupied, np.array([90.0, 90.0]), path, 1, colony)
+    abc_ep._next_point.py_func(
+        np.random.default_rng(5), occupied, np.array([90.0, 90.0]), path, 1, colony
+    )
     return np.array(tried[len(costs) :]), weights
 
 
@@ -232,7 +257,9 @@ def test_bees_move_one_coordinate_to_either_side(monkeypatch):
     """By a share of the distance to another source, uniform between -1 and 1."""
     places = np.array([(40.0, 45.0), (50.0, 65.0)])
     tried, _ = colony_of(places, [1.0, 1.0], monkeypatch, cycles=500)
-    bee = np.abs(tried - places[:, None]).min(axis=2).argmin(axis=0)  # the source of which one coordinate is kept
+    bee = (
+        np.abs(tried - places[:, None]).min(axis=2).argmin(axis=0)
+    )  # the source of which one coordinate is kept
     share = (tried - places[bee]) / (places[bee] - places[1 - bee])
     assert ((share == 0).sum(axis=1) == 1).all()
     assert (share[:, 0] != 0).mean() == pytest.approx(0.5, abs=0.05)
@@ -241,7 +268,9 @@ def test_bees_move_one_coordinate_to_either_side(monkeypatch):
 
 
 def test_children_keep_the_lengths_of_their_legs():
-    """Of children of children, every kind of mutation: legs as measured anew, one change at a time."""
+    """Of children of children, every kind of mutation: legs as measured anew, one change at a
+    time.
+    """
     rng = np.random.default_rng(0)
     grid = drawn(0).workspace
     room = 400
@@ -252,7 +281,9 @@ def test_children_keep_the_lengths_of_their_legs():
     differences = []
     evolution = settings(move_share=0.5, spread=2.5)
     for _ in range(room - 2):
-        new = abc_ep._mutated(rng, grid.occupied, points[0], legs[0], count, points[1], legs[1], evolution)
+        new = abc_ep._mutated(
+            rng, grid.occupied, points[0], legs[0], count, points[1], legs[1], evolution
+        )
         measured = [abc_ep._leg(grid.occupied, points[1], p, 1e6) for p in range(new - 1)]
         assert legs[1, : new - 1].tolist() == measured
         kept = set(map(tuple, points[0, :count])) & set(map(tuple, points[1, :new]))
@@ -285,9 +316,26 @@ def test_settings():
     kinds = planner_settings(abc_ep)
     assert set(kinds) == set(SETTINGS)
     assert not any(setting_fault(kinds[name], value) for name, value in SETTINGS.items())
-    bad = {"sources": 1, "cycles": -1, "trial_limit": 0, "reach": 1.5, "most_points": -1, "population": 0, "generations": -1}
-    bad |= {"move_share": 1.2, "removal_share": -0.1, "spread": -1.0, "opponents": 0, "blocked_penalty": math.nan, "step_weight": -1.0}
+    bad = {
+        "sources": 1,
+        "cycles": -1,
+        "trial_limit": 0,
+        "reach": 1.5,
+        "most_points": -1,
+        "population": 0,
+        "generations": -1,
+    }
+    bad |= {
+        "move_share": 1.2,
+        "removal_share": -0.1,
+        "spread": -1.0,
+        "opponents": 0,
+        "blocked_penalty": math.nan,
+        "step_weight": -1.0,
+    }
     assert all(setting_fault(kinds[name], value) for name, value in bad.items())
     abc_ep.check(SETTINGS)
-    with pytest.raises(ValueError, match=r"move_share: with removal_share 1\.1; expected at most 1"):
+    with pytest.raises(
+        ValueError, match=r"move_share: with removal_share 1\.1; expected at most 1"
+    ):
         abc_ep.check(SETTINGS | {"move_share": 0.9})

@@ -1,4 +1,6 @@
-"""Accidents: a full disk, a foreign file in the place of results, damaged compiled code, two workflows at once."""
+"""Accidents: a full disk, a foreign file in the place of results, damaged compiled code, two
+workflows at once.
+"""
 
 import errno
 import os
@@ -19,7 +21,9 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture
 def job(tmp_path, monkeypatch):
-    """A job of this process, which nobody watches and which need not end with its parent, and its output."""
+    """A job of this process, which nobody watches and which need not end with its parent, and its
+    output.
+    """
     monkeypatch.setattr(log, "end_with_parent", lambda: None)
     monkeypatch.setattr(log.watchdog, "supervise", lambda *_: None)
     folder = tmp_path / "results"
@@ -61,15 +65,27 @@ def test_write_without_space_ends_a_job_with_one_line_and_leaves_no_part(job, nu
 
 
 def test_full_disk_ends_a_job_with_one_line_and_leaves_no_part(tmp_path):
-    """On a real disk of 200 kB, which the log shares; it goes with the namespace that it is mounted in."""
+    """On a real disk of 200 kB, which the log shares; it goes with the namespace that it is mounted
+    in.
+    """
     namespace = ["unshare", "--mount", *([] if os.geteuid() == 0 else ["--map-root-user"])]
     try:
-        subprocess.run([*namespace, "mount", "-t", "tmpfs", "tmpfs", tmp_path], capture_output=True, check=True)
+        subprocess.run(
+            [*namespace, "mount", "-t", "tmpfs", "tmpfs", tmp_path], capture_output=True, check=True
+        )
     except (FileNotFoundError, subprocess.CalledProcessError):
-        # Nothing else gives a test a small disk. The test above needs none: there the system's call fails.
-        pytest.skip("no disk can be mounted here: macOS has no namespaces, and some containers forbid them")
+        # Nothing else gives a test a small disk. The test above needs none: there the system's call
+        # fails.
+        pytest.skip(
+            "no disk can be mounted here: macOS has no namespaces, and some containers forbid them"
+        )
     fill = 'mount -t tmpfs -o size=200k tmpfs "$1" && { "$2" -c "$3" "$1"; echo $?; ls "$1"; }'
-    done = subprocess.run([*namespace, "sh", "-c", fill, "sh", tmp_path, sys.executable, FILLS], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [*namespace, "sh", "-c", fill, "sh", tmp_path, sys.executable, FILLS],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert done.stderr == TOLD_FULL.format(tmp_path) + "\n"
     assert done.stdout.split() == ["1", "log"]
 
@@ -81,7 +97,10 @@ def test_foreign_table_in_the_place_of_runs_is_told(job, tmp_path):
     job.input = [str(file)]
     with pytest.raises(SystemExit) as ended, log.job(job):
         raise KeyError("repeat")
-    assert str(ended.value) == f"{file}: not a table of runs; delete it and start again: the workflow reproduces it"
+    assert (
+        str(ended.value)
+        == f"{file}: not a table of runs; delete it and start again: the workflow reproduces it"
+    )
     pd.DataFrame({"id": ["a"]}).to_parquet(file)
     with pytest.raises(SystemExit, match="KeyError: 'repeat'"), log.job(job):
         raise KeyError("repeat")
@@ -101,13 +120,20 @@ print(one, other)
 def kernels(home):
     """What a process prints that keeps its compiled code below a folder."""
     environment = os.environ | {"HOME": str(home)}
-    return subprocess.run([sys.executable, "-c", SWAPS], env=environment, capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [sys.executable, "-c", SWAPS], env=environment, capture_output=True, text=True, check=False
+    )
 
 
 def test_damaged_compiled_code_is_compiled_again(tmp_path):
     first = kernels(tmp_path)
     assert first.returncode == 0
-    for which, content in ("*.nbi", b""), ("*.nbi", b"garbage" * 100), ("*.nbc", b""), ("*.nbc", b"garbage" * 100):
+    for which, content in (
+        ("*.nbi", b""),
+        ("*.nbi", b"garbage" * 100),
+        ("*.nbc", b""),
+        ("*.nbc", b"garbage" * 100),
+    ):
         files = list((tmp_path / ".cache" / "kernels").rglob(which))
         assert files
         for file in files:
@@ -127,8 +153,18 @@ rule one:
 def test_second_workflow_in_a_folder_ends_at_once_and_the_first_goes_on(tmp_path):
     """With the settings of the default profile, none of which weakens Snakemake's lock."""
     (tmp_path / "Snakefile").write_text(SNAKEFILE)
-    command = [sys.executable, "-m", "snakemake", "--workflow-profile", ROOT / "profiles/default", "--cores", "1"]
-    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as first:
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--workflow-profile",
+        ROOT / "profiles/default",
+        "--cores",
+        "1",
+    ]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    ) as first:
         deadline = time.monotonic() + 120
         while not list((tmp_path / ".snakemake").glob("locks/*")):
             assert time.monotonic() < deadline
@@ -147,7 +183,9 @@ def test_the_foreign_table_is_named_and_not_a_good_one_before_it(tmp_path):
     pd.DataFrame({"id": ["a"]}).to_parquet(runs / "0.parquet")
     pd.DataFrame({"other": [1]}).to_parquet(runs / "1.parquet")
     assert log.damaged([str(runs / "0.parquet")]) == ""
-    assert log.damaged([str(runs / name) for name in ("0.parquet", "1.parquet")]).startswith(f"{runs / '1.parquet'}: not a table of runs")
+    assert log.damaged([str(runs / name) for name in ("0.parquet", "1.parquet")]).startswith(
+        f"{runs / '1.parquet'}: not a table of runs"
+    )
 
 
 FAILS = """
@@ -161,8 +199,19 @@ rule one:
 def test_reason_of_a_failed_job_is_the_last_line_and_a_lock_is_explained_in_one(tmp_path):
     (tmp_path / "Snakefile").write_text(FAILS)
     reason = "run a: planner b: [red]wrong"
-    (tmp_path / "fails.py").write_text(f"open(snakemake.log[0], 'w').write('Traceback\\\\n2026 CRITICAL {reason}')\nraise SystemExit(1)\n")
-    command = [sys.executable, "-m", "snakemake", "--workflow-profile", ROOT / "profiles/default", "--cores", "1"]
+    (tmp_path / "fails.py").write_text(
+        f"open(snakemake.log[0], 'w').write('Traceback\\\\n2026 CRITICAL {reason}')\nraise "
+        f"SystemExit(1)\n"
+    )
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--workflow-profile",
+        ROOT / "profiles/default",
+        "--cores",
+        "1",
+    ]
     failed = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert failed.returncode == 1
     assert failed.stderr.strip().splitlines()[-1] == reason

@@ -16,27 +16,45 @@ ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in altern
 def test_every_alternative_has_a_run_that_it_changes(key, name):
     study = STUDIES[key]
     chunks = targets.alternative_params(STUDIES, "full", key, name)["chunks"]
-    assert any(job["settings"] != jobs.job(study, job["experiment"], job["method"], "full", 0)["settings"] for _, job in chunks)
+    assert any(
+        job["settings"] != jobs.job(study, job["experiment"], job["method"], "full", 0)["settings"]
+        for _, job in chunks
+    )
 
 
 def test_an_alternative_judges_the_primary_variant_and_runs_only_what_it_judges():
     study = STUDIES["elhoseny2017"]
-    name = next(name for name in alternatives.tried(study) if any(claim.id == "C1" for claim in alternatives.headline_claims(study, name)))
+    name = next(
+        name
+        for name in alternatives.tried(study)
+        if any(claim.id == "C1" for claim in alternatives.headline_claims(study, name))
+    )
     claim = next(claim for claim in alternatives.headline_claims(study, name) if claim.id == "C1")
     [check] = in_variant(claim.checks, *2 * variants(claim))
     assert check.where["workspace"] == "published_like"
     judged = targets.alternative_params(STUDIES, "full", "elhoseny2017", name)["job"]
     assert judged["primary_alone"]
-    assert [parsed(Claim, each, "claims").in_primary_variant() for each in judged["claims"]] == alternatives.headline_claims(study, name)
+    assert [
+        parsed(Claim, each, "claims").in_primary_variant() for each in judged["claims"]
+    ] == alternatives.headline_claims(study, name)
     chunks = targets.alternative_params(STUDIES, "full", "elhoseny2017", name)["chunks"]
-    job = next(job for number, job in chunks if (job["experiment"], job["method"], number) == ("fields100", "mga", 0))
+    job = next(
+        job
+        for number, job in chunks
+        if (job["experiment"], job["method"], number) == ("fields100", "mga", 0)
+    )
     assert {place["workspace"] for place in job["problems"].values()} == {"published_like"}
     assert len(job["problems"]) == len(study.problems_of("fields100", "full")) / 2
 
 
 def test_checks_of_several_experiments_need_the_methods_of_each():
     study = STUDIES["elhoseny2017"]
-    claims = [claim.but(checks=[check]) for claim in study.claims for check in claim.checks if len(check.experiments) > 1]
+    claims = [
+        claim.but(checks=[check])
+        for claim in study.claims
+        for check in claim.checks
+        if len(check.experiments) > 1
+    ]
     assert claims
     for claim in claims:
         for experiment in claim.checks[0].experiments:

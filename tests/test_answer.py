@@ -1,4 +1,6 @@
-"""A planner's answer is checked before a row is written: every lie is refused by name, and no extra column takes another's place."""
+"""A planner's answer is checked before a row is written: every lie is refused by name, and no extra
+column takes another's place.
+"""
 
 from fractions import Fraction
 
@@ -14,7 +16,12 @@ from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem
 
-PROBLEM = Problem("disc", Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"), (1.0, 5.0), (9.0, 5.0))
+PROBLEM = Problem(
+    "disc",
+    Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"),
+    (1.0, 5.0),
+    (9.0, 5.0),
+)
 LINE = np.array([PROBLEM.start, PROBLEM.target])
 PLAN = Plan(Path("polyline", LINE), 8.0, True, 1, np.array([8.0]), "one", {"tries": 1})
 JOB = {
@@ -48,7 +55,10 @@ LIES = {
     "None": (None, "is a NoneType; expected a Plan"),
     "a tuple": (tuple(PLAN), "is a tuple; expected a Plan"),
     "begins elsewhere": (path(LINE * [[1 + 1e-12, 1], [1, 1]]), "path: start: "),
-    "ends elsewhere": (path(LINE - [[0, 0], [1, 0]]), "path: target: (8.0, 5.0); expected exactly (9.0, 5.0)"),
+    "ends elsewhere": (
+        path(LINE - [[0, 0], [1, 0]]),
+        "path: target: (8.0, 5.0); expected exactly (9.0, 5.0)",
+    ),
     "backwards": (path(LINE[::-1]), "path: start: "),
     "points not numbers": (path(LINE * np.nan), "path: points: expected finite numbers"),
     "points infinite": (path(LINE * np.inf), "path: points: expected finite numbers"),
@@ -56,58 +66,151 @@ LIES = {
     "points in space": (path(np.ones((3, 3))), "path: points: expected an array of floats, (n, 2)"),
     "points as a list": (path(LINE.tolist()), "path: points: expected an array of floats, (n, 2)"),
     "points of text": (path(LINE.astype(str)), "path: points: expected an array of floats, (n, 2)"),
-    "no points": (path(np.empty((0, 2))), "path: a curve of kind polyline needs at least 2 control points, not 0"),
-    "too few points": (path(LINE, "piecewise_cubic"), "path: a curve of kind piecewise_cubic needs at least 4 control points"),
-    "odd points": (path(LINE[[0, 0, 1, 1, 1]], "ferguson"), "path: a curve of kind ferguson needs an even number"),
+    "no points": (
+        path(np.empty((0, 2))),
+        "path: a curve of kind polyline needs at least 2 control points, not 0",
+    ),
+    "too few points": (
+        path(LINE, "piecewise_cubic"),
+        "path: a curve of kind piecewise_cubic needs at least 4 control points",
+    ),
+    "odd points": (
+        path(LINE[[0, 0, 1, 1, 1]], "ferguson"),
+        "path: a curve of kind ferguson needs an even number",
+    ),
     "unknown curve": (path(LINE, "nurbs"), "path: unknown curve 'nurbs'"),
     "curve no text": (path(LINE, ["polyline"]), "path: curve: is a list"),
-    "degree too high": (path(np.vstack([LINE[:1]] * 99 + [LINE[1:]]), "bezier"), "path: points: 100; expected at most 61 of a bezier"),
-    "too many points": (path(np.vstack([LINE[:1]] * 2000), "bezier"), "path: points: 2000; expected at most 61 of a bezier"),
-    "too long a chain": (path(np.vstack([LINE[:1]] * 10_001)), "path: points: 10001; expected at most 10000 of a polyline"),
+    "degree too high": (
+        path(np.vstack([LINE[:1]] * 99 + [LINE[1:]]), "bezier"),
+        "path: points: 100; expected at most 61 of a bezier",
+    ),
+    "too many points": (
+        path(np.vstack([LINE[:1]] * 2000), "bezier"),
+        "path: points: 2000; expected at most 61 of a bezier",
+    ),
+    "too long a chain": (
+        path(np.vstack([LINE[:1]] * 10_001)),
+        "path: points: 10001; expected at most 10000 of a polyline",
+    ),
     "points that lie": (path(LINE.view(Liar)), "path: points: expected an array of floats, (n, 2)"),
-    "a path that lies": (PLAN._replace(path=type("Path", (Path,), {})("polyline", LINE)), "path: expected None or a Path"),
+    "a path that lies": (
+        PLAN._replace(path=type("Path", (Path,), {})("polyline", LINE)),
+        "path: expected None or a Path",
+    ),
     "a plan that lies": (type("Plan", (Plan,), {})(*PLAN), "is a Plan; expected a Plan"),
-    "a curve that lies": (path(LINE, type("Text", (str,), {})("polyline")), "path: curve: is a Text"),
-    "too far out": (path(np.vstack([LINE[:1], [[1e9, 0]], LINE[1:]])), "path: a path has a coordinate that is not finite or beyond"),
+    "a curve that lies": (
+        path(LINE, type("Text", (str,), {})("polyline")),
+        "path: curve: is a Text",
+    ),
+    "too far out": (
+        path(np.vstack([LINE[:1], [[1e9, 0]], LINE[1:]])),
+        "path: a path has a coordinate that is not finite or beyond",
+    ),
     "path no Path": (PLAN._replace(path=("polyline", LINE)), "path: expected None or a Path"),
     "claim without a path": (PLAN._replace(path=None), "claimed_feasible: true without a path"),
-    "claim a word": (PLAN._replace(claimed_feasible="yes"), "claimed_feasible: expected true or false"),
+    "claim a word": (
+        PLAN._replace(claimed_feasible="yes"),
+        "claimed_feasible: expected true or false",
+    ),
     "objective text": (PLAN._replace(objective="8"), "objective: expected a number"),
     "objective nan": (PLAN._replace(objective=np.nan), "objective: expected a number, and not nan"),
     "objective None": (PLAN._replace(objective=None), "objective: expected a number"),
-    "objective an array": (PLAN._replace(objective=np.array([8.0])), "objective: expected a number"),
+    "objective an array": (
+        PLAN._replace(objective=np.array([8.0])),
+        "objective: expected a number",
+    ),
     "evaluations broken": (PLAN._replace(evaluations=1.5), "evaluations: expected a whole number"),
-    "evaluations negative": (PLAN._replace(evaluations=-1), "evaluations: expected a whole number, at least 0"),
-    "evaluations a truth": (PLAN._replace(evaluations=True), "evaluations: expected a whole number"),
+    "evaluations negative": (
+        PLAN._replace(evaluations=-1),
+        "evaluations: expected a whole number, at least 0",
+    ),
+    "evaluations a truth": (
+        PLAN._replace(evaluations=True),
+        "evaluations: expected a whole number",
+    ),
     "evaluations huge": (PLAN._replace(evaluations=2**70), "evaluations: expected a whole number"),
-    "objective huge": (PLAN._replace(objective=10**400), "objective: expected a number that a float can hold"),
-    "objective a fraction": (PLAN._replace(objective=Fraction(1, 3)), "objective: expected a number"),
-    "objective that lies": (PLAN._replace(objective=type("Number", (float,), {})(8.0)), "objective: expected a number"),
+    "objective huge": (
+        PLAN._replace(objective=10**400),
+        "objective: expected a number that a float can hold",
+    ),
+    "objective a fraction": (
+        PLAN._replace(objective=Fraction(1, 3)),
+        "objective: expected a number",
+    ),
+    "objective that lies": (
+        PLAN._replace(objective=type("Number", (float,), {})(8.0)),
+        "objective: expected a number",
+    ),
     "history empty": (PLAN._replace(history=np.array([])), "history: expected an array"),
     "history None": (PLAN._replace(history=None), "history: expected an array"),
     "history a table": (PLAN._replace(history=np.ones((2, 2))), "history: expected an array"),
-    "history with a gap": (PLAN._replace(history=np.array([np.nan, 8.0])), "history: expected an array of numbers without nan"),
-    "history too long": (PLAN._replace(history=np.ones(1_000_001)), "history: expected an array of numbers"),
-    "history beyond floats": (PLAN._replace(history=np.array([2**64 - 1], dtype=np.uint64)), "history: expected whole numbers between"),
-    "stop too long": (PLAN._replace(stop="x" * 10**6), "stop: expected a word, of at most 100 printable characters"),
+    "history with a gap": (
+        PLAN._replace(history=np.array([np.nan, 8.0])),
+        "history: expected an array of numbers without nan",
+    ),
+    "history too long": (
+        PLAN._replace(history=np.ones(1_000_001)),
+        "history: expected an array of numbers",
+    ),
+    "history beyond floats": (
+        PLAN._replace(history=np.array([2**64 - 1], dtype=np.uint64)),
+        "history: expected whole numbers between",
+    ),
+    "stop too long": (
+        PLAN._replace(stop="x" * 10**6),
+        "stop: expected a word, of at most 100 printable characters",
+    ),
     "stop of two lines": (PLAN._replace(stop="a\nb"), "stop: expected a word"),
     "stop with a sign of control": (PLAN._replace(stop="a\x1b[31mb"), "stop: expected a word"),
     "stop None": (PLAN._replace(stop=None), "stop: expected a word"),
     "extra None": (PLAN._replace(extra=None), "extra: expected names with numbers or truths"),
-    "extra a list": (PLAN._replace(extra={"tries": [1]}), "extra: tries: expected a number within 64 bits, or a truth"),
-    "extra huge": (PLAN._replace(extra={"tries": 2**70}), "extra: tries: expected a number within 64 bits, or a truth"),
-    "extra a fraction": (PLAN._replace(extra={"tries": Fraction(1, 3)}), "extra: tries: expected a number within 64 bits, or a truth"),
-    "extra too many": (PLAN._replace(extra={f"tries_{n}": n for n in range(1000)}), "extra: 1000 columns; expected at most 64"),
-    "extra that lies": (PLAN._replace(extra=type("Columns", (dict,), {})(tries=1)), "extra: expected names"),
-    "extra of a wide name": (PLAN._replace(extra={"\uff46easible": 1}), "extra: '\\uff46easible': expected a name"),
-    "extra of a look-alike": (PLAN._replace(extra={"f\u0435asible": 1}), "extra: 'f\\u0435asible': expected a name"),
-    "extra of a long name": (PLAN._replace(extra={"a" * 10**5: 1}), "extra: 'aaaaaaaaaaaaaaaaaaaa': expected a name"),
+    "extra a list": (
+        PLAN._replace(extra={"tries": [1]}),
+        "extra: tries: expected a number within 64 bits, or a truth",
+    ),
+    "extra huge": (
+        PLAN._replace(extra={"tries": 2**70}),
+        "extra: tries: expected a number within 64 bits, or a truth",
+    ),
+    "extra a fraction": (
+        PLAN._replace(extra={"tries": Fraction(1, 3)}),
+        "extra: tries: expected a number within 64 bits, or a truth",
+    ),
+    "extra too many": (
+        PLAN._replace(extra={f"tries_{n}": n for n in range(1000)}),
+        "extra: 1000 columns; expected at most 64",
+    ),
+    "extra that lies": (
+        PLAN._replace(extra=type("Columns", (dict,), {})(tries=1)),
+        "extra: expected names",
+    ),
+    "extra of a wide name": (
+        PLAN._replace(extra={"\uff46easible": 1}),
+        "extra: '\\uff46easible': expected a name",
+    ),
+    "extra of a look-alike": (
+        PLAN._replace(extra={"f\u0435asible": 1}),
+        "extra: 'f\\u0435asible': expected a name",
+    ),
+    "extra of a long name": (
+        PLAN._replace(extra={"a" * 10**5: 1}),
+        "extra: 'aaaaaaaaaaaaaaaaaaaa': expected a name",
+    ),
     "extra a keyword": (PLAN._replace(extra={"lambda": 1}), "extra: 'lambda': expected a name"),
-    "extra a drive's": (PLAN._replace(extra={"arrival": 1.0}), "extra: arrival: a column or setting has this name already"),
+    "extra a drive's": (
+        PLAN._replace(extra={"arrival": 1.0}),
+        "extra: arrival: a column or setting has this name already",
+    ),
     "extra numbered": (PLAN._replace(extra={1: 1}), "extra: expected names with numbers or truths"),
     "extra no name": (PLAN._replace(extra={"a b\n": 1}), "extra: 'a b\\n': expected a name"),
-    "extra a setting": (PLAN._replace(extra={"inertia": 1}), "extra: inertia: a column or setting has this name already"),
-    "extra what is varied": (PLAN._replace(extra={"profile": 1}), "extra: profile: a column or setting has this name already"),
+    "extra a setting": (
+        PLAN._replace(extra={"inertia": 1}),
+        "extra: inertia: a column or setting has this name already",
+    ),
+    "extra what is varied": (
+        PLAN._replace(extra={"profile": 1}),
+        "extra: profile: a column or setting has this name already",
+    ),
 }
 
 
@@ -121,13 +224,17 @@ def test_lie_is_refused_by_run_and_field(lie):
     with pytest.raises(RuntimeError) as caught:
         row(plan)
     message = str(caught.value)
-    assert message.startswith(f"run s/e/disc,profile=a/m/0: the answer of planner chaotic_pso: {told}")
+    assert message.startswith(
+        f"run s/e/disc,profile=a/m/0: the answer of planner chaotic_pso: {told}"
+    )
     assert "\n" not in message
 
 
 @pytest.mark.parametrize("name", sorted(TAKEN))
 def test_no_column_is_overwritten(name):
-    with pytest.raises(RuntimeError, match=f"extra: {name}: a column or setting has this name already"):
+    with pytest.raises(
+        RuntimeError, match=f"extra: {name}: a column or setting has this name already"
+    ):
         row(PLAN._replace(extra={name: True}))
 
 
@@ -144,7 +251,11 @@ def test_honest_answers_pass():
     found = row(PLAN)
     assert found["feasible"]
     assert found["tries"] == 1
-    nothing = row(PLAN._replace(path=None, objective=np.inf, claimed_feasible=np.False_, history=np.array([np.inf])))
+    nothing = row(
+        PLAN._replace(
+            path=None, objective=np.inf, claimed_feasible=np.False_, history=np.array([np.inf])
+        )
+    )
     assert not nothing["feasible"]
     curve = np.array([PROBLEM.start, (1.0, 2.0), PROBLEM.target, (1.0, 2.0)])
     assert row(path(curve, "ferguson"))["path_curve"] == "ferguson"
@@ -153,29 +264,43 @@ def test_honest_answers_pass():
 def test_the_row_holds_what_was_judged():
     """A planner that changes its arrays later changes nothing."""
     points, history = LINE.copy(), np.array([8.0])
-    kept = answer.accepted(PLAN._replace(path=Path("polyline", points), history=history), PROBLEM, TAKEN)
+    kept = answer.accepted(
+        PLAN._replace(path=Path("polyline", points), history=history), PROBLEM, TAKEN
+    )
     points[:], history[:] = 0.0, -1.0
     assert kept.path.points.tolist() == LINE.tolist()
     assert kept.history.tolist() == [8.0]
 
 
-# Planners that change the world they plan in: what each does, and what it is told. The straight way leads through the first obstacle.
+# Planners that change the world they plan in: what each does, and what it is told. The straight way
+# leads through the first obstacle.
 WALL = np.array([[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]])
 WORLDS = {
     "circles": Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([2.0]), "m"),
     "grid": from_lines([".........."] * 4 + ["....##...."] * 2 + [".........."] * 4, 1.0, "m"),
     "polygons": Polygons((0.0, 10.0, 0.0, 10.0), ((WALL,),), "m"),
 }
-READ_ONLY, ANOTHER = "read-only|WRITEABLE", "planner .*: problem: .*: workspace: {}: is another after the run"
+READ_ONLY, ANOTHER = (
+    "read-only|WRITEABLE",
+    "planner .*: problem: .*: workspace: {}: is another after the run",
+)
 CHANGES = {
     "moves circles": ("circles", "world.centres[:, 1] -= 3", READ_ONLY),
     "shrinks circles": ("circles", "world.radii *= 0.5", READ_ONLY),
     "empties cells": ("grid", "world.occupied[:] = False", READ_ONLY),
     "moves polygons": ("polygons", "world.obstacles[0][0][:] += 4", READ_ONLY),
     "sets a flag": ("circles", "world.radii.setflags(write=True)", READ_ONLY),
-    "puts another array": ("circles", 'object.__setattr__(world, "radii", world.radii * 0)', ANOTHER.format("radii")),
+    "puts another array": (
+        "circles",
+        'object.__setattr__(world, "radii", world.radii * 0)',
+        ANOTHER.format("radii"),
+    ),
     "puts other bounds": ("grid", 'object.__setattr__(world, "cell", 9.0)', ANOTHER.format("cell")),
-    "writes into memory": ("circles", "ctypes.memset(world.radii.ctypes.data, 0, 8)", ANOTHER.format("content")),
+    "writes into memory": (
+        "circles",
+        "ctypes.memset(world.radii.ctypes.data, 0, 8)",
+        ANOTHER.format("content"),
+    ),
 }
 CHANGER = """
 import ctypes

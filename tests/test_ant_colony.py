@@ -30,13 +30,20 @@ def test_the_first_step_is_drawn_by_nearness_of_the_target():
 
 def test_the_target_has_a_nearness_of_its_own():
     grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
-    colony = search(places=lattice(grid, (0.0, 0.0), (2.0, 2.0), "one"), ants=4000, iterations=1, target_heuristic=2.0)
+    colony = search(
+        places=lattice(grid, (0.0, 0.0), (2.0, 2.0), "one"),
+        ants=4000,
+        iterations=1,
+        target_heuristic=2.0,
+    )
     assert stats.binomtest((colony.sizes == 2).sum(), 4000, 4 / 6).pvalue > 1e-3
 
 
 @pytest.mark.parametrize(("weight", "direct"), [(0.0, 1 / 3), (1.0, 2 / 4), (2.0, 4 / 6)])
 def test_a_trail_draws_by_its_power(weight, direct):
-    """Second ants, after first ones that went straight to the target and doubled the trail of that step."""
+    """Second ants, after first ones that went straight to the target and doubled the trail of that
+    step.
+    """
     grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
     places = lattice(grid, (0.0, 0.0), (2.0, 2.0), "one")
     settings = {
@@ -48,7 +55,9 @@ def test_a_trail_draws_by_its_power(weight, direct):
         "trail_weight": weight,
     }
     seconds = [
-        search(seed, iterations=2, **settings).sizes[0] for seed in range(3000) if search(seed, iterations=1, **settings).sizes[0] == 2
+        search(seed, iterations=2, **settings).sizes[0]
+        for seed in range(3000)
+        if search(seed, iterations=1, **settings).sizes[0] == 2
     ]
     assert len(seconds) > 800
     assert stats.binomtest(seconds.count(2), len(seconds), direct).pvalue > 1e-3
@@ -67,9 +76,13 @@ def test_no_ant_visits_a_cell_twice_and_some_die():
 
 
 def test_where_all_other_trails_are_gone_ants_follow_the_first_one():
-    """One ant lays the only trail; so its path depends on its own deposit, and on nothing else's being left."""
+    """One ant lays the only trail; so its path depends on its own deposit, and on nothing else's
+    being left.
+    """
     for seed in range(5):
-        first, last = (search(seed, ants=1, iterations=iterations, evaporation=1.0) for iterations in (1, 30))
+        first, last = (
+            search(seed, ants=1, iterations=iterations, evaporation=1.0) for iterations in (1, 30)
+        )
         assert last.sizes[0] == first.sizes[0]
         assert last.paths[0, : last.sizes[0]].tolist() == first.paths[0, : first.sizes[0]].tolist()
 
@@ -83,7 +96,9 @@ def test_trails_lead_both_ways():
 
 
 def laid(monkeypatch, **changes):
-    """Every change of a trail in a search: (cell, cell, kept share, what is added), in plain Python."""
+    """Every change of a trail in a search: (cell, cell, kept share, what is added), in plain
+    Python.
+    """
     changed = []
     plain = ant_colony._lay.py_func
 
@@ -118,19 +133,38 @@ def test_an_ant_system_adds_one_over_the_length_to_the_steps_of_each_path(monkey
 
 
 def test_an_ant_colony_system_wears_off_each_step_and_adds_to_the_best_path_alone(monkeypatch):
-    system = {"trail_update": "ant_colony_system", "local_evaporation": 0.2, "initial_trail": 0.5, "evaporation": 0.3, "deposit": 2.0}
+    system = {
+        "trail_update": "ant_colony_system",
+        "local_evaporation": 0.2,
+        "initial_trail": 0.5,
+        "evaporation": 0.3,
+        "deposit": 2.0,
+    }
     first = search(ants=3, iterations=1, **system)
-    worn = [step for path, size in zip(first.paths, first.sizes, strict=True) for step in steps(path, size)]
+    worn = [
+        step
+        for path, size in zip(first.paths, first.sizes, strict=True)
+        for step in steps(path, size)
+    ]
     changed = laid(monkeypatch, ants=3, iterations=2, **system)
     best = steps(first.best, len(first.best))
     assert changed[: len(worn)] == [(*step, 0.8, 0.1) for step in worn]
     added = changed[len(worn) : len(worn) + len(best)]
-    assert added == [(*step, 0.7, pytest.approx(0.3 * 2.0 / length(first.best, len(first.best)))) for step in best]
+    assert added == [
+        (*step, 0.7, pytest.approx(0.3 * 2.0 / length(first.best, len(first.best))))
+        for step in best
+    ]
     assert {change[2:] for change in changed[len(worn) + len(best) :]} == {(0.8, 0.1)}
 
 
 def test_the_compiled_colony_agrees_with_its_plain_python(monkeypatch):
-    changes = {"ants": 4, "iterations": 4, "exploitation": 0.5, "local_evaporation": 0.1, "trail_update": "ant_colony_system"}
+    changes = {
+        "ants": 4,
+        "iterations": 4,
+        "exploitation": 0.5,
+        "local_evaporation": 0.1,
+        "trail_update": "ant_colony_system",
+    }
     compiled = search(**changes)
     monkeypatch.setattr(ant_colony, "_colony", ant_colony._colony.py_func)
     plain = search(**changes)
@@ -146,7 +180,9 @@ def test_exploitation_takes_the_most_attractive_step():
 
 def test_choices_of_no_attraction_are_uniform():
     rng = np.random.default_rng(0)
-    counts = np.bincount([ant_colony._choose(rng, np.zeros(4), 0.0) for _ in range(2000)], minlength=4)
+    counts = np.bincount(
+        [ant_colony._choose(rng, np.zeros(4), 0.0) for _ in range(2000)], minlength=4
+    )
     assert stats.chisquare(counts).pvalue > 1e-3
 
 
@@ -160,7 +196,10 @@ def test_choices_are_in_proportion_to_attraction(weights):
 
 
 def test_stronger_settings_find_shorter_paths():
-    weak, strong = (np.mean([plan(name, environment(1), seed).objective for seed in range(10)]) for name in ("aco", "aco_strong"))
+    weak, strong = (
+        np.mean([plan(name, environment(1), seed).objective for seed in range(10)])
+        for name in ("aco", "aco_strong")
+    )
     assert strong < weak - 5
 
 

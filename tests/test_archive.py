@@ -21,7 +21,13 @@ def archive():
 
 def tree(folder):
     results = folder / "results/full"
-    for name in ("one/runs/e/m/0.parquet", "one/logs/page.log", "one/sensitivity/O1/claims.csv", "one/sensitivity.csv", "page.log"):
+    for name in (
+        "one/runs/e/m/0.parquet",
+        "one/logs/page.log",
+        "one/sensitivity/O1/claims.csv",
+        "one/sensitivity.csv",
+        "page.log",
+    ):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).touch()
     (results / "index.html").write_text("<!doctype html>")
@@ -35,17 +41,29 @@ def test_results_go_in_without_logs_and_without_runs_of_alternatives(archive, tm
 
 
 def test_scale_without_a_page_is_one_line(tmp_path):
-    done = subprocess.run(["python3", SCRIPT, "extended"], cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(
+        ["python3", SCRIPT, "extended"], cwd=tmp_path, capture_output=True, text=True
+    )
     assert done.returncode == 1
-    assert done.stderr == "results/extended/index.html: not found; make it with snakemake extended\n"
+    assert (
+        done.stderr == "results/extended/index.html: not found; make it with snakemake extended\n"
+    )
 
 
 def test_validator_accepts_the_archive_and_refuses_one_whose_run_names_no_workflow(tmp_path):
     # Set up as `make archive` does; nothing to do if it is there.
-    subprocess.run(["make", PYTHON.parents[1].relative_to(ROOT) / "ready"], cwd=ROOT, check=True, capture_output=True)
+    subprocess.run(
+        ["make", PYTHON.parents[1].relative_to(ROOT) / "ready"],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+    )
     tree(tmp_path)
     done = subprocess.run([PYTHON, SCRIPT], cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stdout.endswith(".zip: accepted as a Workflow Run Crate\n")) == (0, True), done.stderr
+    assert (done.returncode, done.stdout.endswith(".zip: accepted as a Workflow Run Crate\n")) == (
+        0,
+        True,
+    ), done.stderr
     (metadata,) = tmp_path.glob("archive/*/ro-crate-metadata.json")
     crate = json.loads(metadata.read_text())
     for entity in crate["@graph"]:
@@ -53,5 +71,7 @@ def test_validator_accepts_the_archive_and_refuses_one_whose_run_names_no_workfl
             del entity["instrument"]
     metadata.write_text(json.dumps(crate))
     words = "import archive, pathlib, sys; print(archive.check(pathlib.Path(sys.argv[1])))"
-    done = subprocess.run([PYTHON, "-c", words, metadata.parent], cwd=SCRIPT.parent, capture_output=True, text=True)
+    done = subprocess.run(
+        [PYTHON, "-c", words, metadata.parent], cwd=SCRIPT.parent, capture_output=True, text=True
+    )
     assert "instrument" in done.stdout

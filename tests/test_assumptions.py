@@ -1,4 +1,6 @@
-"""Every alternative of an assumption that governs a setting changes what a run finds: an option that nothing reads is a defect."""
+"""Every alternative of an assumption that governs a setting changes what a run finds: an option
+that nothing reads is a defect.
+"""
 
 import json
 from functools import cache
@@ -9,7 +11,13 @@ from studies import studies
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems
 from bezierplan.study import choices
-from bezierplan.study.alternatives import alternatives, methods_changed, methods_of_claims, tried, with_alternative
+from bezierplan.study.alternatives import (
+    alternatives,
+    methods_changed,
+    methods_of_claims,
+    tried,
+    with_alternative,
+)
 from bezierplan.study.jobs import job, problems_job
 
 STUDIES = studies()
@@ -19,7 +27,9 @@ REPEATS = 3
 
 
 def found(study, experiment, method):
-    """What a few runs of a method find on the last problem of an experiment, where obstacles are in the way."""
+    """What a few runs of a method find on the last problem of an experiment, where obstacles are in
+    the way.
+    """
     described = job(study, experiment, method, "smoke", 0)
     name = list(described["problems"])[-1]
     made, _ = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
@@ -35,7 +45,9 @@ def found(study, experiment, method):
 
 def home(study, method):
     """The first experiment that has a method."""
-    return next(name for name, experiment in study.experiments.items() if method in experiment.methods)
+    return next(
+        name for name, experiment in study.experiments.items() if method in experiment.methods
+    )
 
 
 @cache
@@ -44,12 +56,19 @@ def found_in_force(key, method):
     return found(STUDIES[key], home(STUDIES[key], method), method)
 
 
-@pytest.mark.parametrize(("key", "name"), [(key, name) for key, study in STUDIES.items() for name in alternatives(study)])
+@pytest.mark.parametrize(
+    ("key", "name"), [(key, name) for key, study in STUDIES.items() for name in alternatives(study)]
+)
 def test_alternative_changes_what_a_run_finds(key, name):
-    """Of one method at least: a choice about chaotic sequences does not concern a swarm without one."""
+    """Of one method at least: a choice about chaotic sequences does not concern a swarm without
+    one.
+    """
     study = STUDIES[key]
     changed = with_alternative(study, name)
-    assert any(found(changed, home(study, method), method) != found_in_force(key, method) for method in methods_changed(study, name))
+    assert any(
+        found(changed, home(study, method), method) != found_in_force(key, method)
+        for method in methods_changed(study, name)
+    )
 
 
 def claims(study, *wanted):
@@ -60,7 +79,11 @@ def claims(study, *wanted):
     ("claim", "experiment", "methods"),
     [
         ("C21", "maps", ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"]),
-        ("C23", "maps", ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"]),  # `rest`: those of Table 5
+        (
+            "C23",
+            "maps",
+            ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"],
+        ),  # `rest`: those of Table 5
         ("C36", "maps", ["cpso2_singer"]),
         ("C35", "rivals", ["cpso1_singer", "cpso2_singer", "ferguson", "prm"]),
         ("C38", "maps", None),  # `rest` over three tables
@@ -68,16 +91,24 @@ def claims(study, *wanted):
 )
 def test_alternatives_run_only_what_their_claims_compare(claim, experiment, methods):
     study = STUDIES["tharwat2018"]
-    every = [name for name in study.experiments[experiment].methods if not study.methods[name].variant_of]
-    assert methods_of_claims(study, claims(study, claim), experiment) == (every if methods is None else methods)
+    every = [
+        name for name in study.experiments[experiment].methods if not study.methods[name].variant_of
+    ]
+    assert methods_of_claims(study, claims(study, claim), experiment) == (
+        every if methods is None else methods
+    )
 
 
 @pytest.mark.parametrize("key", STUDIES)
 def test_every_setting_that_a_paper_leaves_open_is_tried(key):
-    """On claims, or, as a setting of competing methods alone, in the search for an interpretation."""
+    """On claims, or, as a setting of competing methods alone, in the search for an
+    interpretation.
+    """
     study = STUDIES[key]
     searched = {choice["id"] for choice in choices.choices(study)}
-    left = {identity for name, (identity, _) in alternatives(study).items() if name not in tried(study)}
+    left = {
+        identity for name, (identity, _) in alternatives(study).items() if name not in tried(study)
+    }
     assert left <= searched
 
 
@@ -89,7 +120,9 @@ def test_defaults_are_the_values_in_force(key):
         if "setting" in assumption:
             setting, default = assumption["setting"], assumption["default"]
             if isinstance(default, dict):
-                assert {method: study.resolved(method)[setting] for method in default} == default, assumption["id"]
+                assert {method: study.resolved(method)[setting] for method in default} == default, (
+                    assumption["id"]
+                )
             else:
                 assert study.settings[setting] == default, assumption["id"]
 

@@ -1,4 +1,6 @@
-"""BCA and BCA-Q of ma2020: the cost of a chromosome against an independent reference, its operators, degenerate cases, settings."""
+"""BCA and BCA-Q of ma2020: the cost of a chromosome against an independent reference, its
+operators, degenerate cases, settings.
+"""
 
 import math
 
@@ -46,11 +48,15 @@ def random_grid(seed, share=0.15):
 
 def plan(grid=OPEN, seed=0, start=(0.0, 0.0), target=None, **changes):
     target = target or (grid.bounds[1], grid.bounds[3])
-    return bca.plan(Problem("test", grid, start, target), np.random.default_rng(seed), **(SETTINGS | changes))
+    return bca.plan(
+        Problem("test", grid, start, target), np.random.default_rng(seed), **(SETTINGS | changes)
+    )
 
 
 def reference(path, grid, samples):
-    """Length, share of samples inside occupied cells, and least distance of the samples to occupied cells, by numpy alone, in cells."""
+    """Length, share of samples inside occupied cells, and least distance of the samples to occupied
+    cells, by numpy alone, in cells.
+    """
     points = curves.sample_matrix("bezier", len(path.points), samples) @ path.points / grid.cell
     row, column = np.nonzero(grid.occupied)
     dx = np.maximum(column - points[:, :1], points[:, :1] - column - 1)
@@ -61,13 +67,24 @@ def reference(path, grid, samples):
 
 
 @pytest.mark.parametrize(
-    ("number", "centre"), [(1, (0.5, 19.5)), (20, (19.5, 19.5)), (381, (0.5, 0.5)), (400, (19.5, 0.5)), (23, (2.5, 18.5))]
+    ("number", "centre"),
+    [
+        (1, (0.5, 19.5)),
+        (20, (19.5, 19.5)),
+        (381, (0.5, 0.5)),
+        (400, (19.5, 0.5)),
+        (23, (2.5, 18.5)),
+    ],
 )
 def test_cells_are_numbered_from_the_top_left(number, centre):
     assert tuple(bca.code_centres(20, 20)[number - 1]) == centre
 
 
-@given(st.integers(0, 10_000), st.sampled_from(["length", "repaired", "literal_weights", "hard_safety"]), st.sampled_from([0.25, 1.0, 1.6]))
+@given(
+    st.integers(0, 10_000),
+    st.sampled_from(["length", "repaired", "literal_weights", "hard_safety"]),
+    st.sampled_from([0.25, 1.0, 1.6]),
+)
 @settings(max_examples=60)
 def test_cost_of_the_forms_that_know_collisions(seed, fitness, distance):
     grid = random_grid(seed)
@@ -89,7 +106,11 @@ def test_cost_of_the_forms_that_know_collisions(seed, fitness, distance):
     assert found.claimed_feasible == (bad == 0)
 
 
-@given(st.integers(0, 10_000), st.sampled_from(["reciprocal_literal", "as_printed"]), st.sampled_from(["collision_free", "clearance"]))
+@given(
+    st.integers(0, 10_000),
+    st.sampled_from(["reciprocal_literal", "as_printed"]),
+    st.sampled_from(["collision_free", "clearance"]),
+)
 @settings(max_examples=40)
 def test_cost_of_the_literal_forms(seed, fitness, feasible):
     grid = random_grid(seed, 0.05)
@@ -99,11 +120,16 @@ def test_cost_of_the_literal_forms(seed, fitness, feasible):
     if not free:
         assert found.objective == pytest.approx(0.8 * length + 0.1 * found.extra["safety_term"])
     else:
-        assert found.objective == pytest.approx(length if fitness == "reciprocal_literal" else 1 / length)
+        assert found.objective == pytest.approx(
+            length if fitness == "reciprocal_literal" else 1 / length
+        )
 
 
 def test_as_printed_prefers_long_paths():
-    lengths = {fitness: curves.length(plan(fitness=fitness, generations=30).path) for fitness in ("length", "as_printed")}
+    lengths = {
+        fitness: curves.length(plan(fitness=fitness, generations=30).path)
+        for fitness in ("length", "as_printed")
+    }
     assert lengths["as_printed"] > lengths["length"] + 3
 
 
@@ -158,7 +184,9 @@ def test_long_chords_are_cut_into_parts():
         steps = np.linspace(0, 1, 2001)
         x, y = ends[0] + steps * (ends[2] - ends[0]), ends[1] + steps * (ends[3] - ends[1])
         fine = bca._collisions(x[1:], y[1:], grid.occupied)
-        if bca._collisions(x[:1], y[:1], grid.occupied) == 0 and fine != 1:  # starts free; no grazing
+        if (
+            bca._collisions(x[:1], y[:1], grid.occupied) == 0 and fine != 1
+        ):  # starts free; no grazing
             assert chord(*ends, grid) == (fine > 0)
             hits += fine > 0
     assert hits > 100
@@ -184,7 +212,14 @@ def test_same_seed_gives_the_same_bits():
 @pytest.mark.parametrize("initial", ["uniform", "sorted", "feasible"])
 def test_genes_are_free_cells(mutation, initial):
     grid = random_grid(3, 0.4)
-    found = plan(grid, mutation=mutation, initial=initial, mutation_probability=1.0, elitism=0, generations=20)
+    found = plan(
+        grid,
+        mutation=mutation,
+        initial=initial,
+        mutation_probability=1.0,
+        elitism=0,
+        generations=20,
+    )
     column, row = np.floor(found.path.points[1:-1]).astype(int).T
     assert not grid.occupied[row, column].any()
     assert np.array_equal(found.path.points[1:-1] % 1, np.full((8, 2), 0.5))
@@ -281,11 +316,22 @@ def test_a_wall_ends_in_a_path_that_is_said_to_collide():
 def test_no_safety_distance_is_never_undercut():
     """Then BCA-Q is BCA on another scale, also for paths that collide."""
     grid = random_grid(4, 0.3)
-    bca_q, shortest = (plan(grid, fitness=fitness, safety_distance=0, generations=30) for fitness in ("repaired", "length"))
+    bca_q, shortest = (
+        plan(grid, fitness=fitness, safety_distance=0, generations=30)
+        for fitness in ("repaired", "length")
+    )
     assert bca_q.extra["safety_term"] == 0
     assert bca_q.objective * STRAIGHT / 0.8 == pytest.approx(shortest.objective)
     assert (
-        plan(WALL, fitness="repaired", safety_distance=0, control_points=0, start=(0.5, 1.5), target=(4.5, 1.5)).extra["safety_term"] == 0
+        plan(
+            WALL,
+            fitness="repaired",
+            safety_distance=0,
+            control_points=0,
+            start=(0.5, 1.5),
+            target=(4.5, 1.5),
+        ).extra["safety_term"]
+        == 0
     )
 
 

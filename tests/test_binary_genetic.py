@@ -1,4 +1,6 @@
-"""The genetic algorithm of song2016: its objective against an independent reference, its degenerate cases, its settings."""
+"""The genetic algorithm of song2016: its objective against an independent reference, its degenerate
+cases, its settings.
+"""
 
 import math
 
@@ -38,7 +40,9 @@ def problem(workspace, start, target):
 
 
 def plan(workspace=OPEN, start=0, target=255, seed=0, **changes):
-    return binary_genetic.plan(problem(workspace, start, target), np.random.default_rng(seed), **(SETTINGS | changes))
+    return binary_genetic.plan(
+        problem(workspace, start, target), np.random.default_rng(seed), **(SETTINGS | changes)
+    )
 
 
 def random_grid(seed):
@@ -68,9 +72,19 @@ def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
 @pytest.mark.parametrize("penalty_for", ["each_sample", "path"])
 @pytest.mark.parametrize("curve", curves.B_SPLINES)
 def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, penalty_for):
-    """The last generation is measured only as far as it takes to know that a chromosome is not the best."""
+    """The last generation is measured only as far as it takes to know that a chromosome is not the
+    best.
+    """
     grid, population = random_grid(8), 300
-    found = plan(grid, seed=3, curve=curve, samples=SAMPLES[curve], generations=0, population=population, penalty_for=penalty_for)
+    found = plan(
+        grid,
+        seed=3,
+        curve=curve,
+        samples=SAMPLES[curve],
+        generations=0,
+        population=population,
+        penalty_for=penalty_for,
+    )
     starts, _ = np.random.default_rng(3).spawn(2)
     costs = []
     for cells in starts.integers(0, 256, size=(population, SETTINGS["genes"])):
@@ -83,7 +97,9 @@ def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, pen
 @pytest.mark.parametrize("curve", curves.B_SPLINES)
 def test_stretches_kept_from_a_parent_change_nothing(curve, monkeypatch):
     """The compiled search against its plain Python with every stretch measured anew."""
-    compiled = plan(random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4)
+    compiled = plan(
+        random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4
+    )
     monkeypatch.setattr(binary_genetic, "_same", lambda *_: False)
     monkeypatch.setattr(binary_genetic, "_search", binary_genetic._search.py_func)
     plain = plan(random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4)
@@ -154,18 +170,26 @@ def test_surplus_cells_of_a_narrow_grid_are_occupied():
     narrow = Grid(np.zeros((3, 5), dtype=bool), 1.0, "unit")
     found = plan(narrow, start=0, target=14, generations=30)
     assert found.claimed_feasible
-    length, _ = reference(found.path, Grid(np.pad(narrow.occupied, ((0, 1), (0, 3)), constant_values=True), 1.0, "unit"), 601)
+    length, _ = reference(
+        found.path,
+        Grid(np.pad(narrow.occupied, ((0, 1), (0, 3)), constant_values=True), 1.0, "unit"),
+        601,
+    )
     assert found.objective == pytest.approx(length)
 
 
 def test_one_penalty_a_path_makes_the_straight_line_through_a_wall_best():
-    found = plan(WALL, start=0, target=7, generations=60, population=60, penalty_for="path", penalty=1.0)
+    found = plan(
+        WALL, start=0, target=7, generations=60, population=60, penalty_for="path", penalty=1.0
+    )
     assert found.objective == pytest.approx(8.0)
 
 
 def test_polyline_measured_along_its_length_is_exact():
     found = plan(random_grid(2), curve="polyline", samples=701, spacing="arc_length", generations=5)
-    assert found.objective - 10 * found.extra["bad_samples"] == pytest.approx(curves.length(found.path))
+    assert found.objective - 10 * found.extra["bad_samples"] == pytest.approx(
+        curves.length(found.path)
+    )
 
 
 def test_occupied_control_points_cost_what_the_setting_says():
@@ -173,7 +197,9 @@ def test_occupied_control_points_cost_what_the_setting_says():
     found = plan(grid, occupied_point_penalty=7.0, generations=0, population=2)
     length, bad = reference(found.path, grid, 601)
     column, row = (found.path.points / 10).astype(int).T
-    assert found.objective == pytest.approx(length + 10 * bad + 7 * grid.occupied[row, column].sum())
+    assert found.objective == pytest.approx(
+        length + 10 * bad + 7 * grid.occupied[row, column].sum()
+    )
 
 
 @pytest.mark.parametrize(
@@ -211,7 +237,9 @@ def test_one_bit_of_any_gene_is_complemented():
     found = flipped(binary_genetic.Mutation.one_bit, 1.0, 4800)
     assert (found.sum(axis=(1, 2)) == 1).all()
     assert np.abs(found.sum(axis=0) - 100).max() < 4 * 10
-    assert flipped(binary_genetic.Mutation.one_bit, 0.25, 4000).sum() == pytest.approx(1000, abs=4 * math.sqrt(750))
+    assert flipped(binary_genetic.Mutation.one_bit, 0.25, 4000).sum() == pytest.approx(
+        1000, abs=4 * math.sqrt(750)
+    )
 
 
 def test_one_bit_of_each_gene_is_complemented():

@@ -1,4 +1,6 @@
-"""Exact shortest paths: closed forms, published and reference lengths, and that the paths themselves are free."""
+"""Exact shortest paths: closed forms, published and reference lengths, and that the paths
+themselves are free.
+"""
 
 import csv
 import itertools
@@ -15,7 +17,13 @@ from fields import BENCHMARK_MAPS
 
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
-from bezierplan.geometry.shortest_paths import Bound, centre_path, lattice_path, least_length, shortest_path
+from bezierplan.geometry.shortest_paths import (
+    Bound,
+    centre_path,
+    lattice_path,
+    least_length,
+    shortest_path,
+)
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -39,7 +47,12 @@ def reference(quantity):
 def imr_problem(name):
     text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
     properties = json.loads(text)["properties"]
-    return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
+    return Problem(
+        name,
+        polygons_from_geojson(text, "m"),
+        tuple(properties["start"]),
+        tuple(properties["target"]),
+    )
 
 
 def grid_map(file, cell=1.0):
@@ -52,7 +65,12 @@ def around(discs, start, target, bounds=WORLD):
 
 
 def among(obstacles, start, target, bounds=(0.0, 10.0, 0.0, 10.0)):
-    return Problem("", Polygons(bounds, tuple((np.array(ring, dtype=float),) for ring in obstacles), "m"), start, target)
+    return Problem(
+        "",
+        Polygons(bounds, tuple((np.array(ring, dtype=float),) for ring in obstacles), "m"),
+        start,
+        target,
+    )
 
 
 def on_cells(occupied, start, target, cell=1.0):
@@ -64,7 +82,9 @@ def pieces(bound):
 
 
 def assert_is_path(bound, problem, corner_cutting="open"):
-    """The polyline goes from start to target, has the bound's length (with arcs: at most 1e-6 more), and is free."""
+    """The polyline goes from start to target, has the bound's length (with arcs: at most 1e-6
+    more), and is free.
+    """
     np.testing.assert_allclose(bound.points[[0, -1]], [problem.start, problem.target], atol=1e-12)
     drawn = np.hypot(*np.diff(bound.points, axis=0).T).sum()
     excess = 1e-6 if isinstance(problem.workspace, Circles) else 0
@@ -82,11 +102,17 @@ def test_shortest_paths_of_the_benchmark_maps(row):
 
 @pytest.mark.parametrize("row", reference("shortest_path"), ids=lambda row: row["map"])
 def test_shortest_paths_of_the_benchmark_maps_by_another_method(row):
-    """All pairs of corners, judged by the pattern of the segment against the blocked region as a whole."""
+    """All pairs of corners, judged by the pattern of the segment against the blocked region as a
+    whole.
+    """
     problem = imr_problem(row["map"])
     left, right, bottom, top = problem.workspace.bounds
-    obstacles = shapely.union_all([shapely.Polygon(rings[0], rings[1:]) for rings in problem.workspace.obstacles])
-    blocked = shapely.box(left - 1, bottom - 1, right + 1, top + 1) - (shapely.box(left, bottom, right, top) - obstacles)
+    obstacles = shapely.union_all(
+        [shapely.Polygon(rings[0], rings[1:]) for rings in problem.workspace.obstacles]
+    )
+    blocked = shapely.box(left - 1, bottom - 1, right + 1, top + 1) - (
+        shapely.box(left, bottom, right, top) - obstacles
+    )
     corners = np.unique(shapely.get_coordinates(obstacles), axis=0)
     inner = corners[((corners > (left, bottom)) & (corners < (right, top))).all(axis=1)]
     nodes = np.concatenate([[problem.start, problem.target], inner])
@@ -108,9 +134,13 @@ def test_shortest_paths_of_the_benchmark_maps_by_another_method(row):
 def occupied_by(polygons, side):
     """Cells that an obstacle overlaps with positive area. The cell is shrunk, not the obstacle."""
     _, width, _, height = polygons.bounds
-    x, y = np.meshgrid(np.arange(round(width / side)) * side, np.arange(round(height / side)) * side)
+    x, y = np.meshgrid(
+        np.arange(round(width / side)) * side, np.arange(round(height / side)) * side
+    )
     boxes = shapely.box(x + 1e-7, y + 1e-7, x + side - 1e-7, y + side - 1e-7)
-    obstacles = shapely.union_all([shapely.Polygon(rings[0], rings[1:]) for rings in polygons.obstacles])
+    obstacles = shapely.union_all(
+        [shapely.Polygon(rings[0], rings[1:]) for rings in polygons.obstacles]
+    )
     shapely.prepare(obstacles)
     return shapely.intersects(obstacles, boxes)
 
@@ -122,10 +152,14 @@ def test_lattice_paths_of_the_benchmark_maps(name):
     for side in {row["cell_m"] for row in rows}:
         h = float(side)
         occupied = occupied_by(problem.workspace, h)
-        start, target = (Grid(occupied, h, "m").cell_of(*point) for point in (problem.start, problem.target))
+        start, target = (
+            Grid(occupied, h, "m").cell_of(*point) for point in (problem.start, problem.target)
+        )
         for row in rows:
             if row["cell_m"] == side:
-                weight = ROOT2 if row["diagonal_weight"] == "sqrt2" else float(row["diagonal_weight"])
+                weight = (
+                    ROOT2 if row["diagonal_weight"] == "sqrt2" else float(row["diagonal_weight"])
+                )
                 bound = lattice_path(occupied, start, target, weight, "none")
                 assert bound.length * h == pytest.approx(float(row["value"]), abs=1e-5)
 
@@ -156,15 +190,24 @@ def test_paths_of_the_workspace_of_song2016(first, last, any_angle, through_cent
 )
 def test_paths_of_the_environments_of_ma2020(environment, any_angle, one, none):
     grid = grid_map(f"ma2020/environment{environment}.txt")
-    assert shortest_path(Problem("", grid, (0.0, 0.0), (20.0, 20.0))).length == pytest.approx(any_angle, abs=1e-6)
+    assert shortest_path(Problem("", grid, (0.0, 0.0), (20.0, 20.0))).length == pytest.approx(
+        any_angle, abs=1e-6
+    )
     for rule, length in {"free": one, "one": one, "none": none}.items():
         # Half a diagonal from the map's corners to the centres of their cells.
-        assert lattice_path(grid.occupied, (0, 0), (19, 19), ROOT2, rule).length + ROOT2 == pytest.approx(length, abs=1e-6)
+        assert lattice_path(
+            grid.occupied, (0, 0), (19, 19), ROOT2, rule
+        ).length + ROOT2 == pytest.approx(length, abs=1e-6)
 
 
 @pytest.mark.parametrize(
     ("environment", "length"),
-    [("env1_initial", 26.268314), ("env1_modified", 28.946764), ("env2_initial", 35.548689), ("env2_modified", 32.194010)],
+    [
+        ("env1_initial", 26.268314),
+        ("env1_modified", 28.946764),
+        ("env2_initial", 35.548689),
+        ("env2_modified", 32.194010),
+    ],
 )
 def test_centre_paths_of_the_environments_of_meledje(environment, length):
     grid = grid_map(f"meledje/{environment}.txt")
@@ -218,7 +261,9 @@ def test_a_start_that_is_on_no_lattice():
     occupied[1, 2] = True
     problem = on_cells(occupied, start, target)
     bound = shortest_path(problem)
-    assert bound.length == pytest.approx(math.dist(start, (2, 2)) + math.dist((2, 2), target), rel=1e-15)
+    assert bound.length == pytest.approx(
+        math.dist(start, (2, 2)) + math.dist((2, 2), target), rel=1e-15
+    )
     assert_is_path(bound, problem)
 
 
@@ -267,14 +312,25 @@ def test_a_polyline_keeps_clear_of_a_neighbouring_circle():
     [
         around(((0, 0, 1),), (0.5, 0), (3, 0)),
         around(((0, 0, 1),), (-3, 0), (20, 0)),
-        around(((0, 0, 1), (0, 2, 1.5), (0, -2, 1.5)), (-3, 0), (3, 0), bounds=(-4.0, 4.0, -3.0, 3.0)),
+        around(
+            ((0, 0, 1), (0, 2, 1.5), (0, -2, 1.5)), (-3, 0), (3, 0), bounds=(-4.0, 4.0, -3.0, 3.0)
+        ),
         on_cells([[False, True, False]], (0.5, 0.5), (2.5, 0.5)),
         on_cells([[False, True, False]], (1.5, 0.5), (1.5, 0.5)),
         on_cells([[False, False, False]], (0.5, 0.5), (3.5, 0.5)),
         among([[(4, 0), (5, 0), (5, 10), (4, 10)]], (1, 1), (9, 9)),
         among([[(4, 4), (6, 4), (6, 6), (4, 6)]], (5, 5), (9, 9)),
     ],
-    ids=["in a disc", "outside", "circles across", "cell across", "in a cell", "off the grid", "wall across", "in a polygon"],
+    ids=[
+        "in a disc",
+        "outside",
+        "circles across",
+        "cell across",
+        "in a cell",
+        "off the grid",
+        "wall across",
+        "in a polygon",
+    ],
 )
 def test_no_path(problem):
     bound = shortest_path(problem)
@@ -303,18 +359,40 @@ def test_start_is_target(problem):
         ([[(4, 4), (6, 4), (6, 6), (4, 6)]], (4, 4), (6, 6), 4),
         ([[(4, 4), (6, 4), (6, 6), (4, 6)]], (4, 5), (6, 5), 4),
         ([[(4, 4), (5, 5), (4, 6)], [(5, 5), (6, 4), (6, 6)]], (5, 2), (5, 8), 6),
-        ([[(4, 4), (5, 5), (4, 6)], [(5, 5), (6, 4), (6, 6)]], (4.9, 4), (4.9, 6), 2 * math.hypot(0.1, 1)),
-        ([[(0, 5), (5, 5), (5, 6), (0, 6)], [(5, 5), (5, 4), (10, 4), (10, 5)]], (4, 4), (6, 6), 2 * ROOT2),
+        (
+            [[(4, 4), (5, 5), (4, 6)], [(5, 5), (6, 4), (6, 6)]],
+            (4.9, 4),
+            (4.9, 6),
+            2 * math.hypot(0.1, 1),
+        ),
+        (
+            [[(0, 5), (5, 5), (5, 6), (0, 6)], [(5, 5), (5, 4), (10, 4), (10, 5)]],
+            (4, 4),
+            (6, 6),
+            2 * ROOT2,
+        ),
         (
             [[(0, 5), (5, 5), (5, 6), (0, 6)], [(5, 5), (5, 4), (10, 4), (10, 5)]],
             *((4, 4.5), (5.5, 7)),
             math.hypot(1, 0.5) + math.hypot(0.5, 2),
         ),
-        ([[(4, 4), (5, 4), (5, 6), (4, 6)], [(5, 4), (6, 4), (6, 6), (5, 6)]], (5, 3), (5, 7), 2 * ROOT2 + 2),
+        (
+            [[(4, 4), (5, 4), (5, 6), (4, 6)], [(5, 4), (6, 4), (6, 6), (5, 6)]],
+            (5, 3),
+            (5, 7),
+            2 * ROOT2 + 2,
+        ),
         ([[(4, 0), (5, 0), (5, 7), (4, 7)]], (3, 0), (6, 0), 1 + 2 * math.hypot(1, 7)),
     ],
     ids=[
-        *("corner to corner", "wall to wall", "between tips", "turning between tips", "between regions", "turning between regions"),
+        *(
+            "corner to corner",
+            "wall to wall",
+            "between tips",
+            "turning between tips",
+            "between regions",
+            "turning between regions",
+        ),
         *("shared edge", "on the border"),
     ],
 )
@@ -325,7 +403,9 @@ def test_paths_among_polygons(obstacles, start, target, length):
     assert_is_path(bound, problem)
 
 
-@pytest.mark.parametrize(("rule", "length"), [("free", ROOT2), ("one", math.inf), ("none", math.inf)])
+@pytest.mark.parametrize(
+    ("rule", "length"), [("free", ROOT2), ("one", math.inf), ("none", math.inf)]
+)
 def test_a_diagonal_between_two_occupied_cells(rule, length):
     assert lattice_path(np.eye(2, dtype=bool)[::-1], (0, 0), (1, 1), ROOT2, rule).length == length
 
@@ -352,8 +432,12 @@ def test_lattice_paths_are_the_shortest_of_the_whole_graph(rule, weight):
         reached = neighbours(occupied, rule)
         tails, steps = np.nonzero(reached >= 0)
         weights = np.where(STEPS[steps].all(axis=1), weight, 1.0)
-        graph = scipy.sparse.coo_array((weights, (tails, reached[tails, steps])), shape=(occupied.size, occupied.size)).tocsr()
-        least = scipy.sparse.csgraph.dijkstra(graph, indices=start[0] * columns + start[1])[target[0] * columns + target[1]]
+        graph = scipy.sparse.coo_array(
+            (weights, (tails, reached[tails, steps])), shape=(occupied.size, occupied.size)
+        ).tocsr()
+        least = scipy.sparse.csgraph.dijkstra(graph, indices=start[0] * columns + start[1])[
+            target[0] * columns + target[1]
+        ]
         bound = lattice_path(occupied, start, target, weight, rule)
         assert bound.length == pytest.approx(least, rel=1e-12)
         if np.isfinite(least):
@@ -363,7 +447,9 @@ def test_lattice_paths_are_the_shortest_of_the_whole_graph(rule, weight):
             cells = row * columns + column
             assert all(other in reached[one] for one, other in itertools.pairwise(cells))
             diagonal = (np.abs(np.diff(bound.points, axis=0)).sum(axis=1) == 2).sum()
-            assert bound.length == pytest.approx(len(cells) - 1 - diagonal + weight * diagonal, rel=1e-12)
+            assert bound.length == pytest.approx(
+                len(cells) - 1 - diagonal + weight * diagonal, rel=1e-12
+            )
     assert found > 30
 
 
@@ -376,7 +462,9 @@ def test_what_bounds_refuse():
     empty = np.zeros((2, 2), dtype=bool)
     with pytest.raises(ValueError, match=r"corner rule 'two'; known: free, one, none"):
         lattice_path(empty, (0, 0), (1, 1), ROOT2, "two")
-    with pytest.raises(ValueError, match=r"target cell \(row 2, column 1\) is not on the grid of 2 x 2"):
+    with pytest.raises(
+        ValueError, match=r"target cell \(row 2, column 1\) is not on the grid of 2 x 2"
+    ):
         lattice_path(empty, (0, 0), (2, 1), ROOT2, "free")
     with pytest.raises(ValueError, match=r"start .* is not the centre of a cell"):
         centre_path(on_cells(empty, (0.5, 1.0), (1.5, 1.5)))
@@ -405,15 +493,31 @@ def blocks(side, share, largest, rng):
 
 @pytest.mark.parametrize("place", ["cells", "lattice", "anywhere"])
 def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch, place):
-    """Single cells and blocks, contacts and dead ends, from points on corners, on edges, in cells and in obstacles."""
+    """Single cells and blocks, contacts and dead ends, from points on corners, on edges, in cells
+    and in obstacles.
+    """
     rng = np.random.default_rng(1)
     found_none = 0
     for _ in range(150):
         rows, columns = rng.integers(1, 15, 2)
         single = rng.random((rows, columns)) < rng.choice([0.1, 0.3, 0.5])
-        grid = Grid(blocks(15, 0.25, 4, rng)[:rows, :columns] if rng.random() < 0.3 else single, 0.5, "m", (1.0, -2.0))
-        parts = {"cells": rng.integers(0, 2 * rows + 1, 4) / 2, "lattice": rng.integers(0, 61, 4) / 4, "anywhere": 15 * rng.random(4)}
-        x, y, to_x, to_y = 0.5 * np.minimum(parts[place], [columns, rows, columns, rows]) + [1.0, -2.0, 1.0, -2.0]
+        grid = Grid(
+            blocks(15, 0.25, 4, rng)[:rows, :columns] if rng.random() < 0.3 else single,
+            0.5,
+            "m",
+            (1.0, -2.0),
+        )
+        parts = {
+            "cells": rng.integers(0, 2 * rows + 1, 4) / 2,
+            "lattice": rng.integers(0, 61, 4) / 4,
+            "anywhere": 15 * rng.random(4),
+        }
+        x, y, to_x, to_y = 0.5 * np.minimum(parts[place], [columns, rows, columns, rows]) + [
+            1.0,
+            -2.0,
+            1.0,
+            -2.0,
+        ]
         problem = Problem("", grid, (x, y), (to_x, to_y))
         whole = shortest_path(problem)
         with monkeypatch.context() as patched:
@@ -429,7 +533,9 @@ def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch
 def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkeypatch):
     monkeypatch.setattr("bezierplan.geometry.shortest_paths.polygons.MOST_POLYGON_NODES", 0)
     for row in reference("shortest_path"):
-        assert shortest_path(imr_problem(row["map"])).length == pytest.approx(float(row["value"]), abs=1e-5)
+        assert shortest_path(imr_problem(row["map"])).length == pytest.approx(
+            float(row["value"]), abs=1e-5
+        )
 
 
 @pytest.mark.parametrize("kind", ["stars", "meeting corners"])
@@ -441,10 +547,16 @@ def test_the_search_among_many_polygons_agrees_on_random_ones(monkeypatch, kind)
             angles = np.sort(rng.uniform(0, math.tau, (4, 9)), axis=1)
             reach = rng.uniform(0.3, 2.2, angles.shape)
             centres = rng.uniform(2.5, 7.5, (4, 2))
-            rings = [c + r[:, None] * np.column_stack([np.cos(a), np.sin(a)]) for c, r, a in zip(centres, reach, angles)]
+            rings = [
+                c + r[:, None] * np.column_stack([np.cos(a), np.sin(a)])
+                for c, r, a in zip(centres, reach, angles)
+            ]
             rings = [ring for ring in rings if shapely.Polygon(ring).is_valid]
         else:
-            rings = [np.add([(0, 0), (1, 0), (1, 1), (0, 1)], place) for place in rng.integers(1, 9, (25, 2))]
+            rings = [
+                np.add([(0, 0), (1, 0), (1, 1), (0, 1)], place)
+                for place in rng.integers(1, 9, (25, 2))
+            ]
         problem = among(rings, (0.5, 0.25), (9.5, 9.75))
         whole = shortest_path(problem)
         with monkeypatch.context() as patched:
@@ -460,7 +572,11 @@ def test_the_search_among_many_polygons_agrees_on_random_ones(monkeypatch, kind)
 def test_a_polygon_of_five_thousand_corners_is_ordinary():
     angles = np.arange(5000) * math.tau / 5000
     reach = np.where(np.arange(5000) % 2, 4.0, 3.0)
-    problem = among([5 + reach[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])], (0.1, 5.0), (9.9, 5.1))
+    problem = among(
+        [5 + reach[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])],
+        (0.1, 5.0),
+        (9.9, 5.1),
+    )
     bound = shortest_path(problem)
     assert_is_path(bound, problem)
     tangents = math.sqrt(4.9**2 - 4**2) + math.sqrt(4.9**2 + 0.1**2 - 4**2)
@@ -475,9 +591,15 @@ def test_a_grid_of_a_million_cells_is_ordinary(largest):
     occupied[0, 0] = occupied[-1, -1] = False
     grid = Grid(occupied, 1.0, "cell")
     problem = on_cells(grid.occupied, (0.5, 0.5), (999.5, 999.5))
-    shortest_path(on_cells(grid.occupied[:200, :200], (0.5, 0.5), (150.5, 150.5)))  # so that compiling is not counted
+    shortest_path(
+        on_cells(grid.occupied[:200, :200], (0.5, 0.5), (150.5, 150.5))
+    )  # so that compiling is not counted
     begin = time.process_time()
     bound = shortest_path(problem)
     assert time.process_time() - begin < 10
-    assert math.dist(problem.start, problem.target) < bound.length < 1.2 * math.dist(problem.start, problem.target)
+    assert (
+        math.dist(problem.start, problem.target)
+        < bound.length
+        < 1.2 * math.dist(problem.start, problem.target)
+    )
     assert check(pieces(bound), region(grid)).feasible

@@ -1,4 +1,6 @@
-"""Broken maps and command lines of `plan`: each is told in one line, with exit status 2, at once and without a traceback."""
+"""Broken maps and command lines of `plan`: each is told in one line, with exit status 2, at once
+and without a traceback.
+"""
 
 import json
 import os
@@ -21,11 +23,17 @@ SCEN = "version 1\n0\troom.map\t4\t3\t0\t0\t3\t2\t4.2\n"
 
 
 def feature(rings, role="obstacle", **more):
-    return {"type": "Feature", "properties": {"role": role}, "geometry": {"type": "Polygon", "coordinates": rings}} | more
+    return {
+        "type": "Feature",
+        "properties": {"role": role},
+        "geometry": {"type": "Polygon", "coordinates": rings},
+    } | more
 
 
 def geojson(*features, **more):
-    return json.dumps({"type": "FeatureCollection", "features": [feature([BORDER], "border"), *features]} | more)
+    return json.dumps(
+        {"type": "FeatureCollection", "features": [feature([BORDER], "border"), *features]} | more
+    )
 
 
 ONE = geojson(feature([SQUARE]))
@@ -71,40 +79,116 @@ LONG = "a" * 5000
 # A map's name, its text or bytes, and the line that tells what is wrong with it.
 MAPS = {
     # GeoJSON: what JSON allows, and a map must not.
-    "a key twice": ("geojson", ONE.replace('"features"', '"features": [], "features"'), "'features': this key is given twice"),
+    "a key twice": (
+        "geojson",
+        ONE.replace('"features"', '"features": [], "features"'),
+        "'features': this key is given twice",
+    ),
     "a role twice": (
         "geojson",
         ONE.replace('"role": "obstacle"', '"role": "start", "role": "obstacle"'),
         "'role': this key is given tw",
     ),
-    "NaN": ("geojson", ONE.replace("[6, 4]", "[NaN, 4]"), "NaN is not a coordinate; expected finite numbers"),
+    "NaN": (
+        "geojson",
+        ONE.replace("[6, 4]", "[NaN, 4]"),
+        "NaN is not a coordinate; expected finite numbers",
+    ),
     "Infinity": ("geojson", ONE.replace("[6, 4]", "[Infinity, 4]"), "Infinity is not a coordinate"),
-    "-Infinity": ("geojson", ONE.replace("[6, 4]", "[6, -Infinity]"), "-Infinity is not a coordinate"),
+    "-Infinity": (
+        "geojson",
+        ONE.replace("[6, 4]", "[6, -Infinity]"),
+        "-Infinity is not a coordinate",
+    ),
     "beyond floats": ("geojson", ONE.replace("[6, 4]", "[1e999, 4]"), "inf is not a coordinate"),
-    "1e308": ("geojson", ONE.replace("[6, 4]", "[1e308, 4]"), "1e+308 is not a coordinate; expected finite numbers of at most 3e+07"),
-    "a huge integer": ("geojson", ONE.replace("[6, 4]", f"[{'9' * 400}, 4]"), "a number is too large for a coordinate"),
-    "an endless integer": ("geojson", ONE.replace("[6, 4]", f"[{'9' * 5000}, 4]"), "not a GeoJSON feature collection"),
-    "a map of a country": ("geojson", ONE.replace("[10, 0], [10, 10]", "[1e6, 0], [1e6, 10]"), "the border: 1e+06 x 10 units; expected at"),
-    "a truth": ("geojson", ONE.replace("[6, 4]", "[true, 4]"), "position [True, 4]; expected [x, y]"),
-    "text": ("geojson", ONE.replace("[6, 4]", '["6", "4"]'), "position ['6', '4']; expected [x, y]"),
+    "1e308": (
+        "geojson",
+        ONE.replace("[6, 4]", "[1e308, 4]"),
+        "1e+308 is not a coordinate; expected finite numbers of at most 3e+07",
+    ),
+    "a huge integer": (
+        "geojson",
+        ONE.replace("[6, 4]", f"[{'9' * 400}, 4]"),
+        "a number is too large for a coordinate",
+    ),
+    "an endless integer": (
+        "geojson",
+        ONE.replace("[6, 4]", f"[{'9' * 5000}, 4]"),
+        "not a GeoJSON feature collection",
+    ),
+    "a map of a country": (
+        "geojson",
+        ONE.replace("[10, 0], [10, 10]", "[1e6, 0], [1e6, 10]"),
+        "the border: 1e+06 x 10 units; expected at",
+    ),
+    "a truth": (
+        "geojson",
+        ONE.replace("[6, 4]", "[true, 4]"),
+        "position [True, 4]; expected [x, y]",
+    ),
+    "text": (
+        "geojson",
+        ONE.replace("[6, 4]", '["6", "4"]'),
+        "position ['6', '4']; expected [x, y]",
+    ),
     "null": ("geojson", ONE.replace("[6, 4]", "[null, 4]"), "position [None, 4]; expected [x, y]"),
-    "a mapping": ("geojson", ONE.replace("[6, 4]", '{"x": 6}'), "position {'x': 6}; expected [x, y]"),
-    "one height": ("geojson", ONE.replace("[6, 4]", "[6, 4, 1]"), "position [6, 4, 1]; expected [x, y], or [x, y, height] throughout"),
+    "a mapping": (
+        "geojson",
+        ONE.replace("[6, 4]", '{"x": 6}'),
+        "position {'x': 6}; expected [x, y]",
+    ),
+    "one height": (
+        "geojson",
+        ONE.replace("[6, 4]", "[6, 4, 1]"),
+        "position [6, 4, 1]; expected [x, y], or [x, y, height] throughout",
+    ),
     "nested lists": ("geojson", ONE.replace("[6, 4]", "[" * 100_000), "nested too deeply"),
     "nested mappings": ("geojson", '{"features": ' + '{"a": ' * 100_000, "nested too deeply"),
-    "longitudes": ("geojson", geojson(crs={"properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}), "crs: longitudes and latitudes"),
-    "an EPSG code": ("geojson", geojson(crs={"properties": {"name": "urn:ogc:def:crs:EPSG::4326"}}), "crs: longitudes and latitudes"),
-    "one feature": ("geojson", json.dumps(feature([BORDER])), "no border; expected a polygon with role border, a bbox, or a margin"),
-    "a geometry collection": ("geojson", geojson(type="GeometryCollection"), "type: GeometryCollection; expected FeatureCollection"),
-    "no feature": ("geojson", geojson(feature([SQUARE], type="Point")), "feature 1: type: Point; expected Feature"),
+    "longitudes": (
+        "geojson",
+        geojson(crs={"properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}),
+        "crs: longitudes and latitudes",
+    ),
+    "an EPSG code": (
+        "geojson",
+        geojson(crs={"properties": {"name": "urn:ogc:def:crs:EPSG::4326"}}),
+        "crs: longitudes and latitudes",
+    ),
+    "one feature": (
+        "geojson",
+        json.dumps(feature([BORDER])),
+        "no border; expected a polygon with role border, a bbox, or a margin",
+    ),
+    "a geometry collection": (
+        "geojson",
+        geojson(type="GeometryCollection"),
+        "type: GeometryCollection; expected FeatureCollection",
+    ),
+    "no feature": (
+        "geojson",
+        geojson(feature([SQUARE], type="Point")),
+        "feature 1: type: Point; expected Feature",
+    ),
     "a list": ("geojson", "[1, 2]", "expected an object with a list of features"),
     "a number": ("geojson", "7", "expected an object with a list of features"),
-    "features a mapping": ("geojson", '{"features": {}}', "expected an object with a list of features"),
+    "features a mapping": (
+        "geojson",
+        '{"features": {}}',
+        "expected an object with a list of features",
+    ),
     "empty GeoJSON": ("geojson", "", "not a GeoJSON feature collection"),
     "cut off": ("geojson", ONE[:-20], "not a GeoJSON feature collection"),
     "a long role": ("geojson", geojson(feature([SQUARE], LONG)), "properties: role: 'aaa"),
-    "a role with an escape": ("geojson", geojson(feature([SQUARE], "a\n\x1b[31mb")), "role: 'a\\n\\x1b[31mb': unknown"),
-    "a ring of words": ("geojson", geojson(feature(["abcd"])), "ring 0: expected at least four positions"),
+    "a role with an escape": (
+        "geojson",
+        geojson(feature([SQUARE], "a\n\x1b[31mb")),
+        "role: 'a\\n\\x1b[31mb': unknown",
+    ),
+    "a ring of words": (
+        "geojson",
+        geojson(feature(["abcd"])),
+        "ring 0: expected at least four positions",
+    ),
     "bytes": ("geojson", b"\xff\xfe{\x00}\x00", "is not UTF-8"),
     # Texts of cells.
     "a vertical tab": ("txt", "....\n.\x0b#.\n", "line 2: unknown character '\\x0b'"),
@@ -117,36 +201,120 @@ MAPS = {
     "zeros and ones": ("txt", "0000\n0110\n", "line 1: unknown character '0'"),
     "a long line of words": ("txt", LONG + "\n", "line 1: unknown character 'a'"),
     # MovingAI.
-    "a space for a cell": ("map", MOVING_AI.replace(".@@.", ".@ ."), "line 6: unknown character ' '"),
-    "a tab for a cell": ("map", MOVING_AI.replace(".@@.", ".@\t."), "line 6: unknown character '\\t'"),
-    "a letter of another script": ("map", MOVING_AI.replace(".@@.", ".@\u0422."), "line 6: unknown character"),
-    "a width with an underscore": ("map", MOVING_AI.replace("width 4", "width 0_4"), "'width 0_4'; expected width and a whole number"),
-    "a width in other digits": ("map", MOVING_AI.replace("width 4", "width \u0664"), "expected width and a whole number"),
-    "an endless width": ("map", MOVING_AI.replace("width 4", f"width {'9' * 5000}"), "expected width and a whole number"),
-    "a negative height": ("map", MOVING_AI.replace("height 3", "height -3"), "expected height and a whole number"),
-    "a decimal height": ("map", MOVING_AI.replace("height 3", "height 3.0"), "expected height and a whole number"),
-    "a height of 0": ("map", MOVING_AI.replace("height 3", "height 0"), "expected height and a whole number"),
-    "a vertical tab for a line's end": ("map", MOVING_AI.replace("....\n.@", "....\x0b.@"), "height: 3; but 2 lines of cells follow"),
+    "a space for a cell": (
+        "map",
+        MOVING_AI.replace(".@@.", ".@ ."),
+        "line 6: unknown character ' '",
+    ),
+    "a tab for a cell": (
+        "map",
+        MOVING_AI.replace(".@@.", ".@\t."),
+        "line 6: unknown character '\\t'",
+    ),
+    "a letter of another script": (
+        "map",
+        MOVING_AI.replace(".@@.", ".@\u0422."),
+        "line 6: unknown character",
+    ),
+    "a width with an underscore": (
+        "map",
+        MOVING_AI.replace("width 4", "width 0_4"),
+        "'width 0_4'; expected width and a whole number",
+    ),
+    "a width in other digits": (
+        "map",
+        MOVING_AI.replace("width 4", "width \u0664"),
+        "expected width and a whole number",
+    ),
+    "an endless width": (
+        "map",
+        MOVING_AI.replace("width 4", f"width {'9' * 5000}"),
+        "expected width and a whole number",
+    ),
+    "a negative height": (
+        "map",
+        MOVING_AI.replace("height 3", "height -3"),
+        "expected height and a whole number",
+    ),
+    "a decimal height": (
+        "map",
+        MOVING_AI.replace("height 3", "height 3.0"),
+        "expected height and a whole number",
+    ),
+    "a height of 0": (
+        "map",
+        MOVING_AI.replace("height 3", "height 0"),
+        "expected height and a whole number",
+    ),
+    "a vertical tab for a line's end": (
+        "map",
+        MOVING_AI.replace("....\n.@", "....\x0b.@"),
+        "height: 3; but 2 lines of cells follow",
+    ),
     # ROS.
-    "an image elsewhere": ("yaml", ROS.replace("room.png", "/etc/passwd"), "image: /etc/passwd: no such file in"),
-    "an image above": ("yaml", ROS.replace("room.png", "../outside.png"), "image: ../outside.png: no such file in"),
-    "an image through a link": ("yaml", ROS.replace("room.png", "linked.png"), "image: linked.png: no such file in"),
-    "an image far above": ("yaml", ROS.replace("room.png", "../" * 50 + "etc/passwd"), "no such file in"),
+    "an image elsewhere": (
+        "yaml",
+        ROS.replace("room.png", "/etc/passwd"),
+        "image: /etc/passwd: no such file in",
+    ),
+    "an image above": (
+        "yaml",
+        ROS.replace("room.png", "../outside.png"),
+        "image: ../outside.png: no such file in",
+    ),
+    "an image through a link": (
+        "yaml",
+        ROS.replace("room.png", "linked.png"),
+        "image: linked.png: no such file in",
+    ),
+    "an image far above": (
+        "yaml",
+        ROS.replace("room.png", "../" * 50 + "etc/passwd"),
+        "no such file in",
+    ),
     "an image of a long name": ("yaml", ROS.replace("room.png", LONG), "no such file in"),
     "an image with NUL": ("yaml", ROS.replace("room.png", '"a\\0b"'), "no such file in"),
-    "an image with a newline": ("yaml", ROS.replace("room.png", '"a\\nb"'), "image: a\\nb: no such file in"),
+    "an image with a newline": (
+        "yaml",
+        ROS.replace("room.png", '"a\\nb"'),
+        "image: a\\nb: no such file in",
+    ),
     "an image without a name": ("yaml", ROS.replace("room.png", '""'), "no such file in"),
     "an image that is a folder": ("yaml", ROS.replace("room.png", "folder.svg"), "no such file in"),
-    "an image that is text": ("yaml", ROS.replace("room.png", "room.txt"), "cannot be read as an image"),
+    "an image that is text": (
+        "yaml",
+        ROS.replace("room.png", "room.txt"),
+        "cannot be read as an image",
+    ),
     "images": ("yaml", ROS.replace("room.png", "[room.png]"), "expected the name of an image"),
-    "a number for an image": ("yaml", ROS.replace("room.png", "7"), "image: 7; expected the name of an image"),
-    "a resolution of nan": ("yaml", ROS.replace("0.5", ".nan"), "resolution: nan; expected a number"),
-    "a resolution of inf": ("yaml", ROS.replace("0.5", ".inf"), "resolution: inf; expected a number"),
+    "a number for an image": (
+        "yaml",
+        ROS.replace("room.png", "7"),
+        "image: 7; expected the name of an image",
+    ),
+    "a resolution of nan": (
+        "yaml",
+        ROS.replace("0.5", ".nan"),
+        "resolution: nan; expected a number",
+    ),
+    "a resolution of inf": (
+        "yaml",
+        ROS.replace("0.5", ".inf"),
+        "resolution: inf; expected a number",
+    ),
     "a resolution of 1e308": ("yaml", ROS.replace("0.5", "1e308"), "is not a coordinate"),
-    "a resolution of a truth": ("yaml", ROS.replace("0.5", "true"), "resolution: True; expected a number"),
+    "a resolution of a truth": (
+        "yaml",
+        ROS.replace("0.5", "true"),
+        "resolution: True; expected a number",
+    ),
     "a huge resolution": ("yaml", ROS.replace("0.5", "9" * 5000), "expected a number"),
     "a resolution twice": ("yaml", ROS + "resolution: 1\n", "resolution: this key is given twice"),
-    "a yaw in words": ("yaml", ROS.replace("0.0]", "north]"), "origin: yaw north; expected a yaw of 0"),
+    "a yaw in words": (
+        "yaml",
+        ROS.replace("0.0]", "north]"),
+        "origin: yaw north; expected a yaw of 0",
+    ),
     "a yaw of inf": ("yaml", ROS.replace("0.0]", ".inf]"), "origin: yaw inf; expected a yaw of 0"),
     "a yaw": ("yaml", ROS.replace("0.0]", "0.1]"), "origin: yaw 0.1; expected a yaw of 0"),
     "an origin of one": ("yaml", ROS.replace("[-1.0, 2.0, 0.0]", "[1]"), "expected [x, y, yaw]"),
@@ -168,43 +336,97 @@ def test_a_broken_map_is_told(folder, capsys, fault):
 ENDS = ["--start", "0.5,0.5", "--target", "3.5,2.5"]
 LINES = {
     "no cells": (["room.txt", *ENDS, "--cell", "0"], "--cell: 0; expected a number above 0"),
-    "cells of nan": (["room.txt", *ENDS, "--cell", "nan"], "--cell: nan; expected a number above 0"),
+    "cells of nan": (
+        ["room.txt", *ENDS, "--cell", "nan"],
+        "--cell: nan; expected a number above 0",
+    ),
     "cells of a MovingAI map": (
         ["room.map", *ENDS, "--cell", "2"],
         "--cell: only for cells of a text or polygons for a planner",
     ),
-    "cells of polygons": (["room.geojson", *ENDS, "--cell", "2"], "--cell: only for cells of a text or polygons for a planner"),
+    "cells of polygons": (
+        ["room.geojson", *ENDS, "--cell", "2"],
+        "--cell: only for cells of a text or polygons for a planner",
+    ),
     "cells of a ROS map": (["room.yaml", *ENDS, "--cell", "2"], "--cell: only for"),
-    "cells of 0 for polygons": (["room.geojson", *ENDS, "--cell", "0"], "--cell: 0; expected a number above 0"),
+    "cells of 0 for polygons": (
+        ["room.geojson", *ENDS, "--cell", "0"],
+        "--cell: 0; expected a number above 0",
+    ),
     "a rule of cells": (
         ["room.txt", *ENDS, "--rule", "centre"],
         "only for polygons for a planner that needs cells; room.txt is",
     ),
-    "a radius of nan": (["room.txt", *ENDS, "--robot-radius", "nan"], "--robot-radius: nan; expected 0 or a number of at least 1e-06"),
-    "a radius below 0": (["room.txt", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected 0 or a number of at least 1e-06"),
-    "pixels below 0": (["room.yaml", *ENDS, "--most-pixels", "-5"], "--most-pixels: -5; expected a whole number of at least 1"),
+    "a radius of nan": (
+        ["room.txt", *ENDS, "--robot-radius", "nan"],
+        "--robot-radius: nan; expected 0 or a number of at least 1e-06",
+    ),
+    "a radius below 0": (
+        ["room.txt", *ENDS, "--robot-radius", "-1"],
+        "--robot-radius: -1; expected 0 or a number of at least 1e-06",
+    ),
+    "pixels below 0": (
+        ["room.yaml", *ENDS, "--most-pixels", "-5"],
+        "--most-pixels: -5; expected a whole number of at least 1",
+    ),
     "pixels of a text": (
         ["room.txt", *ENDS, "--most-pixels", "5"],
         "--most-pixels: only for a ROS map or an image; room.txt is cells of a text",
     ),
-    "a scenario of a text": (["room.txt", "--scenario", "room.scen:1"], "--scenario: only for a MovingAI grid; room.txt is cells"),
-    "a scenario of 0": (["room.map", "--scenario", "room.scen:0"], "expected FILE:NUMBER of a .scen file, numbered from 1"),
-    "an endless scenario": (["room.map", "--scenario", f"room.scen:{'9' * 5000}"], "expected FILE:NUMBER of a .scen file"),
-    "an endless radius": (["room.txt", *ENDS, "--settings", "{turning_radius: .inf}"], "inf; expected a finite number from 0 to 100000"),
-    "an offset of nan": (["room.txt", *ENDS, "--settings", "{offset: .nan}"], "offset: nan; expected a finite number from 0 to 100000"),
+    "a scenario of a text": (
+        ["room.txt", "--scenario", "room.scen:1"],
+        "--scenario: only for a MovingAI grid; room.txt is cells",
+    ),
+    "a scenario of 0": (
+        ["room.map", "--scenario", "room.scen:0"],
+        "expected FILE:NUMBER of a .scen file, numbered from 1",
+    ),
+    "an endless scenario": (
+        ["room.map", "--scenario", f"room.scen:{'9' * 5000}"],
+        "expected FILE:NUMBER of a .scen file",
+    ),
+    "an endless radius": (
+        ["room.txt", *ENDS, "--settings", "{turning_radius: .inf}"],
+        "inf; expected a finite number from 0 to 100000",
+    ),
+    "an offset of nan": (
+        ["room.txt", *ENDS, "--settings", "{offset: .nan}"],
+        "offset: nan; expected a finite number from 0 to 100000",
+    ),
     "a start twice": (["room.txt", "--start", "1,1", *ENDS], "--start: given twice; expected once"),
     "a target twice": (["room.txt", *ENDS, "--target=1,1"], "--target: given twice; expected once"),
-    "a start below 0": (["room.txt", "--start", "-9.9,-9.5", "--target", "3.5,2.5"], "start: (-9.9, -9.5): outside the workspace"),
-    "an endless start": (["room.txt", "--start", "1e999,1", "--target", "3.5,2.5"], "outside the workspace"),
-    "a start of nan": (["room.txt", "--start", "nan,1", "--target", "3.5,2.5"], "--start: nan,1; expected X,Y"),
-    "a start with an underscore": (["room.txt", "--start", "1_0,1", "--target", "3.5,2.5"], "--start: 1_0,1; expected X,Y"),
+    "a start below 0": (
+        ["room.txt", "--start", "-9.9,-9.5", "--target", "3.5,2.5"],
+        "start: (-9.9, -9.5): outside the workspace",
+    ),
+    "an endless start": (
+        ["room.txt", "--start", "1e999,1", "--target", "3.5,2.5"],
+        "outside the workspace",
+    ),
+    "a start of nan": (
+        ["room.txt", "--start", "nan,1", "--target", "3.5,2.5"],
+        "--start: nan,1; expected X,Y",
+    ),
+    "a start with an underscore": (
+        ["room.txt", "--start", "1_0,1", "--target", "3.5,2.5"],
+        "--start: 1_0,1; expected X,Y",
+    ),
     "a heading in degrees": (
         ["room.txt", "--start", "1,1,90", "--target", "3.5,2.5"],
         "--start: 1,1,90: a heading of 90; expected radians, from -6.283 to 6.283",
     ),
-    "a heading of nan": (["room.txt", "--start", "1,1,nan", "--target", "3.5,2.5"], "--start: 1,1,nan; expected X,Y or X,Y,THETA"),
-    "four numbers": (["room.txt", "--start", "1,1,0,0", "--target", "3.5,2.5"], "--start: 1,1,0,0; expected X,Y"),
-    "a heading at a way point": (["room.txt", *ENDS, "--via", "1,1,0"], "--via: 1,1,0; expected X,Y"),
+    "a heading of nan": (
+        ["room.txt", "--start", "1,1,nan", "--target", "3.5,2.5"],
+        "--start: 1,1,nan; expected X,Y or X,Y,THETA",
+    ),
+    "four numbers": (
+        ["room.txt", "--start", "1,1,0,0", "--target", "3.5,2.5"],
+        "--start: 1,1,0,0; expected X,Y",
+    ),
+    "a heading at a way point": (
+        ["room.txt", *ENDS, "--via", "1,1,0"],
+        "--via: 1,1,0; expected X,Y",
+    ),
     "a heading for another planner": (
         ["room.txt", "--start", "1,1,0", "--target", "3.5,2.5", "--planner", "prm"],
         "--start: 1,1,0: a heading is only for dubins_search; the planner is prm",
@@ -213,31 +435,91 @@ LINES = {
         ["room.txt", "--start", "1,1,0", "--target", "3.5,2.5", "--settings", "{start_heading: 1}"],
         "--settings: start_heading: given with --start as well; expected once",
     ),
-    "an endless heading": (["room.txt", *ENDS, "--settings", "{start_heading: .inf}"], "start_heading: inf; expected a finite number from"),
-    "an offset beside a heading": (["room.txt", *ENDS, "--settings", "{start_heading: 0, offset: 1}"], "--settings: offset: unknown"),
+    "an endless heading": (
+        ["room.txt", *ENDS, "--settings", "{start_heading: .inf}"],
+        "start_heading: inf; expected a finite number from",
+    ),
+    "an offset beside a heading": (
+        ["room.txt", *ENDS, "--settings", "{start_heading: 0, offset: 1}"],
+        "--settings: offset: unknown",
+    ),
     "no turning radius": (
         ["room.txt", *ENDS, "--settings", "{target_heading: 0, turning_radius: 0}"],
         "turning_radius: 0; expected a number from 1e-06 to 100000",
     ),
-    "a negative margin": (["room.geojson", *ENDS, "--margin", "-1"], "--margin: -1; expected a number of at least 0"),
-    "a margin beside a border": (["room.geojson", *ENDS, "--margin", "1"], "--margin: 1: the file has a border of its own; expected no"),
-    "a margin of cells": (["room.txt", *ENDS, "--margin", "1"], "--margin: only for polygons; room.txt is cells"),
-    "a resolution of nan": (["room.png", *ENDS, "--resolution", "nan"], "--resolution: nan; expected a number above 0"),
-    "a resolution of a map": (["room.yaml", *ENDS, "--resolution", "1"], "only for an image or an SVG drawing; room.yaml is a ROS"),
-    "an image without a resolution": (["room.png", *ENDS], "--resolution: missing; expected the length of a pixel's side, or the YAML"),
-    "unknown pixels of cells": (["room.txt", *ENDS, "--unknown", "free"], "--unknown: only for a ROS map or an image; room.txt is cells"),
-    "unknown pixels of a colour": (["room.yaml", *ENDS, "--unknown", "grey"], "argument --unknown: invalid choice: 'grey'"),
-    "an out that is a folder": (["room.txt", *ENDS, "--out", "folder.svg"], "--out: folder.svg: cannot be written (Is a directory)"),
-    "an out in a file": (["room.txt", *ENDS, "--out", "room.map/a.svg"], "--out: room.map/a.svg: no folder room.map"),
-    "an out of a long name": (["room.txt", *ENDS, "--out", f"{LONG}.svg"], "cannot be written (File name too long)"),
-    "an out among processes": (["room.txt", *ENDS, "--out", "/proc/path.svg"], "--out: /proc/path.svg: cannot be written ("),
-    "a unit of two lines": (["room.txt", *ENDS, "--unit", "m\nm"], "--unit: 'm\\nm'; expected a name of one line"),
-    "a unit without a name": (["room.txt", *ENDS, "--unit", ""], "--unit: ''; expected a name of one line"),
-    "an unknown option": (["room.txt", *ENDS, "--radius", "1"], "unrecognized arguments: --radius 1; `python -m bezierplan plan --help`"),
+    "a negative margin": (
+        ["room.geojson", *ENDS, "--margin", "-1"],
+        "--margin: -1; expected a number of at least 0",
+    ),
+    "a margin beside a border": (
+        ["room.geojson", *ENDS, "--margin", "1"],
+        "--margin: 1: the file has a border of its own; expected no",
+    ),
+    "a margin of cells": (
+        ["room.txt", *ENDS, "--margin", "1"],
+        "--margin: only for polygons; room.txt is cells",
+    ),
+    "a resolution of nan": (
+        ["room.png", *ENDS, "--resolution", "nan"],
+        "--resolution: nan; expected a number above 0",
+    ),
+    "a resolution of a map": (
+        ["room.yaml", *ENDS, "--resolution", "1"],
+        "only for an image or an SVG drawing; room.yaml is a ROS",
+    ),
+    "an image without a resolution": (
+        ["room.png", *ENDS],
+        "--resolution: missing; expected the length of a pixel's side, or the YAML",
+    ),
+    "unknown pixels of cells": (
+        ["room.txt", *ENDS, "--unknown", "free"],
+        "--unknown: only for a ROS map or an image; room.txt is cells",
+    ),
+    "unknown pixels of a colour": (
+        ["room.yaml", *ENDS, "--unknown", "grey"],
+        "argument --unknown: invalid choice: 'grey'",
+    ),
+    "an out that is a folder": (
+        ["room.txt", *ENDS, "--out", "folder.svg"],
+        "--out: folder.svg: cannot be written (Is a directory)",
+    ),
+    "an out in a file": (
+        ["room.txt", *ENDS, "--out", "room.map/a.svg"],
+        "--out: room.map/a.svg: no folder room.map",
+    ),
+    "an out of a long name": (
+        ["room.txt", *ENDS, "--out", f"{LONG}.svg"],
+        "cannot be written (File name too long)",
+    ),
+    "an out among processes": (
+        ["room.txt", *ENDS, "--out", "/proc/path.svg"],
+        "--out: /proc/path.svg: cannot be written (",
+    ),
+    "a unit of two lines": (
+        ["room.txt", *ENDS, "--unit", "m\nm"],
+        "--unit: 'm\\nm'; expected a name of one line",
+    ),
+    "a unit without a name": (
+        ["room.txt", *ENDS, "--unit", ""],
+        "--unit: ''; expected a name of one line",
+    ),
+    "an unknown option": (
+        ["room.txt", *ENDS, "--radius", "1"],
+        "unrecognized arguments: --radius 1; `python -m bezierplan plan --help`",
+    ),
     "no map": (ENDS, "the following arguments are required: MAP"),
-    "an option without a value": (["room.txt", "--start"], "argument --start: expected one argument"),
-    "a seed in words": (["room.txt", *ENDS, "--seed", "1e3"], "argument --seed: invalid int value: '1e3'"),
-    "a missing map in a folder": (["no/room.geojson", *ENDS], "no/room.geojson: cannot be read (No such file or directory)"),
+    "an option without a value": (
+        ["room.txt", "--start"],
+        "argument --start: expected one argument",
+    ),
+    "a seed in words": (
+        ["room.txt", *ENDS, "--seed", "1e3"],
+        "argument --seed: invalid int value: '1e3'",
+    ),
+    "a missing map in a folder": (
+        ["no/room.geojson", *ENDS],
+        "no/room.geojson: cannot be read (No such file or directory)",
+    ),
     "a map of a long name": ([f"{LONG}.txt", *ENDS], "cannot be read (File name too long)"),
     "a map that is a folder": (["folder.svg/../../home/.", *ENDS], "unknown kind of map"),
 }
@@ -256,18 +538,26 @@ def planned(capsys, *words):
 
 
 def test_what_editors_and_windows_write_is_read(folder, capsys):
-    """A byte order mark, blank lines at the end, line ends of Windows, suffixes in capitals, and a path of another machine."""
-    (folder / "a.TXT").write_bytes(b"\xef\xbb\xbf" + CELLS.replace("\n", "\r\n").encode() + b"\r\n\r\n")
+    """A byte order mark, blank lines at the end, line ends of Windows, suffixes in capitals, and a
+    path of another machine.
+    """
+    (folder / "a.TXT").write_bytes(
+        b"\xef\xbb\xbf" + CELLS.replace("\n", "\r\n").encode() + b"\r\n\r\n"
+    )
     (folder / "a.map").write_bytes(b"\xef\xbb\xbf" + MOVING_AI.encode() + b"\n")
     (folder / "a.geojson").write_bytes(b"\xef\xbb\xbf" + ONE.encode())
-    (folder / "a.yaml").write_bytes(b"\xef\xbb\xbf" + ROS.replace("room.png", "C:\\maps\\room.png").encode() + b"negate: no\n")
+    (folder / "a.yaml").write_bytes(
+        b"\xef\xbb\xbf" + ROS.replace("room.png", "C:\\maps\\room.png").encode() + b"negate: no\n"
+    )
     ends = ["--start", "0.5,2.5", "--target", "0.9,2.5"]
     for name in ("a.TXT", "a.map", "a.geojson", "a.yaml"):
         assert "feasible        yes" in planned(capsys, name, *ends)
 
 
 def test_coordinates_may_begin_with_a_minus(folder, capsys):
-    assert "feasible        yes" in planned(capsys, "room.yaml", "--start", "-0.9,2.5", "--target", "-.5,2.6")
+    assert "feasible        yes" in planned(
+        capsys, "room.yaml", "--start", "-0.9,2.5", "--target", "-.5,2.6"
+    )
 
 
 def test_a_full_disk_is_told(folder, capsys):

@@ -1,4 +1,6 @@
-"""Cells that paths touch, and lengths that count them: values by hand, both directions, any spacing, and the traps of grid lines."""
+"""Cells that paths touch, and lengths that count them: values by hand, both directions, any
+spacing, and the traps of grid lines.
+"""
 
 import math
 
@@ -19,7 +21,9 @@ def polyline(*points):
 
 
 def measured(x, y):
-    """cells4, cells8 and length of a polyline whose vertices are given in coordinates in which cells have whole centres."""
+    """cells4, cells8 and length of a polyline whose vertices are given in coordinates in which
+    cells have whole centres.
+    """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     cells = cell_length.touched_cells(x + 0.5, y + 0.5)
     return cell_length.cells4(*cells), cell_length.cells8(*cells), cell_length.polyline_length(x, y)
@@ -83,9 +87,13 @@ def test_a_path_on_a_grid_line_keeps_to_one_side():
 
 def test_a_coordinate_that_leaves_a_grid_line_is_in_the_next_cell():
     # On the line at 1.5, and at the next sample on the line at 2.5: the cell between is entered.
-    columns, _ = cell_length.touched_cells(np.array([1.0, 1.5, 2.2, 2.5, 3.0]) + 0.5, np.full(5, 0.5))
+    columns, _ = cell_length.touched_cells(
+        np.array([1.0, 1.5, 2.2, 2.5, 3.0]) + 0.5, np.full(5, 0.5)
+    )
     assert list(columns) == [1, 2, 3]
-    columns, _ = cell_length.touched_cells(np.array([3.0, 2.5, 1.8, 1.5, 1.0]) + 0.5, np.full(5, 0.5))
+    columns, _ = cell_length.touched_cells(
+        np.array([3.0, 2.5, 1.8, 1.5, 1.0]) + 0.5, np.full(5, 0.5)
+    )
     assert list(columns) == [3, 2, 1]
 
 
@@ -158,7 +166,8 @@ def test_legs():
     occupied[2, 3] = True
     assert cell_length.is_free_leg(occupied, 0.5, 0.5, 5.5, 0.5)
     assert not cell_length.is_free_leg(occupied, 0.5, 2.5, 5.5, 2.5)
-    # Through the lower left corner of the occupied cell, which touches it only there; barely within it; barely beside it.
+    # Through the lower left corner of the occupied cell, which touches it only there; barely within
+    # it; barely beside it.
     assert cell_length.is_free_leg(occupied, 2.5, 2.5, 3.5, 1.5)
     assert not cell_length.is_free_leg(occupied, 2.5, 2.501, 3.5, 1.501)
     assert cell_length.is_free_leg(occupied, 2.5, 2.499, 3.5, 1.499)
@@ -174,7 +183,9 @@ def test_lengths_are_in_units():
 
 
 def test_legs_from_grid_line_to_grid_line_touch_the_cells_of_their_samples():
-    """Legs between quarters of cells, with many corners and grid lines, and between any points; each touched cell occupied in its turn."""
+    """Legs between quarters of cells, with many corners and grid lines, and between any points;
+    each touched cell occupied in its turn.
+    """
     rng = np.random.default_rng(0)
     for trial in range(400):
         ends = rng.integers(0, 40, 4) / 4 if trial % 2 else rng.uniform(0, 10, 4)
@@ -185,4 +196,8 @@ def test_legs_from_grid_line_to_grid_line_touch_the_cells_of_their_samples():
         for row, column in np.ndindex(12, 12):
             occupied = grid.occupied.copy()
             occupied[row, column] = True
-            assert cell_length.is_free_leg(occupied, *ends) == ((row, column) not in touched), (ends, row, column)
+            assert cell_length.is_free_leg(occupied, *ends) == ((row, column) not in touched), (
+                ends,
+                row,
+                column,
+            )

@@ -1,4 +1,6 @@
-"""Operators on paths over a lattice: against plain lists and formulas, and what no operator may do."""
+"""Operators on paths over a lattice: against plain lists and formulas, and what no operator may
+do.
+"""
 
 import itertools
 
@@ -52,7 +54,9 @@ def random_walk(rng, places, steps):
 
 
 def joined_list(places, cells, longest):
-    """What `join` should give, with a list that grows in its middle; None if the cells cannot be joined."""
+    """What `join` should give, with a list that grows in its middle; None if the cells cannot be
+    joined.
+    """
     occupied = places.occupied.reshape(ROWS, COLUMNS)
     cells = list(cells)
     k = 0
@@ -68,7 +72,11 @@ def joined_list(places, cells, longest):
             middle = row * COLUMNS + column
             if occupied[row, column] or middle in (one, other):
                 around = [(row + up, column + right) for up, right in STEPS]
-                inside = [r * COLUMNS + c for r, c in around if 0 <= r < ROWS and 0 <= c < COLUMNS and not occupied[r, c]]
+                inside = [
+                    r * COLUMNS + c
+                    for r, c in around
+                    if 0 <= r < ROWS and 0 <= c < COLUMNS and not occupied[r, c]
+                ]
                 middle = next((cell for cell in inside if cell not in cells), None)
             if middle is None or len(cells) == longest:
                 return None
@@ -81,7 +89,9 @@ def joined_list(places, cells, longest):
 def test_cells_are_joined_as_a_list_that_grows_in_its_middle(seed, corners, longest):
     grid, rng = random_grid(seed), np.random.default_rng(seed)
     places, marks = places_of(grid, corners), marks_of(places_of(grid))
-    cells = np.array([places.start, *rng.choice(np.flatnonzero(~places.occupied), size=4), places.target])
+    cells = np.array(
+        [places.start, *rng.choice(np.flatnonzero(~places.occupied), size=4), places.target]
+    )
     path = np.empty(longest, dtype=np.int64)
     size = cell_paths.join(places, cells, path, marks)
     expected = joined_list(places, cells.tolist(), longest)
@@ -118,8 +128,14 @@ def test_length_is_that_of_the_polyline_with_its_ends(seed):
 
 
 def test_a_common_cell_is_any_place_of_the_first_path_and_the_last_of_the_other():
-    one, other, marks = np.array([0, 1, 2, 3, 2, 4, 8]), np.array([0, 2, 5, 2, 3, 6, 8]), marks_of(OPEN)
-    found = [cell_paths.common_cell(np.random.default_rng(i), one, other, marks) for i in range(900)]
+    one, other, marks = (
+        np.array([0, 1, 2, 3, 2, 4, 8]),
+        np.array([0, 2, 5, 2, 3, 6, 8]),
+        marks_of(OPEN),
+    )
+    found = [
+        cell_paths.common_cell(np.random.default_rng(i), one, other, marks) for i in range(900)
+    ]
     places, counts = np.unique(found, axis=0, return_counts=True)
     assert places.tolist() == [[2, 3], [3, 4], [4, 3]]
     assert stats.chisquare(counts).pvalue > 1e-3
@@ -127,7 +143,9 @@ def test_a_common_cell_is_any_place_of_the_first_path_and_the_last_of_the_other(
 
 
 def test_the_ends_are_no_common_cells():
-    apart = cell_paths.common_cell(np.random.default_rng(0), np.array([0, 1, 2]), np.array([0, 9, 2]), marks_of(OPEN))
+    apart = cell_paths.common_cell(
+        np.random.default_rng(0), np.array([0, 1, 2]), np.array([0, 9, 2]), marks_of(OPEN)
+    )
     assert apart == (0, 0)
 
 
@@ -148,13 +166,20 @@ def test_a_cell_that_nothing_can_replace_is_dropped_if_its_neighbours_meet():
     corner = places_of(Grid(np.array([[False, False], [True, False]]), 1.0, "unit"))
     found = set()
     for i in range(50):
-        size = cell_paths.change_cell(np.random.default_rng(i), corner, np.array([0, 1, 3, 1]), child)
+        size = cell_paths.change_cell(
+            np.random.default_rng(i), corner, np.array([0, 1, 3, 1]), child
+        )
         found.add(tuple(child[:size].tolist()))
     assert found == {(0, 3, 1), (0, 1, 0, 1)}
 
 
 def test_paths_of_three_cells_are_left_alone():
-    assert cell_paths.change_cell(np.random.default_rng(0), OPEN, np.array([0, 1, 2]), np.empty(3, dtype=np.int64)) == 0
+    assert (
+        cell_paths.change_cell(
+            np.random.default_rng(0), OPEN, np.array([0, 1, 2]), np.empty(3, dtype=np.int64)
+        )
+        == 0
+    )
 
 
 @given(seeds)
@@ -184,7 +209,9 @@ def test_a_walk_meets_its_end_without_a_cell_twice(seed, tries):
 
 
 def test_a_fish_forages_by_its_tries():
-    """From a corner two of the three neighbours are nearer to a target further along the row; then every neighbour is as likely."""
+    """From a corner two of the three neighbours are nearer to a target further along the row; then
+    every neighbour is as likely.
+    """
     visited, rng = marks_of(OPEN), np.random.default_rng(0)
     counts = {tries: np.zeros(len(visited)) for tries in (0, 1)}
     for tries, count in counts.items():
@@ -193,7 +220,10 @@ def test_a_fish_forages_by_its_tries():
     third, nearer = 1 / 3, 1 / 3 + 1 / 9
     reached = [1, COLUMNS, COLUMNS + 1]
     assert stats.chisquare(counts[0][reached], 3000 * np.array([third, third, third])).pvalue > 1e-3
-    assert stats.chisquare(counts[1][reached], 3000 * np.array([nearer, third**2, nearer])).pvalue > 1e-3
+    assert (
+        stats.chisquare(counts[1][reached], 3000 * np.array([nearer, third**2, nearer])).pvalue
+        > 1e-3
+    )
 
 
 def test_a_fish_among_visited_cells_has_nowhere_to_go():
@@ -206,7 +236,10 @@ def first_paths(places, seed, population=8, longest=60):
     """Paths from start to target through random cells."""
     rng, marks = np.random.default_rng(seed), marks_of(places)
     free = np.flatnonzero(~places.occupied)
-    paths, sizes = np.zeros((population, longest), dtype=np.int64), np.zeros(population, dtype=np.int64)
+    paths, sizes = (
+        np.zeros((population, longest), dtype=np.int64),
+        np.zeros(population, dtype=np.int64),
+    )
     for i in range(population):
         while not sizes[i]:
             cells = np.array([places.start, *rng.choice(free, size=3), places.target])
@@ -215,8 +248,12 @@ def first_paths(places, seed, population=8, longest=60):
 
 
 RULES = {
-    "swapped tails, reconnected": cell_paths.Rules(0.9, False, 0.5, cell_paths.RECONNECT, 60, 0, False, 1),
-    "shorter parts, one cell": cell_paths.Rules(0.9, True, 0.5, cell_paths.ONE_CELL, 60, 0, True, 1),
+    "swapped tails, reconnected": cell_paths.Rules(
+        0.9, False, 0.5, cell_paths.RECONNECT, 60, 0, False, 1
+    ),
+    "shorter parts, one cell": cell_paths.Rules(
+        0.9, True, 0.5, cell_paths.ONE_CELL, 60, 0, True, 1
+    ),
     "shorter parts, walks": cell_paths.Rules(0.9, True, 0.5, cell_paths.WALK, 30, 8, True, 1),
     "no elite": cell_paths.Rules(1.0, True, 1.0, cell_paths.RECONNECT, 60, 0, True, 0),
 }
@@ -225,9 +262,17 @@ RULES = {
 @pytest.mark.parametrize("rules", RULES.values(), ids=RULES)
 @pytest.mark.parametrize("seed", range(4))
 def test_evolution_ends_with_a_path_of_the_length_that_it_says(rules, seed):
-    places = places_of(Grid(np.random.default_rng(seed).random((ROWS, COLUMNS)) < [0, 0.05, 0.1, 0.0][seed], 1.0, "unit"))
+    places = places_of(
+        Grid(
+            np.random.default_rng(seed).random((ROWS, COLUMNS)) < [0, 0.05, 0.1, 0.0][seed],
+            1.0,
+            "unit",
+        )
+    )
     paths, sizes = first_paths(places, seed)
-    shortest = min(cell_paths.length(path[:size], places) for path, size in zip(paths, sizes, strict=True))
+    shortest = min(
+        cell_paths.length(path[:size], places) for path, size in zip(paths, sizes, strict=True)
+    )
     best, history = cell_paths.evolve(np.random.default_rng(seed), places, paths, sizes, 30, rules)
     assert (best[0], best[-1]) == (places.start, places.target)
     assert is_path(best, places)
@@ -257,6 +302,7 @@ def test_without_crossover_and_mutation_the_best_of_the_first_stays():
 def test_the_compiled_evolution_agrees_with_its_plain_python():
     rules = RULES["shorter parts, walks"]
     results = [
-        evolve(np.random.default_rng(5), OPEN, *first_paths(OPEN, 3), 5, rules) for evolve in (cell_paths.evolve, cell_paths.evolve.py_func)
+        evolve(np.random.default_rng(5), OPEN, *first_paths(OPEN, 3), 5, rules)
+        for evolve in (cell_paths.evolve, cell_paths.evolve.py_func)
     ]
     assert all(np.array_equal(*pair) for pair in zip(*results, strict=True))

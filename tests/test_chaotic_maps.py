@@ -1,4 +1,6 @@
-"""The chaotic maps of tharwat2018: worked sequences, long-run distributions, clipping, collapse, and starts."""
+"""The chaotic maps of tharwat2018: worked sequences, long-run distributions, clipping, collapse,
+and starts.
+"""
 
 import numpy as np
 import pytest
@@ -7,7 +9,9 @@ from hypothesis import strategies as st
 
 from bezierplan.planners.parts.chaotic_maps import MAPS, Parameters, random_start, sequence
 
-PARAMETERS = Parameters(singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3)
+PARAMETERS = Parameters(
+    singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3
+)
 CHAOTIC = MAPS[:8]
 
 
@@ -27,7 +31,9 @@ CHAOTIC = MAPS[:8]
     ],
 )
 def test_first_values(name, expected):
-    assert sequence(name, expected[0], len(expected), PARAMETERS).values == pytest.approx(expected, abs=5e-11, rel=1e-9)
+    assert sequence(name, expected[0], len(expected), PARAMETERS).values == pytest.approx(
+        expected, abs=5e-11, rel=1e-9
+    )
 
 
 def test_the_fourth_value_of_gauss_is_what_rounding_leaves_of_zero():
@@ -48,7 +54,9 @@ def test_the_fourth_value_of_gauss_is_what_rounding_leaves_of_zero():
     ],
 )
 def test_long_run_mean_deviation_and_correlation(name, mean, deviation, correlation):
-    values = sequence(name, 0.3141592653589793 if name != "sinusoidal" else 0.7, 400_000, PARAMETERS).values[100:]
+    values = sequence(
+        name, 0.3141592653589793 if name != "sinusoidal" else 0.7, 400_000, PARAMETERS
+    ).values[100:]
     assert values.mean() == pytest.approx(mean, abs=0.004)
     assert values.std() == pytest.approx(deviation, abs=0.004)
     assert np.corrcoef(values[1:], values[:-1])[0, 1] == pytest.approx(correlation, abs=0.012)
@@ -71,8 +79,13 @@ def test_clipped_values_are_counted_and_the_sequence_goes_on_from_them():
     steep = PARAMETERS._replace(singer_mu=1.08)
     starts = np.linspace(0, 1, 2001)
     second = [sequence("singer", start, 2, steep) for start in starts]
-    # With mu = 1.08 the highest value of the Singer map is 1.0054; at 1 it is below 0, so that what was clipped to 1 dies.
-    over = [start for start, found in zip(starts, second, strict=True) if found.clipped and found.values[1] == 1]
+    # With mu = 1.08 the highest value of the Singer map is 1.0054; at 1 it is below 0, so that what
+    # was clipped to 1 dies.
+    over = [
+        start
+        for start, found in zip(starts, second, strict=True)
+        if found.clipped and found.values[1] == 1
+    ]
     assert over
     assert sequence("singer", over[0], 5, steep).values[1:].tolist() == [1, 0, 0, 0]
     assert sequence("singer", over[0], 5, steep).clipped == 2
@@ -116,7 +129,9 @@ def test_starts_that_let_piecewise_collapse(start):
     assert found.values[-1] == 0
 
 
-@pytest.mark.parametrize(("start", "alive"), [(0.4420, False), (0.4423, True), (0.9283, True), (0.9286, False)])
+@pytest.mark.parametrize(
+    ("start", "alive"), [(0.4420, False), (0.4423, True), (0.9283, True), (0.9286, False)]
+)
 def test_sinusoidal_dies_from_about_half_of_all_starts(start, alive):
     assert (sequence("sinusoidal", start, 200, PARAMETERS).collapsed_at == 0) == alive
 
@@ -131,7 +146,10 @@ def test_random_starts_keep_their_sequences_alive(name):
 
 
 def test_a_start_that_lives_is_the_first_number_drawn():
-    assert random_start(np.random.default_rng(3), "tent", PARAMETERS) == np.random.default_rng(3).random()
+    assert (
+        random_start(np.random.default_rng(3), "tent", PARAMETERS)
+        == np.random.default_rng(3).random()
+    )
 
 
 def test_no_living_start_is_an_error():

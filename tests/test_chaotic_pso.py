@@ -1,4 +1,6 @@
-"""The particle swarms of tharwat2018: their search against a plain reference, fixed values, frozen swarms, shared numbers, bad input."""
+"""The particle swarms of tharwat2018: their search against a plain reference, fixed values, frozen
+swarms, shared numbers, bad input.
+"""
 
 import logging
 import math
@@ -48,20 +50,39 @@ SETTINGS = {
     "sinusoidal_a": 2.3,
     "count_collisions": True,
 }
-FROZEN = {"chaotic_term": "social", "chaotic_map": "constant", "chaotic_start_rule": "fixed", "chaotic_start": 0.0}
+FROZEN = {
+    "chaotic_term": "social",
+    "chaotic_map": "constant",
+    "chaotic_start_rule": "fixed",
+    "chaotic_start": 0.0,
+}
 CURVES = {"bezier": 3, "spline": 3, "ferguson": 4}
 
 
 def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
     table = np.array(circles, dtype=float).reshape(-1, 3)
-    return Problem("test", Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"), start, target)
+    return Problem(
+        "test",
+        Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"),
+        start,
+        target,
+    )
 
 
 EQUAL = problem([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]])
 PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
 OPEN = problem([])
 SEALED = problem(
-    [[1.5, 0, 1], [-1.5, 0, 1], [0, 1.5, 1], [0, -1.5, 1], [1.2, 1.2, 0.9], [-1.2, 1.2, 0.9], [1.2, -1.2, 0.9], [-1.2, -1.2, 0.9]]
+    [
+        [1.5, 0, 1],
+        [-1.5, 0, 1],
+        [0, 1.5, 1],
+        [0, -1.5, 1],
+        [1.2, 1.2, 0.9],
+        [-1.2, 1.2, 0.9],
+        [1.2, -1.2, 0.9],
+        [-1.2, -1.2, 0.9],
+    ]
 )
 
 
@@ -76,7 +97,11 @@ def judged(points, curve, where, changes):
     radii = where.workspace.radii + settings["d_min"]
     distances = np.hypot(*(samples[:, None] - where.workspace.centres).transpose(2, 0, 1))
     length = np.hypot(*np.diff(samples, axis=0).T).sum()
-    return length, np.maximum(1 - distances / radii, 0).mean(axis=0).sum(), (distances < radii).sum()
+    return (
+        length,
+        np.maximum(1 - distances / radii, 0).mean(axis=0).sum(),
+        (distances < radii).sum(),
+    )
 
 
 def fitness(length, violation, penalty="multiply", beta=100.0):
@@ -94,14 +119,24 @@ def whole_path(particle, where, curve):
 
 
 def reference(where, seed, **changes):
-    """The whole search in plain Python: best fitness after every iteration, best particle, collisions a to f."""
+    """The whole search in plain Python: best fitness after every iteration, best particle,
+    collisions a to f.
+    """
     s = SETTINGS | changes
     initial, moves, chaos = np.random.default_rng(seed).spawn(3)
     size, dimensions = s["particles"], 2 * s["control_points"]
     x = -10 + 20 * np.array([[initial.random() for _ in range(dimensions)] for _ in range(size)])
     parameters = chaotic_maps.Parameters(*(s[name] for name in chaotic_maps.Parameters._fields))
-    start = chaotic_maps.random_start(chaos, s["chaotic_map"], parameters) if s["chaotic_start_rule"] == "random" else s["chaotic_start"]
-    zeta = iter(chaotic_maps.sequence(s["chaotic_map"], start, s["iterations"] * size * dimensions, parameters).values)
+    start = (
+        chaotic_maps.random_start(chaos, s["chaotic_map"], parameters)
+        if s["chaotic_start_rule"] == "random"
+        else s["chaotic_start"]
+    )
+    zeta = iter(
+        chaotic_maps.sequence(
+            s["chaotic_map"], start, s["iterations"] * size * dimensions, parameters
+        ).values
+    )
     v, p, p_fitness = np.zeros_like(x), x.copy(), np.full(size, np.inf)
     best, history, w, since = (np.inf, None, None, None), [], s["inertia"], 0
     infeasible, samples, best_samples, best_infeasible = 0, 0, 0, 0
@@ -111,19 +146,29 @@ def reference(where, seed, **changes):
             if t > 0:
                 attractor = best[1] if s["update"] == "asynchronous" else old_best[1]
                 for d in range(dimensions):
-                    if {"dimension": True, "particle": d == 0, "iteration": i == d == 0}[s["random_numbers"]]:
+                    if {"dimension": True, "particle": d == 0, "iteration": i == d == 0}[
+                        s["random_numbers"]
+                    ]:
                         r1, r2 = moves.random(), moves.random()
-                    if {"dimension": True, "particle": d == 0, "iteration": i == d == 0}[s["zeta_for"]]:
+                    if {"dimension": True, "particle": d == 0, "iteration": i == d == 0}[
+                        s["zeta_for"]
+                    ]:
                         number = next(zeta)
                     a1 = number if s["chaotic_term"] == "cognitive" else r1
                     a2 = number if s["chaotic_term"] == "social" else r2
-                    v[i, d] = w * v[i, d] + s["c1"] * a1 * (p[i, d] - x[i, d]) + s["c2"] * a2 * (attractor[d] - x[i, d])
+                    v[i, d] = (
+                        w * v[i, d]
+                        + s["c1"] * a1 * (p[i, d] - x[i, d])
+                        + s["c2"] * a2 * (attractor[d] - x[i, d])
+                    )
                     v[i, d] = np.clip(v[i, d], -20 * s["velocity_limit"], 20 * s["velocity_limit"])
                     x[i, d] += v[i, d]
                     if abs(x[i, d]) > 10 and s["bound_rule"] != "none":
                         x[i, d] = np.clip(x[i, d], -10, 10)
                         v[i, d] *= {"mirror": -1, "clamp": 1, "stop": 0}[s["bound_rule"]]
-            length, violation, colliding = judged(whole_path(x[i], where, s["curve"]), s["curve"], where, s)
+            length, violation, colliding = judged(
+                whole_path(x[i], where, s["curve"]), s["curve"], where, s
+            )
             infeasible += violation > 1e-9
             samples += colliding
             f = fitness(length, violation, s["penalty"], s["beta"])
@@ -140,7 +185,14 @@ def reference(where, seed, **changes):
         if since == s["stall_limit"] > 0:
             break
     evaluations = size * len(history)
-    counts = [infeasible / evaluations * size, samples / evaluations, best_samples, best_infeasible, int(best[2] > 1e-9), infeasible]
+    counts = [
+        infeasible / evaluations * size,
+        samples / evaluations,
+        best_samples,
+        best_infeasible,
+        int(best[2] > 1e-9),
+        infeasible,
+    ]
     return history, whole_path(best[1], where, s["curve"]), counts
 
 
@@ -181,14 +233,27 @@ def test_search_is_that_of_a_plain_reference(changes, count_collisions):
     assert found.evaluations == changes["particles"] * len(history)
     known = slice(None) if count_collisions else slice(2, 5)
     assert collisions(found)[known] == pytest.approx(counts[known])
-    assert np.isnan(collisions(found)).tolist() == [not count_collisions and letter in "abf" for letter in "abcdef"]
+    assert np.isnan(collisions(found)).tolist() == [
+        not count_collisions and letter in "abf" for letter in "abcdef"
+    ]
     assert found.stop == ("iterations" if len(history) == changes["iterations"] + 1 else "stall")
 
 
-@given(st.integers(0, 10_000), st.sampled_from(list(CURVES)), st.sampled_from(["multiply", "add", "death"]), st.integers(2, 120))
+@given(
+    st.integers(0, 10_000),
+    st.sampled_from(list(CURVES)),
+    st.sampled_from(["multiply", "add", "death"]),
+    st.integers(2, 120),
+)
 @hypothesis_settings(max_examples=60)
 def test_objective_is_length_and_penalty_of_the_samples_of_the_path(seed, curve, penalty, samples):
-    changes = {"curve": curve, "control_points": CURVES[curve], "penalty": penalty, "samples": samples, "iterations": 2}
+    changes = {
+        "curve": curve,
+        "control_points": CURVES[curve],
+        "penalty": penalty,
+        "samples": samples,
+        "iterations": 2,
+    }
     found = plan(PUBLIC, seed, **changes)
     length, violation, _ = judged(found.path.points, curve, PUBLIC, changes)
     assert found.extra["violation"] == pytest.approx(violation, rel=1e-12, abs=1e-14)
@@ -201,9 +266,16 @@ UNUSED = np.random.default_rng(0)
 
 def swarm(where, x):
     """The swarm of no iterations that starts at x (particles, 6)."""
-    field, rules = np.full(6, 10.0), filled(chaotic_pso.Settings, SETTINGS | {"stall_limit": 10, "chaotic_term": "none"})
+    field, rules = (
+        np.full(6, 10.0),
+        filled(chaotic_pso.Settings, SETTINGS | {"stall_limit": 10, "chaotic_term": "none"}),
+    )
     objective = chaotic_pso._objective(where, rules)
-    return chaotic_pso.Swarm(*chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules), 0, 0)
+    return chaotic_pso.Swarm(
+        *chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules),
+        0,
+        0,
+    )
 
 
 @pytest.mark.parametrize(
@@ -223,20 +295,30 @@ def swarm(where, x):
     ],
 )
 def test_fitness_of_known_paths(x, y, where, expected):
-    assert swarm(where, np.array([[*x, *y]], dtype=float)).fitness[-1] == pytest.approx(expected, abs=1e-6)
+    assert swarm(where, np.array([[*x, *y]], dtype=float)).fitness[-1] == pytest.approx(
+        expected, abs=1e-6
+    )
 
 
-@pytest.mark.parametrize(("where", "violation", "colliding"), [(PUBLIC, 0.12181162, 45), (EQUAL, 0.15469913, 33)])
+@pytest.mark.parametrize(
+    ("where", "violation", "colliding"), [(PUBLIC, 0.12181162, 45), (EQUAL, 0.15469913, 33)]
+)
 def test_violation_and_colliding_samples_of_the_straight_line(where, violation, colliding):
     found = swarm(where, np.array([[1, 2, 3, 1.5, 3, 4.5]]))
     assert found.violation == pytest.approx(violation, abs=1e-8)
     assert found.colliding_samples == colliding
 
 
-@pytest.mark.parametrize(("where", "mean", "error"), [(EQUAL, 15.232, 0.12), (PUBLIC, 14.263, 0.09)], ids=["equal", "public"])
+@pytest.mark.parametrize(
+    ("where", "mean", "error"),
+    [(EQUAL, 15.232, 0.12), (PUBLIC, 14.263, 0.09)],
+    ids=["equal", "public"],
+)
 def test_mean_of_20_000_frozen_swarms(where, mean, error):
     x = np.random.default_rng(1).uniform(-10, 10, (20_000, 20, 6))
-    assert np.mean([swarm(where, positions).fitness[-1] for positions in x]) == pytest.approx(mean, abs=error)
+    assert np.mean([swarm(where, positions).fitness[-1] for positions in x]) == pytest.approx(
+        mean, abs=error
+    )
 
 
 @pytest.mark.parametrize(
@@ -252,7 +334,9 @@ def test_mean_of_20_000_frozen_swarms(where, mean, error):
 def test_means_are_those_of_an_independent_implementation(changes, mean):
     """Of 2,000 runs there and 500 here; four standard errors of the difference."""
     ends = [plan(EQUAL, seed, **changes).objective for seed in range(500)]
-    assert np.mean(ends) == pytest.approx(mean, abs=4 * np.std(ends) * math.sqrt(1 / 500 + 1 / 2000))
+    assert np.mean(ends) == pytest.approx(
+        mean, abs=4 * np.std(ends) * math.sqrt(1 / 500 + 1 / 2000)
+    )
 
 
 def test_a_social_term_of_zero_freezes_the_swarm():
@@ -265,10 +349,18 @@ def test_a_social_term_of_zero_freezes_the_swarm():
 
 
 def test_a_gauss_sequence_from_one_half_moves_the_swarm_once_and_is_recorded():
-    changes = {"chaotic_term": "social", "chaotic_map": "gauss", "chaotic_start_rule": "fixed", "chaotic_start": 0.5}
+    changes = {
+        "chaotic_term": "social",
+        "chaotic_map": "gauss",
+        "chaotic_start_rule": "fixed",
+        "chaotic_start": 0.5,
+    }
     assert plan(EQUAL, 1, **changes).extra["zeta_collapsed_at"] == 2
     assert plan(EQUAL, 1, zeta_for="particle", **changes).extra["zeta_collapsed_at"] == 1
-    assert plan(EQUAL, 1, **(changes | {"chaotic_start": 0.0})).objective == plan(EQUAL, 1, iterations=0).objective
+    assert (
+        plan(EQUAL, 1, **(changes | {"chaotic_start": 0.0})).objective
+        == plan(EQUAL, 1, iterations=0).objective
+    )
 
 
 def test_clipped_numbers_are_recorded():
@@ -277,7 +369,10 @@ def test_clipped_numbers_are_recorded():
     assert plan(chaotic_start_rule="fixed", chaotic_start=0.9999).extra["zeta_clipped"] == 0
 
 
-@pytest.mark.parametrize("changes", [{"chaotic_term": "cognitive"}, {"chaotic_term": "social", "chaotic_map": "sine"}, {"c1": 0.0}])
+@pytest.mark.parametrize(
+    "changes",
+    [{"chaotic_term": "cognitive"}, {"chaotic_term": "social", "chaotic_map": "sine"}, {"c1": 0.0}],
+)
 def test_all_methods_start_alike(changes):
     assert plan(EQUAL, 3, **changes).history[0] == plan(EQUAL, 3).history[0]
 
@@ -303,7 +398,10 @@ def test_a_larger_swarm_begins_with_the_smaller():
     assert len(np.unique(first[40])) == 40 * 6
     assert np.abs(first[40]).max() <= 10
     for seed in range(10):
-        assert plan(seed=seed, particles=40, iterations=0).objective <= plan(seed=seed, iterations=0).objective
+        assert (
+            plan(seed=seed, particles=40, iterations=0).objective
+            <= plan(seed=seed, iterations=0).objective
+        )
 
 
 @pytest.mark.parametrize("chaotic_term", ["cognitive", "social"])
@@ -331,15 +429,21 @@ def test_track_gives_the_best_path_of_every_iteration():
     path = chaotic_pso.track(PUBLIC, np.random.default_rng(4), **settings)
     assert path.shape == (len(found.history), 5, 2)
     assert np.array_equal(path[-1], found.path.points)
-    assert [fitness(*judged(points, "bezier", PUBLIC, {})[:2]) for points in path] == pytest.approx(found.history.tolist())
+    assert [fitness(*judged(points, "bezier", PUBLIC, {})[:2]) for points in path] == pytest.approx(
+        found.history.tolist()
+    )
 
 
 @pytest.mark.parametrize("curve", CURVES)
 def test_the_straight_line_particle_is_the_best_path_of_an_open_field(curve):
-    found = plan(OPEN, curve=curve, control_points=CURVES[curve], straight_line_particle=True, stall_limit=0)
+    found = plan(
+        OPEN, curve=curve, control_points=CURVES[curve], straight_line_particle=True, stall_limit=0
+    )
     assert found.objective == pytest.approx(math.sqrt(52))
     assert found.extra["violation"] == 0
-    steps = np.diff(curves.sample_matrix(curve, len(found.path.points), 11) @ found.path.points, axis=0)
+    steps = np.diff(
+        curves.sample_matrix(curve, len(found.path.points), 11) @ found.path.points, axis=0
+    )
     assert steps == pytest.approx(np.tile([0.4, 0.6], (10, 1)))
 
 
@@ -366,7 +470,10 @@ def test_an_early_stop_only_cuts_a_run_short():
 # The table of degenerate and bad input.
 
 
-@pytest.mark.parametrize("changes", [{}, {"chaotic_term": "social", "zeta_for": "dimension"}, {"straight_line_particle": True}])
+@pytest.mark.parametrize(
+    "changes",
+    [{}, {"chaotic_term": "social", "zeta_for": "dimension"}, {"straight_line_particle": True}],
+)
 def test_without_a_free_control_point_the_straight_line_is_judged_once(changes):
     found = plan(control_points=0, **changes)
     assert found.objective == pytest.approx(118.766232, abs=1e-6)
@@ -436,7 +543,10 @@ def test_wrong_settings_are_faults(name, value):
 @pytest.mark.parametrize("curve", CURVES)
 def test_right_settings_are_none(curve):
     settings = SETTINGS | {"curve": curve, "control_points": CURVES[curve]}
-    assert not any(setting_fault(annotation, settings[name]) for name, annotation in planner_settings(chaotic_pso).items())
+    assert not any(
+        setting_fault(annotation, settings[name])
+        for name, annotation in planner_settings(chaotic_pso).items()
+    )
     chaotic_pso.check(settings)
 
 
@@ -468,7 +578,9 @@ def violation_of(task, x, y, **changed):
 
 
 def test_the_violation_of_a_polygon_is_the_mean_depth_as_a_share_of_the_deepest():
-    """Points at depths 0 (outside), 0 (on the edge), 0.25, 1 (the middle) and 0.5 of a square whose largest circle has radius 1."""
+    """Points at depths 0 (outside), 0 (on the edge), 0.25, 1 (the middle) and 0.5 of a square whose
+    largest circle has radius 1.
+    """
     found, colliding = violation_of(among((SQUARE,)), [3, 1, 0.75, 0, 0], [0, 0, 0, 0, -0.5])
     assert found == pytest.approx((0.25 + 1 + 0.5) / 5)
     assert colliding == 3

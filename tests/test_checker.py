@@ -1,4 +1,6 @@
-"""The certified check: what touches is free, what enters is found, and where, how deep, how near."""
+"""The certified check: what touches is free, what enters is found, and where, how deep, how
+near.
+"""
 
 import math
 import re
@@ -46,7 +48,9 @@ def circles(*discs, bounds=(-10.0, 10.0, -10.0, 10.0)):
 
 
 def cells(size, *occupied, cell=1.0):
-    """A square grid from the ranges (first column, first row, columns, rows) of its occupied cells."""
+    """A square grid from the ranges (first column, first row, columns, rows) of its occupied
+    cells.
+    """
     grid = np.zeros((size, size), dtype=bool)
     for column, row, columns, rows in occupied:
         grid[row : row + rows, column : column + columns] = True
@@ -54,8 +58,16 @@ def cells(size, *occupied, cell=1.0):
 
 
 def polygons(*obstacles, bounds=(0.0, 10.0, 0.0, 10.0)):
-    """Polygons from text; an obstacle is one ring, or several separated by spaces: the outer one and its holes."""
-    return region(Polygons(bounds, tuple(tuple(points_of(ring) for ring in text.split()) for text in obstacles), "m"))
+    """Polygons from text; an obstacle is one ring, or several separated by spaces: the outer one
+    and its holes.
+    """
+    return region(
+        Polygons(
+            bounds,
+            tuple(tuple(points_of(ring) for ring in text.split()) for text in obstacles),
+            "m",
+        )
+    )
 
 
 UNIT_DISC = circles((0, 0, 1))
@@ -84,7 +96,11 @@ TOUCHING = {
     "disc: starts on it, radial": (UNIT_DISC, bezier("(1,0)(2,0)(3,1)"), FREE),
     "disc: starts on it, tangential": (UNIT_DISC, bezier("(1,0)(1,2)(3,3)"), FREE),
     "disc: one point inside": (UNIT_DISC, bezier("(.5,0)(.5,0)(.5,0)"), 0.0),
-    "disc: as small as the path's rounding": (circles((0, 0.02, 1e-4)), bezier("(-5,0)(0,.04)(5,0)"), 0.49999),
+    "disc: as small as the path's rounding": (
+        circles((0, 0.02, 1e-4)),
+        bezier("(-5,0)(0,.04)(5,0)"),
+        0.49999,
+    ),
     "border: touched from inside": (DISC_FAR_OFF, bezier("(-5,8)(0,12)(5,8)"), FREE),
     "border: from it outwards and back": (DISC_FAR_OFF, bezier("(-5,10)(0,12)(5,10)"), 0.0),
     "border: crossed by 5e-4": (DISC_FAR_OFF, bezier("(-5,8)(0,12.001)(5,8)"), 0.49209531),
@@ -126,7 +142,11 @@ TOUCHING = {
     "thin wall: through it": (THIN_WALL, bezier("(5,2)(5,8)"), 0.5),
     "thin wall: along its lower side": (THIN_WALL, bezier("(0,5)(10,5)"), FREE),
     "thin wall: along its upper side": (THIN_WALL, bezier("(0,5.000001)(10,5.000001)"), FREE),
-    "thin wall: chord through it, curve past it": (THIN_WALL, polyline("(3,4)(4,5.000001)(6,5.000001)(7,4)"), FREE),
+    "thin wall: chord through it, curve past it": (
+        THIN_WALL,
+        polyline("(3,4)(4,5.000001)(6,5.000001)(7,4)"),
+        FREE,
+    ),
     "gap of 1e-7: through it": (NARROW_GAP, bezier("(5.00000005,2)(5.00000005,8)"), FREE),
     "shared edge: along it": (SHARED_EDGE, bezier("(5,2)(5,8)"), 1 / 3),
 }
@@ -266,7 +286,9 @@ def test_an_obstacle_between_two_samples_is_found(kind):
     assert not check(pieces, thin).feasible
 
 
-@pytest.mark.parametrize("file", sorted(BENCHMARK_MAPS.glob("*.geojson")), ids=lambda file: file.stem)
+@pytest.mark.parametrize(
+    "file", sorted(BENCHMARK_MAPS.glob("*.geojson")), ids=lambda file: file.stem
+)
 def test_a_stored_shortest_path_is_free(file):
     text = file.read_text()
     path = re.search(r'"shortest_path": (\[.*?\]\s*\])', text, re.DOTALL)
@@ -282,7 +304,12 @@ def test_lattice_paths_need_few_intervals():
     assert check(polyline(steps), blocked).feasible
     assert check(polyline(steps), blocked).intervals <= 64
     along_lines = np.array([[0, 0], [0, 60], [100, 60]], dtype=float)
-    assert check(polyline(along_lines), region(Grid(np.zeros((16, 16), dtype=bool), 10.0, "m"))).intervals == 2
+    assert (
+        check(
+            polyline(along_lines), region(Grid(np.zeros((16, 16), dtype=bool), 10.0, "m"))
+        ).intervals
+        == 2
+    )
 
 
 @pytest.mark.parametrize("contacts", [1, 3, 10])
@@ -352,7 +379,8 @@ def test_curves_of_degree_60_get_the_verdict_of_the_same_curve_of_a_low_degree(b
 
 
 def test_halving_a_curve_of_degree_60_stays_far_below_the_tolerance():
-    # A path that touches the border to the last bit of its exact value: down to parts of 2**-40 nothing may be called a collision.
+    # A path that touches the border to the last bit of its exact value: down to parts of 2**-40
+    # nothing may be called a collision.
     rng = np.random.default_rng(5)
     height = np.abs(rng.uniform(0, 2000, 61))
     height[[0, 1, 59, 60]] = 0.0
@@ -370,7 +398,13 @@ def test_unfit_shapes_and_rules_are_refused():
         check(np.zeros((1, 2, 2)), CORNER_CONTACT, corner_cutting="shut")
 
 
-@pytest.mark.parametrize("blocked", ["Grid(np.eye(3, dtype=bool), 1.0, 'm')", "Circles((0, 9, 0, 9), np.ones((1, 2)), np.ones(1), 'm')"])
+@pytest.mark.parametrize(
+    "blocked",
+    [
+        "Grid(np.eye(3, dtype=bool), 1.0, 'm')",
+        "Circles((0, 9, 0, 9), np.ones((1, 2)), np.ones(1), 'm')",
+    ],
+)
 def test_grids_and_circles_are_checked_without_heavy_libraries(blocked):
     lines = [
         "import sys, numpy as np",
@@ -381,7 +415,9 @@ def test_grids_and_circles_are_checked_without_heavy_libraries(blocked):
         f"check(np.zeros((1, 2, 2)), region({blocked}))",
         "print(*{'shapely', 'scipy.sparse', 'pandas'} & set(sys.modules))",
     ]
-    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, check=True
+    )
     assert done.stdout.strip() == ""
 
 

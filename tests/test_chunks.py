@@ -1,4 +1,6 @@
-"""From a study to its jobs and results: every repeat is run, and read once; which experiments are compared pair by pair."""
+"""From a study to its jobs and results: every repeat is run, and read once; which experiments are
+compared pair by pair.
+"""
 
 from dataclasses import fields
 from pathlib import Path
@@ -23,27 +25,50 @@ def experiment(repeats, chunk, **others):
     return Experiment(
         problems=["across"],
         methods=["mine"],
-        **{key: dict.fromkeys(("smoke", "full", "extended"), number) for key, number in (("repeats", repeats), ("chunk", chunk))},
+        **{
+            key: dict.fromkeys(("smoke", "full", "extended"), number)
+            for key, number in (("repeats", repeats), ("chunk", chunk))
+        },
         **others,
     )
 
 
-@pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 1, 1), (9, 3, 3), (100, 1, 100), (4, 4, 1)])
+@pytest.mark.parametrize(
+    ("repeats", "chunk", "count"),
+    [(10, 4, 3), (8, 4, 2), (1, 1, 1), (9, 3, 3), (100, 1, 100), (4, 4, 1)],
+)
 def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
-    empty = {field.name: {} for field in fields(definition.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
+    empty = {field.name: {} for field in fields(definition.Study)} | {
+        "key": "s",
+        "folder": Path(),
+        "title": "A study",
+        "claims": [],
+    }
     own = definition.Study(**empty | {"experiments": {"first": experiment(repeats, chunk)}})
     assert list(jobs.chunks(own, "first", "full")) == list(range(count))
 
 
 def behind(given, scale):
-    """The runs behind the tables and figures of a scale and those that it names, as (study, experiment, method)."""
+    """The runs behind the tables and figures of a scale and those that it names, as (study,
+    experiment, method).
+    """
     shown = (
-        jobs.smoke(given)[0] if scale == "smoke" else [(key, name) for key, own in given.items() for name in [*own.tables, *own.figures]]
+        jobs.smoke(given)[0]
+        if scale == "smoke"
+        else [(key, name) for key, own in given.items() for name in [*own.tables, *own.figures]]
     )
     files = targets.files_of_smoke(given) if scale == "smoke" else []
     for key, name in shown:
-        files += [chunk for shown in targets.shown_by(given[key], scale, name).values() for chunk in shown.chunks]
-    return {(place[2], place[4], place[5]) for place in (Path(file).parts for file in files) if place[3] == "runs"}
+        files += [
+            chunk
+            for shown in targets.shown_by(given[key], scale, name).values()
+            for chunk in shown.chunks
+        ]
+    return {
+        (place[2], place[4], place[5])
+        for place in (Path(file).parts for file in files)
+        if place[3] == "runs"
+    }
 
 
 @pytest.mark.parametrize("scale", ["smoke", "full"])
@@ -59,7 +84,13 @@ def test_each_planner_has_one_leader_among_the_runs_of_a_scale(scale):
 
 
 @pytest.mark.parametrize(
-    ("seeds", "paired"), [({}, False), ({"seeds": "own"}, False), ({"seeds": "shared"}, True), ({"seeds": "common"}, True)]
+    ("seeds", "paired"),
+    [
+        ({}, False),
+        ({"seeds": "own"}, False),
+        ({"seeds": "shared"}, True),
+        ({"seeds": "common"}, True),
+    ],
 )
 def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
     """Runs of two methods with seeds of their own have nothing to do with each other."""
@@ -73,7 +104,9 @@ EMPTY = {name: _NOTHING[kind] for name, kind in (columns.PLANNED | columns.RESUL
 
 @pytest.fixture
 def chunks(tmp_path):
-    """The folder of an experiment's results: two chunks of four repeats of two methods, their times, problems and bounds."""
+    """The folder of an experiment's results: two chunks of four repeats of two methods, their
+    times, problems and bounds.
+    """
     grid = from_lines(["..", ".."], 1.0, "m")
     described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
     problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
@@ -84,16 +117,31 @@ def chunks(tmp_path):
         for chunk in range(2):
             repeats = np.arange(4 * chunk, 4 * chunk + 4)
             of = {"experiment": "first", "method": method, "problem": "across"}
-            runs = [EMPTY | of | {"id": f"{method}{n}", "repeat": int(n), "length": 2.0, "feasible": True} for n in repeats]
-            times = pd.DataFrame({"id": [run["id"] for run in runs], "cpu_s": repeats / 100, "wall_s": repeats / 50})
-            parquet.write_table(rows.table(runs, columns.Planned, columns.Outcome), folder / f"{chunk}.parquet")
-            parquet.write_table(pa.Table.from_pandas(times[::-1]), folder / f"{chunk}.times.parquet")
+            runs = [
+                EMPTY
+                | of
+                | {"id": f"{method}{n}", "repeat": int(n), "length": 2.0, "feasible": True}
+                for n in repeats
+            ]
+            times = pd.DataFrame(
+                {"id": [run["id"] for run in runs], "cpu_s": repeats / 100, "wall_s": repeats / 50}
+            )
+            parquet.write_table(
+                rows.table(runs, columns.Planned, columns.Outcome), folder / f"{chunk}.parquet"
+            )
+            parquet.write_table(
+                pa.Table.from_pandas(times[::-1]), folder / f"{chunk}.times.parquet"
+            )
     return tmp_path
 
 
 def read(folder):
     chunks = [str(folder / "runs/first/mine" / f"{chunk}.parquet") for chunk in range(2)]
-    return results.read(Files({"mine": chunks}, str(folder / "problems.parquet"), str(folder / "bounds.parquet")), 6, "first").runs
+    return results.read(
+        Files({"mine": chunks}, str(folder / "problems.parquet"), str(folder / "bounds.parquet")),
+        6,
+        "first",
+    ).runs
 
 
 def test_results_are_cut_at_the_number_of_repeats(chunks):
@@ -107,12 +155,32 @@ def test_results_are_cut_at_the_number_of_repeats(chunks):
 MINE = "runs/first/mine"
 # A file, what stands in its place (another file, or content), and what is told of it.
 MISPLACED = {
-    "another method's runs": (f"{MINE}/0.parquet", "runs/first/other/0.parquet", "of method other, not mine"),
+    "another method's runs": (
+        f"{MINE}/0.parquet",
+        "runs/first/other/0.parquet",
+        "of method other, not mine",
+    ),
     "another chunk's runs": (f"{MINE}/1.parquet", f"{MINE}/0.parquet", "the runs of another chunk"),
-    "another chunk's times": (f"{MINE}/0.times.parquet", f"{MINE}/1.times.parquet", "not the times of 0.parquet"),
-    "another method's times": (f"{MINE}/0.times.parquet", "runs/first/other/0.times.parquet", "not the times of 0.parquet"),
-    "runs for times": (f"{MINE}/0.times.parquet", f"{MINE}/1.parquet", "not the times of 0.parquet"),
-    "times for runs": (f"{MINE}/0.parquet", f"{MINE}/0.times.parquet", "of experiment no runs, not first"),
+    "another chunk's times": (
+        f"{MINE}/0.times.parquet",
+        f"{MINE}/1.times.parquet",
+        "not the times of 0.parquet",
+    ),
+    "another method's times": (
+        f"{MINE}/0.times.parquet",
+        "runs/first/other/0.times.parquet",
+        "not the times of 0.parquet",
+    ),
+    "runs for times": (
+        f"{MINE}/0.times.parquet",
+        f"{MINE}/1.parquet",
+        "not the times of 0.parquet",
+    ),
+    "times for runs": (
+        f"{MINE}/0.parquet",
+        f"{MINE}/0.times.parquet",
+        "of experiment no runs, not first",
+    ),
     "bounds for runs": (f"{MINE}/0.parquet", "bounds.parquet", "of experiment no runs, not first"),
     "a csv for runs": (f"{MINE}/0.parquet", b"id,length\n1,2\n", "not a whole Parquet file"),
     "a page for runs": (f"{MINE}/0.parquet", b"<html></html>", "not a whole Parquet file"),
@@ -120,10 +188,26 @@ MISPLACED = {
     "a csv for times": (f"{MINE}/0.times.parquet", b"id,cpu_s\n", "not a whole Parquet file"),
     "nothing for bounds": ("bounds.parquet", b"", "not a whole Parquet file"),
     "a csv for problems": ("problems.parquet", b"problem\nacross\n", "not a whole Parquet file"),
-    "runs for bounds": ("bounds.parquet", f"{MINE}/0.times.parquet", "not of the problems that the runs are of"),
-    "runs of an earlier version": (f"{MINE}/0.parquet", {"clearance_error": None}, "no column clearance_error"),
-    "runs with counts as numbers": (f"{MINE}/0.parquet", {"evaluations": 1.5}, "column evaluations is of type double, not int64"),
-    "times for problems": ("problems.parquet", f"{MINE}/0.times.parquet", "not of the problems that the runs are of"),
+    "runs for bounds": (
+        "bounds.parquet",
+        f"{MINE}/0.times.parquet",
+        "not of the problems that the runs are of",
+    ),
+    "runs of an earlier version": (
+        f"{MINE}/0.parquet",
+        {"clearance_error": None},
+        "no column clearance_error",
+    ),
+    "runs with counts as numbers": (
+        f"{MINE}/0.parquet",
+        {"evaluations": 1.5},
+        "column evaluations is of type double, not int64",
+    ),
+    "times for problems": (
+        "problems.parquet",
+        f"{MINE}/0.times.parquet",
+        "not of the problems that the runs are of",
+    ),
 }
 
 
@@ -134,17 +218,28 @@ def test_a_file_in_the_place_of_another_is_told(chunks, fault):
         table = parquet.read_table(chunks / place)
         for column, value in content.items():
             table = table.drop_columns(column)
-            table = table if value is None else table.append_column(column, pa.array([value] * len(table)))
+            table = (
+                table
+                if value is None
+                else table.append_column(column, pa.array([value] * len(table)))
+            )
         parquet.write_table(table, chunks / place)
     else:
-        (chunks / place).write_bytes(content if isinstance(content, bytes) else (chunks / content).read_bytes())
+        (chunks / place).write_bytes(
+            content if isinstance(content, bytes) else (chunks / content).read_bytes()
+        )
     with pytest.raises(ValueError, match=told) as found:
         read(chunks)
-    assert str(found.value) == f"{chunks / place}: {told}; delete it and start again: the workflow reproduces it"
+    assert (
+        str(found.value)
+        == f"{chunks / place}: {told}; delete it and start again: the workflow reproduces it"
+    )
 
 
 @pytest.mark.parametrize("cut", [1, 100])
-@pytest.mark.parametrize("place", [f"{MINE}/1.parquet", f"{MINE}/1.times.parquet", "problems.parquet", "bounds.parquet"])
+@pytest.mark.parametrize(
+    "place", [f"{MINE}/1.parquet", f"{MINE}/1.times.parquet", "problems.parquet", "bounds.parquet"]
+)
 def test_a_file_that_was_cut_off_is_told(chunks, place, cut):
     (chunks / place).write_bytes((chunks / place).read_bytes()[:-cut])
     with pytest.raises(ValueError, match=f"{place}: not a whole Parquet file; delete it"):
@@ -158,7 +253,10 @@ def test_what_is_no_csv_is_told(tmp_path, content):
     table.write_bytes(b"id,verdict\n")
     assert not log.damaged([str(table)])
     table.write_bytes(content)
-    assert log.damaged([str(table)]) == f"{table}: not a csv file; delete it and start again: the workflow reproduces it"
+    assert (
+        log.damaged([str(table)])
+        == f"{table}: not a csv file; delete it and start again: the workflow reproduces it"
+    )
 
 
 def test_a_page_that_was_cut_short_is_not_whole(tmp_path):

@@ -1,4 +1,6 @@
-"""Claims judged: every kind of test on a true and on a false case, the way from marks to a verdict, and degenerate runs."""
+"""Claims judged: every kind of test on a true and on a false case, the way from marks to a verdict,
+and degenerate runs.
+"""
 
 import itertools
 import math
@@ -42,8 +44,16 @@ def sample(name: str, mean: float = 0.0, n: int = UNITS, std: float = 1.0) -> np
 
 
 def table(values: dict[str, np.ndarray], metric: str = "objective", **columns) -> pd.DataFrame:
-    """Runs of one condition: method -> one value of the metric a repeat, in an order of their own."""
-    described = {"experiment": "tried", "problem": "first", "workspace": "grid", "feasible": True, "claimed_feasible": True} | columns
+    """Runs of one condition: method -> one value of the metric a repeat, in an order of their
+    own.
+    """
+    described = {
+        "experiment": "tried",
+        "problem": "first",
+        "workspace": "grid",
+        "feasible": True,
+        "claimed_feasible": True,
+    } | columns
     condition = ",".join(f"{key}={value}" for key, value in {**described, **columns}.items())
     rows = [
         described | {"condition": condition, "method": method, "repeat": repeat, metric: value}
@@ -54,10 +64,29 @@ def table(values: dict[str, np.ndarray], metric: str = "objective", **columns) -
 
 
 def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, pd.DataFrame]:
-    given = {"published": {}, "artefacts": {}, "functions": {}, "variant_of": {}, "paired": {}, "repeats": {"tried": 10}} | material
-    results = {"tried": Results(pd.concat(runs, ignore_index=True), PROBLEMS, pd.DataFrame())} if runs else {}
+    given = {
+        "published": {},
+        "artefacts": {},
+        "functions": {},
+        "variant_of": {},
+        "paired": {},
+        "repeats": {"tried": 10},
+    } | material
+    results = (
+        {"tried": Results(pd.concat(runs, ignore_index=True), PROBLEMS, pd.DataFrame())}
+        if runs
+        else {}
+    )
     claims = [Claim.model_validate({"id": "C1", "place": "1", "statement": "It is so."} | claim)]
-    return judging.judge(claims, results, given.pop("published"), given.pop("artefacts"), "study", given.pop("functions"), **given)
+    return judging.judge(
+        claims,
+        results,
+        given.pop("published"),
+        given.pop("artefacts"),
+        "study",
+        given.pop("functions"),
+        **given,
+    )
 
 
 def judged(check: dict, *runs: pd.DataFrame, **material) -> pd.Series:
@@ -77,7 +106,11 @@ def together(*findings: Finding) -> tuple[str, int]:
 
 def test_comparisons_together_hold_if_all_do_and_fail_if_one_does():
     sure, unsure = Finding(toward=1, p=0.001), Finding(toward=1, p=0.04)
-    against, weakly, alike = Finding(toward=-1, p=0.002), Finding(toward=-1, p=0.02), Finding(p=0.6, negligible=True)
+    against, weakly, alike = (
+        Finding(toward=-1, p=0.002),
+        Finding(toward=-1, p=0.02),
+        Finding(p=0.6, negligible=True),
+    )
     assert together(sure, unsure) == ("+", 1)
     assert together(sure, Finding(toward=1, p=0.2)) == ("?", 1)
     assert together(sure, against, unsure) == ("-", 1)
@@ -97,17 +130,24 @@ def test_a_superlative_is_one_comparison_at_a_place_and_its_pairs_are_details():
     """Of three rivals a beats two: no third of the sentence is true."""
     check = LOWER | {"than": ["b", "c", "d"], "together": True, "every": ["workspace"]}
     best = table({"a": sample("a"), "b": sample("b", 1), "c": sample("c", 2), "d": sample("d", 3)})
-    third = table({"a": sample("a", 1), "b": sample("b"), "c": sample("c", 2), "d": sample("d", 3)}, workspace="other")
+    third = table(
+        {"a": sample("a", 1), "b": sample("b"), "c": sample("c", 2), "d": sample("d", 3)},
+        workspace="other",
+    )
     claims, checks = judge({"checks": [check]}, best, third)
     assert claims.iloc[0][["verdict", "holds"]].to_list() == ["partly", "1 of 2"]
-    assert "workspace" in claims.iloc[0]["where_it_holds"] or "in grid" in claims.iloc[0]["where_it_holds"]
+    assert (
+        "workspace" in claims.iloc[0]["where_it_holds"]
+        or "in grid" in claims.iloc[0]["where_it_holds"]
+    )
     deciding = checks[checks["primary"]]
     assert deciding["comparison"].to_list() == ["all 3 together"] * 2
     assert deciding["mark"].to_list() == ["+", "-"]
     assert checks.loc[~checks["primary"], "mark"].to_list() == ["+", "+", "+", "-", "+", "+"]
     del check["every"]
     assert judged(check, third)["verdict"] == "contradicted"
-    # By chance alone, experiments of the paper's size find a the best nearly always, or nearly never.
+    # By chance alone, experiments of the paper's size find a the best nearly always, or nearly
+    # never.
     assert judged(check, best)["replication_probability"] > 0.6
     assert judged(check, third)["replication_probability"] < 0.1
 
@@ -116,50 +156,123 @@ def test_a_superlative_holds_in_the_printed_numbers_if_all_of_it_does():
     check = LOWER | {"than": ["b", "c"], "together": True}
     runs = table({name: sample(name, mean) for name, mean in (("a", 0), ("b", 1), ("c", 2))})
     for other, held in ((3.0, "1 of 1"), (0.5, "0 of 1")):
-        printed = pd.DataFrame({"method": ["a", "b", "c"], "metric": "objective", "statistic": "mean", "value": [1.0, 2.0, other], "n": 10})
+        printed = pd.DataFrame(
+            {
+                "method": ["a", "b", "c"],
+                "metric": "objective",
+                "statistic": "mean",
+                "value": [1.0, 2.0, other],
+                "n": 10,
+            }
+        )
         artefacts = {"t": {"experiment": "tried", "published": "t.csv"}}
-        assert judged(check, runs, published={"t": printed}, artefacts=artefacts)["published"] == held
+        assert (
+            judged(check, runs, published={"t": printed}, artefacts=artefacts)["published"] == held
+        )
 
 
 def test_a_median_of_seconds_is_set_beside_the_printed_mean():
     check = LOWER | {"metric": "cpu_s", "scale": "relative", "statistic": "median", "margin": 0.25}
     runs = table({"a": sample("a", 10), "b": sample("b", 20)}, metric="cpu_s")
-    printed = pd.DataFrame({"method": ["a", "b"], "metric": "cpu_s", "statistic": "mean", "value": [1.0, 2.0], "n": 10})
+    printed = pd.DataFrame(
+        {"method": ["a", "b"], "metric": "cpu_s", "statistic": "mean", "value": [1.0, 2.0], "n": 10}
+    )
     artefacts = {"t": {"experiment": "tried", "published": "t.csv"}}
     row = judged(check, runs, published={"t": printed}, artefacts=artefacts)
     assert row[["verdict", "published"]].to_list() == ["supported", "1 of 1"]
 
 
 def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
-    """Runs of one method at five values of `particles`; the mean grows with slope, the standard deviation is std times the number."""
+    """Runs of one method at five values of `particles`; the mean grows with slope, the standard
+    deviation is std times the number.
+    """
     return pd.concat(
-        table({"plain": 100 + slope * x + sample(f"x{x}", std=std * x if std < 1 else std)}, particles=x) for x in (5, 10, 20, 30, 50)
+        table(
+            {"plain": 100 + slope * x + sample(f"x{x}", std=std * x if std < 1 else std)},
+            particles=x,
+        )
+        for x in (5, 10, 20, 30, 50)
     )
 
 
-LOWER = {"test": "lower", "experiment": "tried", "metric": "objective", "groups": ["a"], "than": ["b"], "direction": "lower", "margin": 0.3}
-PAIRS = {key: value for key, value in LOWER.items() if key not in ("groups", "than")} | {"pairs": [["a", "b"]]}
-TREND = {"test": "trend", "experiment": "tried", "metric": "objective", "x": "particles", "direction": "up", "margin": 5}
-SHARE = {"test": "share", "experiment": "tried", "metric": "objective", "event": {"below": 0}, "threshold": 0.5, "direction": "at_least"}
+LOWER = {
+    "test": "lower",
+    "experiment": "tried",
+    "metric": "objective",
+    "groups": ["a"],
+    "than": ["b"],
+    "direction": "lower",
+    "margin": 0.3,
+}
+PAIRS = {key: value for key, value in LOWER.items() if key not in ("groups", "than")} | {
+    "pairs": [["a", "b"]]
+}
+TREND = {
+    "test": "trend",
+    "experiment": "tried",
+    "metric": "objective",
+    "x": "particles",
+    "direction": "up",
+    "margin": 5,
+}
+SHARE = {
+    "test": "share",
+    "experiment": "tried",
+    "metric": "objective",
+    "event": {"below": 0},
+    "threshold": 0.5,
+    "direction": "at_least",
+}
 SHARE |= {"where": {"method": "a"}}
 ALL = {key: value for key, value in SHARE.items() if key != "direction"} | {"threshold": "all"}
-WITHIN = {"test": "equal_within", "experiment": "tried", "metric": "objective", "groups": ["a"], "than": ["b"], "statistic": "mean"}
+WITHIN = {
+    "test": "equal_within",
+    "experiment": "tried",
+    "metric": "objective",
+    "groups": ["a"],
+    "than": ["b"],
+    "statistic": "mean",
+}
 WITHIN |= {"margin": 1}
-DIFFERENCE = {"test": "difference", "experiment": "tried", "metric": "objective", "groups": ["a", "b"], "margin": 1}
-ORDERED = {"test": "ordered", "experiment": "tried", "metric": "objective", "order": [["a"], ["b", "c"], ["d"]], "direction": "lower"}
+DIFFERENCE = {
+    "test": "difference",
+    "experiment": "tried",
+    "metric": "objective",
+    "groups": ["a", "b"],
+    "margin": 1,
+}
+ORDERED = {
+    "test": "ordered",
+    "experiment": "tried",
+    "metric": "objective",
+    "order": [["a"], ["b", "c"], ["d"]],
+    "direction": "lower",
+}
 ORDERED |= {"margin": 0.3}
 TIERS = {"a": sample("a"), "b": sample("b", 1), "c": sample("c", 1.2), "d": sample("d", 2.5)}
-APART, ALIKE = table({"a": sample("a"), "b": sample("b", 1)}), table({"a": sample("a"), "b": sample("b", 0.1)})
+APART, ALIKE = (
+    table({"a": sample("a"), "b": sample("b", 1)}),
+    table({"a": sample("a"), "b": sample("b", 0.1)}),
+)
 MOSTLY = table({"a": np.r_[np.full(35, -1.0), np.full(5, 1.0)]})
 TRUTHS = table({"a": np.arange(UNITS) < 5, "b": np.arange(UNITS) < 25}, metric="claimed_feasible")
 
 # Name -> a check with runs on which it holds; and on which its contrary does.
 CASES = {
     "lower": ((LOWER, APART), (LOWER | {"groups": ["b"], "than": ["a"]}, APART)),
-    "lower, paired": ((LOWER | {"paired": True}, APART), (LOWER | {"paired": True, "direction": "higher"}, APART)),
+    "lower, paired": (
+        (LOWER | {"paired": True}, APART),
+        (LOWER | {"paired": True, "direction": "higher"}, APART),
+    ),
     "lower, pairs": ((PAIRS, APART), (PAIRS | {"pairs": [["b", "a"]]}, APART)),
-    "lower, mean": ((LOWER | {"statistic": "mean"}, APART), (LOWER | {"statistic": "mean", "direction": "higher"}, APART)),
-    "lower, median": ((LOWER | {"statistic": "median"}, APART), (LOWER | {"statistic": "median", "direction": "higher"}, APART)),
+    "lower, mean": (
+        (LOWER | {"statistic": "mean"}, APART),
+        (LOWER | {"statistic": "mean", "direction": "higher"}, APART),
+    ),
+    "lower, median": (
+        (LOWER | {"statistic": "median"}, APART),
+        (LOWER | {"statistic": "median", "direction": "higher"}, APART),
+    ),
     "lower, spread": (
         (LOWER | {"statistic": "iqr"}, table({"a": sample("a"), "b": sample("b", std=3)})),
         (LOWER | {"statistic": "iqr"}, table({"a": sample("a", std=3), "b": sample("b")})),
@@ -176,7 +289,10 @@ CASES = {
         (LOWER | {"metric": "claimed_feasible", "paired": True}, TRUTHS),
         (LOWER | {"metric": "claimed_feasible", "paired": True, "direction": "higher"}, TRUTHS),
     ),
-    "ordered": ((ORDERED, table(TIERS)), (ORDERED | {"order": ORDERED["order"][::-1]}, table(TIERS))),
+    "ordered": (
+        (ORDERED, table(TIERS)),
+        (ORDERED | {"order": ORDERED["order"][::-1]}, table(TIERS)),
+    ),
     "trend": ((TREND, over_x(0.2)), (TREND | {"direction": "down"}, over_x(0.2))),
     "trend, reversed": ((TREND | {"direction": "down"}, over_x(-0.2)), (TREND, over_x(-0.2))),
     "trend of a spread": (
@@ -184,8 +300,14 @@ CASES = {
         (TREND | {"statistic": "std", "direction": "down"}, over_x(0.0, std=0.2)),
     ),
     "share": ((SHARE, MOSTLY), (SHARE | {"event": {"at_least": 0}}, MOSTLY)),
-    "share, at most": ((SHARE | {"direction": "at_most"}, table({"a": sample("a", 1)})), (SHARE | {"direction": "at_most"}, MOSTLY)),
-    "share, all": ((ALL, table({"a": np.full(59, -1.0)})), (ALL | {"event": {"at_least": 0}}, table({"a": np.full(59, -1.0)}))),
+    "share, at most": (
+        (SHARE | {"direction": "at_most"}, table({"a": sample("a", 1)})),
+        (SHARE | {"direction": "at_most"}, MOSTLY),
+    ),
+    "share, all": (
+        (ALL, table({"a": np.full(59, -1.0)})),
+        (ALL | {"event": {"at_least": 0}}, table({"a": np.full(59, -1.0)})),
+    ),
     "share, none": (
         (ALL | {"threshold": "none"}, table({"a": np.full(59, 1.0)})),
         (ALL | {"threshold": "none", "event": {"at_least": 0}}, table({"a": np.full(59, 1.0)})),
@@ -194,11 +316,23 @@ CASES = {
         (ALL | {"threshold": "some"}, table({"a": np.r_[np.ones(9), -1]})),
         (ALL | {"threshold": "some"}, table({"a": np.full(59, 1.0)})),
     ),
-    "equal_within": ((WITHIN, ALIKE), (WITHIN, table({"a": sample("a", 3), "b": sample("b", 0.1)}))),
-    "equal_within, target": ((WITHIN | {"target": -3}, table({"a": sample("a", -3), "b": sample("b")})), (WITHIN | {"target": -3}, ALIKE)),
+    "equal_within": (
+        (WITHIN, ALIKE),
+        (WITHIN, table({"a": sample("a", 3), "b": sample("b", 0.1)})),
+    ),
+    "equal_within, target": (
+        (WITHIN | {"target": -3}, table({"a": sample("a", -3), "b": sample("b")})),
+        (WITHIN | {"target": -3}, ALIKE),
+    ),
     "equal_within, relative": (
-        (WITHIN | {"scale": "relative", "margin": 0.05}, table({"a": sample("a", 100), "b": sample("b", 101)})),
-        (WITHIN | {"scale": "relative", "margin": 0.05}, table({"a": sample("a", 100), "b": sample("b", 115)})),
+        (
+            WITHIN | {"scale": "relative", "margin": 0.05},
+            table({"a": sample("a", 100), "b": sample("b", 101)}),
+        ),
+        (
+            WITHIN | {"scale": "relative", "margin": 0.05},
+            table({"a": sample("a", 100), "b": sample("b", 115)}),
+        ),
     ),
 }
 
@@ -227,7 +361,10 @@ def test_difference_and_its_absence(others, paired):
     check = DIFFERENCE | {"groups": ["a", "b", *others], "paired": paired}
     shifted = table({"a": sample("a", 3), "b": sample("b")} | others)
     assert judged(check, shifted)["verdict"] == "supported"
-    assert judged(check, table({"a": sample("a"), "b": sample("b")} | others))["verdict"] == "no effect"
+    assert (
+        judged(check, table({"a": sample("a"), "b": sample("b")} | others))["verdict"]
+        == "no effect"
+    )
 
 
 # Effects and their sizes.
@@ -271,7 +408,9 @@ def test_signed_ranks_are_exact_with_ties_and_zeros(units):
     difference[0] = 0.0
     ranks = stats.rankdata(np.abs(difference)) * (difference != 0)
     sums = np.array(list(itertools.product([0, 1], repeat=units))) @ ranks
-    least = min(np.mean(sums <= ranks[difference > 0].sum()), np.mean(sums >= ranks[difference > 0].sum()))
+    least = min(
+        np.mean(sums <= ranks[difference > 0].sum()), np.mean(sums >= ranks[difference > 0].sum())
+    )
     assert signed_rank_test(difference) == pytest.approx(min(1.0, 2 * least), rel=1e-12)
 
 
@@ -286,14 +425,20 @@ def test_pairs_need_both_runs():
 def test_odds_ratios():
     check = LOWER | {"metric": "claimed_feasible"}
     row = judged(check, TRUTHS)
-    assert (row["effect_size_name"], row["effect_size"], row["effect"]) == ("odds ratio", (5 * 15) / (35 * 25), -0.5)
+    assert (row["effect_size_name"], row["effect_size"], row["effect"]) == (
+        "odds ratio",
+        (5 * 15) / (35 * 25),
+        -0.5,
+    )
     assert judged(check | {"paired": True}, TRUTHS)["effect_size"] == 0
 
 
 def test_share_and_its_exact_interval():
     row = judged(SHARE, MOSTLY)
     assert (row["effect"], row["n"]) == (35 / 40, 40)
-    assert (row["low95"], row["high95"]) == pytest.approx((0.7320, 0.9581), abs=1e-4)  # Clopper and Pearson (1934)
+    assert (row["low95"], row["high95"]) == pytest.approx(
+        (0.7320, 0.9581), abs=1e-4
+    )  # Clopper and Pearson (1934)
 
 
 @pytest.mark.parametrize(
@@ -345,14 +490,21 @@ def test_many_units_by_normal_approximation(statistic, paired, monkeypatch):
     monkeypatch.setattr("bezierplan.analysis.claims.effects.MOST_RESAMPLED", 1000)
     resampled = judged(check, runs)
     width = resampled["high95"] - resampled["low95"]
-    assert approximate[["low95", "high95"]].to_list() == pytest.approx(resampled[["low95", "high95"]].to_list(), abs=0.12 * width)
+    assert approximate[["low95", "high95"]].to_list() == pytest.approx(
+        resampled[["low95", "high95"]].to_list(), abs=0.12 * width
+    )
     assert approximate["verdict"] == resampled["verdict"] == "supported"
 
 
 @pytest.mark.parametrize("n", [100, 300])
 def test_both_ends_of_an_interval_of_an_effect(n):
-    """Of two means of n normal values with the standard deviations 1 and 2: 1.96 standard errors away, resampled or not."""
-    row = judged(LOWER | {"statistic": "mean"}, table({"a": sample("a", 0, n=n), "b": sample("b", 1, n=n, std=2)}))
+    """Of two means of n normal values with the standard deviations 1 and 2: 1.96 standard errors
+    away, resampled or not.
+    """
+    row = judged(
+        LOWER | {"statistic": "mean"},
+        table({"a": sample("a", 0, n=n), "b": sample("b", 1, n=n, std=2)}),
+    )
     ends = (row[["low95", "high95"]].to_numpy(dtype=float) + 1) / math.sqrt(5 / n)
     assert row["effect"] == pytest.approx(-1)
     assert ends == pytest.approx([-1.96, 1.96], rel=0.1 if n == 100 else 0.01)
@@ -370,22 +522,32 @@ def test_extremes_need_the_size_of_the_papers_experiment():
 
 
 @pytest.mark.parametrize("paired", [True, False])
-@pytest.mark.parametrize(("shift", "verdict"), [(-0.4, "supported"), (0.0, "no effect"), (0.1, "no effect"), (0.4, "contradicted")])
+@pytest.mark.parametrize(
+    ("shift", "verdict"),
+    [(-0.4, "supported"), (0.0, "no effect"), (0.1, "no effect"), (0.4, "contradicted")],
+)
 def test_units_that_would_decide(shift, verdict, paired):
     """The margin is 0.3, and samples of any size have the same mean and deviation."""
 
     def judged_with(n):
         runs = table({"a": sample("a", shift, n=n), "b": sample("b", n=n)})
-        return judge({"checks": [LOWER | {"statistic": "mean"}]}, runs, paired={"tried": paired})[0].iloc[0]
+        return judge({"checks": [LOWER | {"statistic": "mean"}]}, runs, paired={"tried": paired})[
+            0
+        ].iloc[0]
 
     few = judged_with(20)
     assert few["verdict"] == "undecided"
-    assert judged_with(math.ceil(1.3 * few["units_to_decide"]))[["verdict", "units_to_decide"]].to_list() == [verdict, pd.NA]
+    assert judged_with(math.ceil(1.3 * few["units_to_decide"]))[
+        ["verdict", "units_to_decide"]
+    ].to_list() == [verdict, pd.NA]
     assert judged_with(few["units_to_decide"] // 2)["verdict"] == "undecided"
 
 
 def test_no_number_of_units_decides_an_effect_as_large_as_the_margin_or_one_without_interval():
-    claim = judge({"checks": [LOWER]}, table({"a": sample("a", LOWER["margin"] * (1 - 1e-12)), "b": sample("b")}))[0].iloc[0]
+    claim = judge(
+        {"checks": [LOWER]},
+        table({"a": sample("a", LOWER["margin"] * (1 - 1e-12)), "b": sample("b")}),
+    )[0].iloc[0]
     assert (claim["verdict"], claim["units_to_decide"] is pd.NA) == ("undecided", True)
     assert judged(LOWER | {"statistic": "range"}, ALIKE)["units_to_decide"] is pd.NA
 
@@ -418,7 +580,10 @@ VERDICTS = [
 @pytest.mark.parametrize(("found", "all_hold", "any_holds"), VERDICTS)
 def test_verdict(found, all_hold, any_holds):
     for order in {found, found[::-1], found[1:] + found[:1]}:
-        assert (verdicts.verdict(order, order, "all"), verdicts.verdict(order, order, "any")) == (all_hold, any_holds)
+        assert (verdicts.verdict(order, order, "all"), verdicts.verdict(order, order, "any")) == (
+            all_hold,
+            any_holds,
+        )
 
 
 @pytest.mark.parametrize(
@@ -432,28 +597,65 @@ def test_verdict(found, all_hold, any_holds):
     ],
 )
 def test_verdict_by_marks_alone_and_in_the_family(alone, together, all_hold, any_holds):
-    assert (verdicts.verdict(alone, together, "all"), verdicts.verdict(alone, together, "any")) == (all_hold, any_holds)
+    assert (verdicts.verdict(alone, together, "all"), verdicts.verdict(alone, together, "any")) == (
+        all_hold,
+        any_holds,
+    )
 
 
 def test_family_against_a_worked_example():
-    """The fifteen p of Benjamini and Hochberg (1995, Section 3.2): four are rejected at 0.05, by Holm three."""
-    p = np.array([0.0001, 0.0004, 0.0019, 0.0095, 0.0201, 0.0278, 0.0298, 0.0344, 0.0459, 0.3240, 0.4262, 0.5719, 0.6528, 0.7590, 1.0])
+    """The fifteen p of Benjamini and Hochberg (1995, Section 3.2): four are rejected at 0.05, by
+    Holm three.
+    """
+    p = np.array(
+        [
+            0.0001,
+            0.0004,
+            0.0019,
+            0.0095,
+            0.0201,
+            0.0278,
+            0.0298,
+            0.0344,
+            0.0459,
+            0.3240,
+            0.4262,
+            0.5719,
+            0.6528,
+            0.7590,
+            1.0,
+        ]
+    )
     assert (verdicts.family(p) < 0.05).sum() == 4
     assert (statistics.holm(p) < 0.05).sum() == 3
     assert len(verdicts.family(np.array([]))) == 0
 
 
 def test_a_large_family_of_ten_fields_can_be_contradicted():
-    """Ten pairs give no p below 0.002: in 60 comparisons of one sentence its contrary still comes out."""
-    runs = pd.concat(table({"a": sample(f"a{k}", 9, n=10), "b": sample(f"b{k}", n=10)}, obstacles=k, condition=str(k)) for k in range(60))
+    """Ten pairs give no p below 0.002: in 60 comparisons of one sentence its contrary still comes
+    out.
+    """
+    runs = pd.concat(
+        table(
+            {"a": sample(f"a{k}", 9, n=10), "b": sample(f"b{k}", n=10)},
+            obstacles=k,
+            condition=str(k),
+        )
+        for k in range(60)
+    )
     row = judged(LOWER | {"every": ["obstacles"], "paired": True}, runs)
     assert (row["verdict"], row["holds"]) == ("contradicted", "0 of 60")
     assert row["p_family"] < 0.05
 
 
-@pytest.mark.parametrize(("apart", "wrong"), [(0.0, {"supported", "contradicted", "partly"}), (1.0, {"contradicted", "no effect"})])
+@pytest.mark.parametrize(
+    ("apart", "wrong"),
+    [(0.0, {"supported", "contradicted", "partly"}), (1.0, {"contradicted", "no effect"})],
+)
 def test_at_most_one_sentence_in_twenty_is_judged_wrongly(apart, wrong):
-    """Of sentences of twenty comparisons without an effect few get another verdict than undecided; true ones are never refused."""
+    """Of sentences of twenty comparisons without an effect few get another verdict than undecided;
+    true ones are never refused.
+    """
     given = []
     for number in range(100):
         rng = generator(f"sentence {number}")
@@ -462,7 +664,11 @@ def test_at_most_one_sentence_in_twenty_is_judged_wrongly(apart, wrong):
             found.append(Finding(effect=mean, p=p, toward=int(np.sign(mean)), margin=0.3))
         together = verdicts.family(np.array([each.p for each in found]))
         alone = [verdicts.mark(each, each.p) for each in found]
-        given.append(verdicts.verdict(alone, [verdicts.mark(each, p) for each, p in zip(found, together)], "all"))
+        given.append(
+            verdicts.verdict(
+                alone, [verdicts.mark(each, p) for each, p in zip(found, together)], "all"
+            )
+        )
     assert sum(verdict in wrong for verdict in given) <= 10
 
 
@@ -505,7 +711,10 @@ RIVALS = {"against": ["prm", "abc", "ga"], "workspace": ["small", "large"]}
 def marked(holds) -> list[Marked]:
     """Six comparisons, of which those hold of which a function of rival and workspace says so."""
     return [
-        Marked({"against": rival, "group": "mga", "workspace": workspace}, "+" if holds(rival, workspace) else "-")
+        Marked(
+            {"against": rival, "group": "mga", "workspace": workspace},
+            "+" if holds(rival, workspace) else "-",
+        )
         for rival in RIVALS["against"]
         for workspace in RIVALS["workspace"]
     ]
@@ -518,7 +727,10 @@ def marked(holds) -> list[Marked]:
         (lambda rival, workspace: rival == "prm", "against roadmap"),
         (lambda rival, workspace: rival != "ga", "against roadmap and abc"),
         (lambda rival, workspace: workspace == "large", "in large"),
-        (lambda rival, workspace: rival == "prm" or (rival == "ga" and workspace == "small"), "against roadmap; against ga in small"),
+        (
+            lambda rival, workspace: rival == "prm" or (rival == "ga" and workspace == "small"),
+            "against roadmap; against ga in small",
+        ),
     ],
 )
 def test_words_for_where_a_claim_holds(holds, words):
@@ -526,9 +738,15 @@ def test_words_for_where_a_claim_holds(holds, words):
 
 
 def test_words_for_columns_and_for_what_stays_mixed():
-    found = [Marked({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)]
+    found = [
+        Marked({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)
+    ]
     assert verdicts.where_it_holds(found, {}) == "at obstacles other than 5"
-    mixed = [Marked({"method": name}, mark) for name, marks in (("a", "++"), ("b", "+-")) for mark in marks]
+    mixed = [
+        Marked({"method": name}, mark)
+        for name, marks in (("a", "++"), ("b", "+-"))
+        for mark in marks
+    ]
     assert verdicts.where_it_holds(mixed, {}) == "for a; for b (1 of 2)"
     assert verdicts.where_it_holds([Marked({}, "+"), Marked({"against": 1}, "-")], {}) == "(1 of 2)"
 
@@ -555,7 +773,8 @@ def test_precise_and_nothing_there_is_no_effect():
 def places(first: float, second: float) -> pd.DataFrame:
     """Two groups on two problems, where they differ by the given amounts."""
     return pd.concat(
-        table({"a": sample("a"), "b": sample("b", apart)}, problem=problem) for problem, apart in (("first", first), ("second", second))
+        table({"a": sample("a"), "b": sample("b", apart)}, problem=problem)
+        for problem, apart in (("first", first), ("second", second))
     )
 
 
@@ -576,7 +795,10 @@ def test_conditions_of_equal_weight_whatever_their_numbers_of_runs():
     runs = runs[(runs["problem"] == "second") | (runs["repeat"] < 10)]
     assert judged(LOWER | {"pool": ["problem"], "statistic": "median"}, runs)["n"] == UNITS + 10
     few = pd.concat(
-        [table({"a": np.zeros(10), "b": np.full(10, 2.0)}), table({"a": np.zeros(40), "b": np.full(40, -1.0)}, problem="second")]
+        [
+            table({"a": np.zeros(10), "b": np.full(10, 2.0)}),
+            table({"a": np.zeros(40), "b": np.full(40, -1.0)}, problem="second"),
+        ]
     )
     assert judged(LOWER | {"pool": ["problem"]}, few)["effect"] == pytest.approx(-0.5)
 
@@ -586,11 +808,18 @@ def test_any_comparison_may_hold():
     row = judge({"checks": [check], "holds": "any"}, places(2, -1))[0].iloc[0]
     assert (row["verdict"], row["holds"]) == ("supported", "1 of 2")
     assert row["effect"] == pytest.approx(-2)
-    assert judge({"checks": [check], "holds": "any"}, places(-2, -1))[0].iloc[0]["verdict"] == "contradicted"
+    assert (
+        judge({"checks": [check], "holds": "any"}, places(-2, -1))[0].iloc[0]["verdict"]
+        == "contradicted"
+    )
 
 
 def test_runs_of_several_conditions_are_never_mixed():
-    with pytest.raises(Fault, match="claim C1: lower of objective: several values of condition are neither told apart nor pooled"):
+    with pytest.raises(
+        Fault,
+        match="claim C1: lower of objective: several values of condition are neither told apart "
+        "nor pooled",
+    ):
         judged(LOWER, places(1, 1))
     with pytest.raises(Fault, match="several values of method"):
         judged(SHARE | {"where": {"problem": "first"}}, APART)
@@ -618,33 +847,67 @@ def test_the_worst_comparison_is_shown():
 
 def test_factors_across_and_where():
     runs = pd.concat([over_x(0.2), over_x(-0.2).assign(method="other")])
-    check = LOWER | {"across": "particles", "groups": [5], "than": [30, 50], "where": {"method": "plain"}}
+    check = LOWER | {
+        "across": "particles",
+        "groups": [5],
+        "than": [30, 50],
+        "where": {"method": "plain"},
+    }
     assert judged(check, runs)["holds"] == "2 of 2"
     assert judged(check | {"where": {"method": ["other"]}}, runs)["holds"] == "0 of 2"
     every = judge({"checks": [TREND | {"every": ["method"]}]}, runs)[1]
-    assert dict(zip(every["condition"], every["mark"])) == {"method=plain": "+", "method=other": "-"}
+    assert dict(zip(every["condition"], every["mark"])) == {
+        "method=plain": "+",
+        "method=other": "-",
+    }
 
 
 def test_rest_is_what_the_artefact_shows_and_the_check_does_not_name():
     artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b", "d"]}}}
-    figure = {"figure1": {"panels": [{"experiment": "tried", "where": {"method": method}} for method in ("d", "b", "a")]}}
+    figure = {
+        "figure1": {
+            "panels": [
+                {"experiment": "tried", "where": {"method": method}} for method in ("d", "b", "a")
+            ]
+        }
+    }
     check = LOWER | {"than": ["rest"]}
     for known in (artefacts, figure):
-        found = judge({"checks": [check], "artefact": next(iter(known))}, table(TIERS), artefacts=known)[1]
+        found = judge(
+            {"checks": [check], "artefact": next(iter(known))}, table(TIERS), artefacts=known
+        )[1]
         assert sorted(found["comparison"]) == ["a lower than b", "a lower than d"]
     everything = judge({"checks": [check]}, table(TIERS))[1]
-    assert everything["comparison"].to_list() == ["a lower than b", "a lower than c", "a lower than d"]
+    assert everything["comparison"].to_list() == [
+        "a lower than b",
+        "a lower than c",
+        "a lower than d",
+    ]
     ordered = ORDERED | {"order": [["a"], ["rest"], ["d"]]}
-    assert judge({"checks": [ordered], "artefact": "table1"}, table(TIERS), artefacts=artefacts)[0].iloc[0]["holds"] == "2 of 2"
+    assert (
+        judge({"checks": [ordered], "artefact": "table1"}, table(TIERS), artefacts=artefacts)[
+            0
+        ].iloc[0]["holds"]
+        == "2 of 2"
+    )
 
 
 def test_variants_take_the_place_of_what_the_checks_name():
-    runs = pd.concat([table(TIERS), table({"a": sample("a", 9), "b": sample("b")}, workspace="other")])
+    runs = pd.concat(
+        [table(TIERS), table({"a": sample("a", 9), "b": sample("b")}, workspace="other")]
+    )
     claim = {"checks": [LOWER], "variants": {"method": ["a", "d"], "workspace": ["grid", "other"]}}
     summary, details = judge(claim, runs)
-    assert summary["variant"].to_list() == [f"method={m}, workspace={w}" for m in "ad" for w in ("grid", "other")]
+    assert summary["variant"].to_list() == [
+        f"method={m}, workspace={w}" for m in "ad" for w in ("grid", "other")
+    ]
     assert summary["primary"].to_list() == [True, False, False, False]
-    assert summary["verdict"].to_list() == ["supported", "contradicted", "contradicted", "undecided"]
+    assert summary["verdict"].to_list() == [
+        "supported",
+        "contradicted",
+        "contradicted",
+        "undecided",
+    ]
     assert set(details["comparison"]) == {"a lower than b", "d lower than b"}
     metric = {"checks": [LOWER], "variants": {"metric": ["objective", "evaluations"]}}
     runs = runs[runs["workspace"] == "grid"].assign(evaluations=lambda each: -each["objective"])
@@ -695,21 +958,32 @@ def test_no_success_against_some():
 
 
 def test_pick_takes_one_run_of_each_condition():
-    runs = pd.concat([table({"a": [3.0, -1.0, 2.0]}), table({"a": [3.0, 1.0, 2.0]}, problem="second")])
+    runs = pd.concat(
+        [table({"a": [3.0, -1.0, 2.0]}), table({"a": [3.0, 1.0, 2.0]}, problem="second")]
+    )
     check = ALL | {"pick": {"lowest": "objective"}, "every": ["problem"]}
     summary, details = judge({"checks": [check]}, runs)
-    assert (summary.iloc[0]["verdict"], details["mark"].to_list(), details["n"].to_list()) == ("partly", ["+", "-"], [1, 1])
+    assert (summary.iloc[0]["verdict"], details["mark"].to_list(), details["n"].to_list()) == (
+        "partly",
+        ["+", "-"],
+        [1, 1],
+    )
     assert details["p"].isna().all()
     runs["feasible"] = runs["problem"] == "first"
     assert judge({"checks": [check]}, runs)[1]["mark"].to_list() == ["+", "?"]
 
 
 def test_rows_of_one_unit_are_averaged_first():
-    layouts = pd.concat(table({"a": sample(f"a{k}", k), "b": sample(f"b{k}", k + 0.5)}).assign(layout=k) for k in range(8))
+    layouts = pd.concat(
+        table({"a": sample(f"a{k}", k), "b": sample(f"b{k}", k + 0.5)}).assign(layout=k)
+        for k in range(8)
+    )
     layouts["condition"] = layouts["layout"].astype(str)
     row = judged(LOWER | {"replicate": "layout"}, layouts)
     assert (row["n"], row["verdict"]) == (8, "supported")
-    assert judged(SHARE | {"replicate": "layout", "event": {"below": 3.5}}, layouts)["effect"] == 0.5
+    assert (
+        judged(SHARE | {"replicate": "layout", "event": {"below": 3.5}}, layouts)["effect"] == 0.5
+    )
 
 
 def test_where_on_an_outcome_keeps_places_without_such_runs():
@@ -721,13 +995,24 @@ def test_where_on_an_outcome_keeps_places_without_such_runs():
 
 
 def test_rank_is_one_among_the_rows_of_the_artefact(monkeypatch):
-    among = Metric("-", "rank", False, lambda runs, problems: runs.groupby("repeat")["objective"].rank(), among_rows=True)
+    among = Metric(
+        "-",
+        "rank",
+        False,
+        lambda runs, problems: runs.groupby("repeat")["objective"].rank(),
+        among_rows=True,
+    )
     monkeypatch.setitem(metrics.METRICS, "rank", among)
     artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b", "d"]}}}
-    claim = {"checks": [LOWER | {"metric": "rank", "than": ["d"], "margin": 0.5}], "artefact": "table1"}
-    row = judge(claim, table({"a": np.zeros(9), "b": np.ones(9), "c": np.full(9, 2.0), "d": np.full(9, 3.0)}), artefacts=artefacts)[0].iloc[
-        0
-    ]
+    claim = {
+        "checks": [LOWER | {"metric": "rank", "than": ["d"], "margin": 0.5}],
+        "artefact": "table1",
+    }
+    row = judge(
+        claim,
+        table({"a": np.zeros(9), "b": np.ones(9), "c": np.full(9, 2.0), "d": np.full(9, 3.0)}),
+        artefacts=artefacts,
+    )[0].iloc[0]
     assert (row["verdict"], row["effect"]) == ("supported", -2)
 
 
@@ -743,12 +1028,24 @@ PRINTED = pd.DataFrame(
         "value": [5.0, 6.0, 4.0],
     }
 )
-TABLE = {"table1": {"experiment": "tried", "published": "table1.csv", "where": {"method": ["a", "b", "c"]}}}
+TABLE = {
+    "table1": {
+        "experiment": "tried",
+        "published": "table1.csv",
+        "where": {"method": ["a", "b", "c"]},
+    }
+}
 
 
-def with_printed(check: dict, printed: pd.DataFrame = PRINTED, **material) -> tuple[pd.Series, pd.DataFrame]:
+def with_printed(
+    check: dict, printed: pd.DataFrame = PRINTED, **material
+) -> tuple[pd.Series, pd.DataFrame]:
     summary, details = judge(
-        {"checks": [check], "artefact": "table1"}, table(TIERS), published={"table1": printed}, artefacts=TABLE, **material
+        {"checks": [check], "artefact": "table1"},
+        table(TIERS),
+        published={"table1": printed},
+        artefacts=TABLE,
+        **material,
     )
     return summary.iloc[0], details
 
@@ -773,13 +1070,18 @@ def test_a_variant_stands_beside_the_numbers_of_its_method():
 def test_printed_counts_are_shares():
     counts = PRINTED.assign(metric="claimed_feasible", statistic="count", value=[2.0, 8.0, 1.0])
     _, details = judge(
-        {"checks": [LOWER | {"metric": "claimed_feasible"}], "artefact": "table1"}, TRUTHS, published={"table1": counts}, artefacts=TABLE
+        {"checks": [LOWER | {"metric": "claimed_feasible"}], "artefact": "table1"},
+        TRUTHS,
+        published={"table1": counts},
+        artefacts=TABLE,
     )
     assert details["effect_published"].to_list() == [pytest.approx(-0.6)]
 
 
 def test_slopes_that_should_be_equal_are_equal_on_every_processor():
-    """Their test ranks them: rounding would tell constants apart, and rises from falls by the same amount."""
+    """Their test ranks them: rounding would tell constants apart, and rises from falls by the same
+    amount.
+    """
     x = np.array([5.0, 10.0, 15.0, 20.0, 25.0])
     constant = np.repeat(np.arange(280, 320)[:, None] * 0.5, 5, axis=1)
     assert not trend._slopes(x, constant).any()
@@ -789,33 +1091,73 @@ def test_slopes_that_should_be_equal_are_equal_on_every_processor():
 
 
 def test_trend_over_printed_numbers():
-    printed = pd.DataFrame({"particles": [5, 10, 20, 30, 50], "metric": "objective", "statistic": "mean", "n": 10, "unit": "m"})
+    printed = pd.DataFrame(
+        {
+            "particles": [5, 10, 20, 30, 50],
+            "metric": "objective",
+            "statistic": "mean",
+            "n": 10,
+            "unit": "m",
+        }
+    )
     artefacts = {"table1": {"experiment": "tried", "published": "table1.csv"}}
     claim = {"checks": [TREND], "artefact": "table1"}
-    row = judge(claim, over_x(0.2), published={"table1": printed.assign(value=[1, 3, 2, 4, 9])}, artefacts=artefacts)[0].iloc[0]
+    row = judge(
+        claim,
+        over_x(0.2),
+        published={"table1": printed.assign(value=[1, 3, 2, 4, 9])},
+        artefacts=artefacts,
+    )[0].iloc[0]
     assert (row["published"], row["size"]) == ("1 of 1", "larger")
-    row = judge(claim, over_x(0.2), published={"table1": printed.assign(value=[9, 7, 8, 2, 1])}, artefacts=artefacts)[0].iloc[0]
+    row = judge(
+        claim,
+        over_x(0.2),
+        published={"table1": printed.assign(value=[9, 7, 8, 2, 1])},
+        artefacts=artefacts,
+    )[0].iloc[0]
     assert (row["published"], row["size"]) == ("0 of 1", "opposite")
 
 
 def test_conditions_that_the_paper_does_not_tell_apart_are_not_printed():
     runs = pd.concat([table(TIERS), table({"a": sample("other")}, workspace="other")])
-    check = LOWER | {"across": "workspace", "groups": ["grid"], "than": ["other"], "where": {"method": "a"}}
-    row = judge({"checks": [check], "artefact": "table1"}, runs, published={"table1": PRINTED}, artefacts=TABLE)[0].iloc[0]
+    check = LOWER | {
+        "across": "workspace",
+        "groups": ["grid"],
+        "than": ["other"],
+        "where": {"method": "a"},
+    }
+    row = judge(
+        {"checks": [check], "artefact": "table1"},
+        runs,
+        published={"table1": PRINTED},
+        artefacts=TABLE,
+    )[0].iloc[0]
     assert row["published"] == "not printed"
 
 
 def test_margin_is_a_share_or_the_printed_difference_where_that_is_smaller():
     _, details = with_printed(LOWER | {"than": ["b", "c", "d"], "margin": {"published": 0.01}})
     assert details["margin"].to_list() == pytest.approx([0.01, 0.01 * 1.2, 0.01 * 2.5])
-    _, details = with_printed(LOWER | {"than": ["b", "c"], "margin": {"published": 0.5}, "scale": "relative"})
-    assert details["margin"].to_list() == pytest.approx([1 / 6, 0.5])  # the printed difference of a and c points the other way
-    truths = judge({"checks": [LOWER | {"metric": "claimed_feasible", "margin": {"published": 0.01}}]}, TRUTHS)[1]
+    _, details = with_printed(
+        LOWER | {"than": ["b", "c"], "margin": {"published": 0.5}, "scale": "relative"}
+    )
+    assert details["margin"].to_list() == pytest.approx(
+        [1 / 6, 0.5]
+    )  # the printed difference of a and c points the other way
+    truths = judge(
+        {"checks": [LOWER | {"metric": "claimed_feasible", "margin": {"published": 0.01}}]}, TRUTHS
+    )[1]
     assert truths["margin"].to_list() == [0.01]
 
 
 @pytest.mark.parametrize(
-    ("printed", "size"), [([5.0, 6.0], "alike"), ([5.0, 5.2], "larger"), ([5.0, 9.0], "smaller"), ([6.0, 5.0], "opposite")]
+    ("printed", "size"),
+    [
+        ([5.0, 6.0], "alike"),
+        ([5.0, 5.2], "larger"),
+        ([5.0, 9.0], "smaller"),
+        ([6.0, 5.0], "opposite"),
+    ],
 )
 def test_size_beside_the_printed_effect(printed, size):
     assert with_printed(LOWER, PRINTED[:2].assign(value=printed))[0]["size"] == size
@@ -840,7 +1182,9 @@ def test_arithmetic_of_printed_numbers():
 
 
 def test_arithmetic_matches_cells_by_the_columns_that_no_selector_names():
-    quoted = pd.DataFrame({"place": ["p1", "p2"], "method": ["c", "a"], "metric": "objective", "value": [4.0, 5.0]})
+    quoted = pd.DataFrame(
+        {"place": ["p1", "p2"], "method": ["c", "a"], "metric": "objective", "value": [4.0, 5.0]}
+    )
     check = {
         "test": "published_arithmetic",
         "form": "equal",
@@ -849,7 +1193,11 @@ def test_arithmetic_matches_cells_by_the_columns_that_no_selector_names():
     }
     published = {"table1": PRINTED, "text": quoted}
     row, details = (each.iloc[0] for each in judge({"checks": [check]}, published=published))
-    assert (row["verdict"], row["holds"], details["condition"]) == ("supported", "2 of 2", "place=p1, method=c")
+    assert (row["verdict"], row["holds"], details["condition"]) == (
+        "supported",
+        "2 of 2",
+        "place=p1, method=c",
+    )
     published["text"] = quoted.assign(value=[4.0, 5.02])
     assert judge({"checks": [check]}, published=published)[0].iloc[0]["holds"] == "1 of 2"
     published["text"] = quoted.assign(method=["c", "unknown"])
@@ -857,15 +1205,30 @@ def test_arithmetic_matches_cells_by_the_columns_that_no_selector_names():
 
 
 def test_function_of_the_study():
-    check = {"test": "function", "name": "counted", "effect": "runs", "effect_unit": "-", "experiment": "tried", "where": {"method": "a"}}
+    check = {
+        "test": "function",
+        "name": "counted",
+        "effect": "runs",
+        "effect_unit": "-",
+        "experiment": "tried",
+        "where": {"method": "a"},
+    }
 
     def counted(check, results, published):
         n = int((results["tried"].runs["method"] == check.where["method"]).sum())
         return ("+" if n == UNITS else "-"), float(n), None, n
 
     row = judged(check, APART, functions={"counted": counted})
-    assert (row["verdict"], row["effect"], row["effect_size_name"], row["n"]) == ("supported", UNITS, "runs", UNITS)
-    assert judged(check | {"where": {"method": "z"}}, APART, functions={"counted": counted})["verdict"] == "contradicted"
+    assert (row["verdict"], row["effect"], row["effect_size_name"], row["n"]) == (
+        "supported",
+        UNITS,
+        "runs",
+        UNITS,
+    )
+    assert (
+        judged(check | {"where": {"method": "z"}}, APART, functions={"counted": counted})["verdict"]
+        == "contradicted"
+    )
     with pytest.raises(Fault, match="claim C1: function counted: unknown; did you mean count"):
         judged(check, APART, functions={"count": counted})
     assert judged(check, functions={"counted": counted})["verdict"] == "untestable"
@@ -875,10 +1238,13 @@ def test_function_of_the_study():
 
 
 def test_chance_of_a_small_experiment():
-    # The difference of two means of n units is normal with variance 2 / n; it is negative with probability Phi(0.5 sqrt(n / 2)).
+    # The difference of two means of n units is normal with variance 2 / n; it is negative with
+    # probability Phi(0.5 sqrt(n / 2)).
     runs = table({"a": sample("a", n=2000), "b": sample("b", 0.5, n=2000)})
     for n, expected in [(2, 0.691), (10, 0.868), (50, 0.994)]:
-        assert judged(LOWER, runs, repeats={"tried": n})["replication_probability"] == pytest.approx(expected, abs=0.04)
+        assert judged(LOWER, runs, repeats={"tried": n})[
+            "replication_probability"
+        ] == pytest.approx(expected, abs=0.04)
     assert math.isnan(judged(LOWER, runs, repeats={})["replication_probability"])
     assert with_printed(LOWER, repeats={})[0]["replication_probability"] > 0.9
 
@@ -908,13 +1274,31 @@ def test_times_are_compared_by_ratio_only(monkeypatch):
 # Degenerate runs.
 
 
-@pytest.mark.parametrize("check", [LOWER, LOWER | {"paired": True}, LOWER | {"statistic": "median"}, LOWER | {"scale": "relative"}])
+@pytest.mark.parametrize(
+    "check",
+    [
+        LOWER,
+        LOWER | {"paired": True},
+        LOWER | {"statistic": "median"},
+        LOWER | {"scale": "relative"},
+    ],
+)
 def test_no_difference_in_any_unit(check):
-    """Units that do not differ at all say nothing of those that may, unless there are enough of them."""
+    """Units that do not differ at all say nothing of those that may, unless there are enough of
+    them.
+    """
     for n, verdict in ((9, "undecided"), (58, "undecided"), (59, "no effect")):
-        summary, details = judge({"checks": [check]}, table({"a": np.full(n, 3.0), "b": np.full(n, 3.0)}))
+        summary, details = judge(
+            {"checks": [check]}, table({"a": np.full(n, 3.0), "b": np.full(n, 3.0)})
+        )
         row = summary.iloc[0]
-        assert (row["verdict"], row["p"], row["effect"], row["low95"], row["high95"]) == (verdict, 1, 0, 0, 0)
+        assert (row["verdict"], row["p"], row["effect"], row["low95"], row["high95"]) == (
+            verdict,
+            1,
+            0,
+            0,
+            0,
+        )
         assert details["least_detectable"].isna().all()
 
 
@@ -922,7 +1306,9 @@ def test_no_difference_in_any_unit(check):
 def test_what_never_happened_may_happen(paired):
     """No success of 100 against none of 100: by rule of three either may have up to 3 %."""
     check = LOWER | {"metric": "claimed_feasible", "paired": paired, "margin": 0.01}
-    never = table({"a": np.zeros(100, dtype=bool), "b": np.zeros(100, dtype=bool)}, metric="claimed_feasible")
+    never = table(
+        {"a": np.zeros(100, dtype=bool), "b": np.zeros(100, dtype=bool)}, metric="claimed_feasible"
+    )
     summary, details = judge({"checks": [check]}, never)
     assert summary.iloc[0]["verdict"] == "undecided"
     assert 0.01 < details.iloc[0]["high95"] < 0.04
@@ -950,19 +1336,35 @@ ANY_KIND = {
 @pytest.mark.parametrize("n", [1, 5, 20])
 def test_degenerate_values_give_no_fault(n, value):
     runs = pd.concat(
-        table({name: np.full(n, value) for name in "abcd"}).assign(problem_size=size, condition=str(size)) for size in (1, 2, 3, 4)
+        table({name: np.full(n, value) for name in "abcd"}).assign(
+            problem_size=size, condition=str(size)
+        )
+        for size in (1, 2, 3, 4)
     )
     one_size = {
-        kind: check | {"where": check.get("where", {}) | {"problem_size": 1}} for kind, check in ANY_KIND.items() if kind != "trend"
+        kind: check | {"where": check.get("where", {}) | {"problem_size": 1}}
+        for kind, check in ANY_KIND.items()
+        if kind != "trend"
     }
-    checks = {f"C{number}": check for number, check in enumerate((ANY_KIND | one_size).values(), start=1)}
-    together = [Claim(id=name, place="1", statement="It is so.", checks=[check]) for name, check in checks.items()]
+    checks = {
+        f"C{number}": check for number, check in enumerate((ANY_KIND | one_size).values(), start=1)
+    }
+    together = [
+        Claim(id=name, place="1", statement="It is so.", checks=[check])
+        for name, check in checks.items()
+    ]
     results = {"tried": Results(runs.reset_index(drop=True), PROBLEMS, pd.DataFrame())}
-    found = judging.judge(together, results, {}, {}, "study", {}, variant_of={}, paired={}, repeats={"tried": 10})[0].set_index("id")
+    found = judging.judge(
+        together, results, {}, {}, "study", {}, variant_of={}, paired={}, repeats={"tried": 10}
+    )[0].set_index("id")
     assert set(found["verdict"]) <= {"no effect", "undecided", "contradicted", "supported"}
     if math.isnan(value) or n < 6:
         # One counterexample decides `all`.
-        few = found.drop(index=[] if math.isnan(value) else [name for name, check in checks.items() if check.get("threshold") == "all"])
+        few = found.drop(
+            index=[]
+            if math.isnan(value)
+            else [name for name, check in checks.items() if check.get("threshold") == "all"]
+        )
         assert set(few["verdict"]) == {"undecided"}
         assert few["reason"].all()
 
@@ -983,12 +1385,18 @@ def test_without_runs_a_claim_is_untestable():
 
 def test_no_run_of_the_conditions():
     row = judged(SHARE | {"where": {"method": "z"}}, APART)
-    assert (row["verdict"], row["reason"]) == ("untestable", "no run is of the conditions that the claim names")
+    assert (row["verdict"], row["reason"]) == (
+        "untestable",
+        "no run is of the conditions that the claim names",
+    )
 
 
 def test_metric_that_the_runs_do_not_have():
     row = judged(LOWER | {"metric": "evaluations"}, APART)
-    assert (row["verdict"], row["reason"]) == ("untestable", "the runs of tried have no evaluations")
+    assert (row["verdict"], row["reason"]) == (
+        "untestable",
+        "the runs of tried have no evaluations",
+    )
 
 
 def test_reported_check_that_cannot_be_judged_decides_nothing():
@@ -1001,8 +1409,16 @@ def test_reported_check_that_cannot_be_judged_decides_nothing():
 def test_relative_to_zero():
     runs = table({"a": np.ones(9), "b": np.zeros(9)})
     row = judged(LOWER | {"scale": "relative", "statistic": "mean"}, runs)
-    assert (row["verdict"], row["reason"]) == ("undecided", "relative to a value that is zero or does not exist")
-    assert judged(WITHIN | {"scale": "relative"}, table({"a": np.zeros(9), "b": np.zeros(9)}))["verdict"] == "undecided"
+    assert (row["verdict"], row["reason"]) == (
+        "undecided",
+        "relative to a value that is zero or does not exist",
+    )
+    assert (
+        judged(WITHIN | {"scale": "relative"}, table({"a": np.zeros(9), "b": np.zeros(9)}))[
+            "verdict"
+        ]
+        == "undecided"
+    )
 
 
 # What must not matter, and what must.
@@ -1012,27 +1428,43 @@ def test_relative_to_zero():
 def test_order_of_the_runs_never_changes_a_byte(name):
     check, runs = CASES[name][0]
     mixed = runs.sample(frac=1, random_state=1)
-    for table_of_runs, table_of_mixed in zip(judge({"checks": [check]}, runs), judge({"checks": [check]}, mixed)):
+    for table_of_runs, table_of_mixed in zip(
+        judge({"checks": [check]}, runs), judge({"checks": [check]}, mixed)
+    ):
         assert table_of_runs.to_csv() == table_of_mixed.to_csv()
 
 
 OPPOSITE = {"lower": "higher", "up": "down", "at_least": "at_most"}
 OPPOSITE |= {value: key for key, value in OPPOSITE.items()}
-REVERSED = {"supported": "contradicted", "contradicted": "supported", "no effect": "no effect", "undecided": "undecided"}
+REVERSED = {
+    "supported": "contradicted",
+    "contradicted": "supported",
+    "no effect": "no effect",
+    "undecided": "undecided",
+}
 
 
 @pytest.mark.parametrize("apart", [-1.0, -0.3, 0.0, 0.3, 1.0])
-@pytest.mark.parametrize("options", [{}, {"paired": True}, {"statistic": "mean"}, {"statistic": "iqr"}, {"statistic": "min"}])
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"paired": True}, {"statistic": "mean"}, {"statistic": "iqr"}, {"statistic": "min"}],
+)
 def test_exchanging_the_direction_reverses_the_verdict(options, apart):
     runs = table({"a": sample("a"), "b": sample("b", apart, std=1 + abs(apart))})
     check = LOWER | options
-    assert judged(check | {"direction": "higher"}, runs)["verdict"] == REVERSED[judged(check, runs)["verdict"]]
+    assert (
+        judged(check | {"direction": "higher"}, runs)["verdict"]
+        == REVERSED[judged(check, runs)["verdict"]]
+    )
 
 
 @pytest.mark.parametrize("name", [name for name in CASES if CASES[name][0][0].get("direction")])
 def test_exchanging_the_direction_contradicts_what_was_supported(name):
     check, runs = CASES[name][0]
-    assert judged(check | {"direction": OPPOSITE[check["direction"]]}, runs)["verdict"] == "contradicted"
+    assert (
+        judged(check | {"direction": OPPOSITE[check["direction"]]}, runs)["verdict"]
+        == "contradicted"
+    )
 
 
 def test_the_decisive_comparison_is_marked_even_among_equal_ones():
@@ -1058,12 +1490,16 @@ def test_columns():
 
 
 def normal_runs(trial: int, n: int, shift: float) -> pd.DataFrame:
-    """Runs of two methods, drawn at random: b's mean is by `shift` above a's, both have standard deviation 1."""
+    """Runs of two methods, drawn at random: b's mean is by `shift` above a's, both have standard
+    deviation 1.
+    """
     a, b = generator(f"trial {trial}").normal(size=(2, n))
     return table({"a": a, "b": shift + b})
 
 
-@pytest.mark.parametrize(("shift", "truth"), [(0.6, "supported"), (-0.6, "contradicted"), (0.0, "no effect")])
+@pytest.mark.parametrize(
+    ("shift", "truth"), [(0.6, "supported"), (-0.6, "contradicted"), (0.0, "no effect")]
+)
 def test_verdict_from_many_runs_is_right_95_times_in_100(shift, truth):
     found = [judged(LOWER, normal_runs(trial, 400, shift))["verdict"] for trial in range(100)]
     assert found.count(truth) >= 95

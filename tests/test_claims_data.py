@@ -1,4 +1,6 @@
-"""Claims and assumptions of the five studies: they fit their models, are complete, and name what exists."""
+"""Claims and assumptions of the five studies: they fit their models, are complete, and name what
+exists.
+"""
 
 import string
 import typing
@@ -47,13 +49,29 @@ def all_checks(keys=CLAIMS):
 
 
 def names_by_column(claim):
-    """(column, value) of every value that the checks of a claim name, `rest` left out, and of its variants."""
+    """(column, value) of every value that the checks of a claim name, `rest` left out, and of its
+    variants.
+    """
     for check in claim["checks"]:
         across = check.get("across", "method")
-        tiers = [check.get("groups", []), check.get("than", []), *check.get("pairs", []), *check.get("order", [])]
+        tiers = [
+            check.get("groups", []),
+            check.get("than", []),
+            *check.get("pairs", []),
+            *check.get("order", []),
+        ]
         yield from ((across, group) for group in chain(*tiers) if group != "rest")
-        yield from ((column, value) for column, given in check.get("where", {}).items() for value in one_or_list(given))
-        yield from ((key, value) for key in ("metric", "experiment") if key in check for value in one_or_list(check[key]))
+        yield from (
+            (column, value)
+            for column, given in check.get("where", {}).items()
+            for value in one_or_list(given)
+        )
+        yield from (
+            (key, value)
+            for key in ("metric", "experiment")
+            if key in check
+            for value in one_or_list(check[key])
+        )
         if "pick" in check:
             yield "metric", check["pick"]["lowest"]
     for column, values in claim.get("variants", {}).items():
@@ -62,7 +80,9 @@ def names_by_column(claim):
 
 @pytest.mark.parametrize("key", CLAIMS)
 def test_claims_are_complete_and_numbered(key):
-    assert [claim["id"] for claim in claims(key)] == [f"C{number + 1}" for number in range(CLAIMS[key])]
+    assert [claim["id"] for claim in claims(key)] == [
+        f"C{number + 1}" for number in range(CLAIMS[key])
+    ]
 
 
 def test_number_of_claims_and_deciding_checks():
@@ -84,38 +104,63 @@ def test_own_findings_are_told_apart():
 
 def test_published_margins():
     """Claims with a margin that is read from the printed numbers."""
-    printed = [claim for key in CLAIMS for claim in claims(key) if any(isinstance(check.get("margin"), dict) for check in claim["checks"])]
+    printed = [
+        claim
+        for key in CLAIMS
+        for claim in claims(key)
+        if any(isinstance(check.get("margin"), dict) for check in claim["checks"])
+    ]
     assert len(printed) == 40
 
 
 @pytest.mark.parametrize("key", CLAIMS)
 def test_first_value_of_a_variant_is_what_the_checks_name(key):
-    """Or the checks name nothing of its column. Lists have equally many members, of which a claim may name some only."""
+    """Or the checks name nothing of its column. Lists have equally many members, of which a claim
+    may name some only.
+    """
     for claim in claims(key):
         named = {(column, name) for column, name in names_by_column(claim | {"variants": {}})}
         for column, values in claim.get("variants", {}).items():
             free = all(column != other for other, _ in named)
-            assert free or any((column, name) in named for name in one_or_list(values[0])), claim["id"]
+            assert free or any((column, name) in named for name in one_or_list(values[0])), claim[
+                "id"
+            ]
             assert len({len(one_or_list(value)) for value in values}) == 1, claim["id"]
 
 
 @pytest.mark.parametrize("key", CLAIMS)
 def test_the_interpretation_in_force_decides(key):
     """Methods that are another interpretation of a published one are in variants alone."""
-    others = {name for name, method in checked.read(STUDIES / key / "experiments.yaml")["methods"].items() if "variant_of" in method}
+    others = {
+        name
+        for name, method in checked.read(STUDIES / key / "experiments.yaml")["methods"].items()
+        if "variant_of" in method
+    }
     for claim in claims(key):
-        named = {name for column, name in names_by_column(claim | {"variants": {}}) if column == "method"}
+        named = {
+            name for column, name in names_by_column(claim | {"variants": {}}) if column == "method"
+        }
         assert not named & others, claim["id"]
 
 
 def test_names_of_song2016():
     study = checked.read(STUDIES / "song2016" / "experiments.yaml")
     artefacts = checked.read(STUDIES / "song2016" / "artefacts.yaml")
-    known = {"method": study["methods"], "problem": study["problems"], "experiment": study["experiments"], "metric": METRICS}
+    known = {
+        "method": study["methods"],
+        "problem": study["problems"],
+        "experiment": study["experiments"],
+        "metric": METRICS,
+    }
     known["feasible"] = [True, False]
     for claim in claims("song2016"):
-        assert {(column, name) for column, name in names_by_column(claim) if name not in known[column]} == set(), claim["id"]
-        assert set(one_or_list(claim["artefact"])) <= artefacts["tables"].keys() | artefacts["figures"].keys()
+        assert {
+            (column, name) for column, name in names_by_column(claim) if name not in known[column]
+        } == set(), claim["id"]
+        assert (
+            set(one_or_list(claim["artefact"]))
+            <= artefacts["tables"].keys() | artefacts["figures"].keys()
+        )
 
 
 @pytest.mark.parametrize("key", CLAIMS)
@@ -130,7 +175,9 @@ def test_assumptions_are_numbered_and_name_claims(key):
         assert set(assumption.get("claims", [])) <= known
         default = assumption["default"]
         in_force = default.values() if isinstance(default, dict) else [default]
-        assert not set(in_force) & set(assumption["alternatives"]), f"{assumption['id']}: the default is not an alternative"
+        assert not set(in_force) & set(assumption["alternatives"]), (
+            f"{assumption['id']}: the default is not an alternative"
+        )
 
 
 def keys_of_data(data):
@@ -153,9 +200,14 @@ def models_in(annotation):
     return [model for part in typing.get_args(annotation) for model in models_in(part)]
 
 
-@pytest.mark.parametrize(("name", "model"), [("claims", study_claims.ClaimsFile), ("assumptions", study_claims.AssumptionsFile)])
+@pytest.mark.parametrize(
+    ("name", "model"),
+    [("claims", study_claims.ClaimsFile), ("assumptions", study_claims.AssumptionsFile)],
+)
 def test_no_key_of_a_file_is_unused(name, model):
-    used = {name}.union(*(keys_of_data({"claims": claims, "assumptions": assumptions}[name](key)) for key in CLAIMS))
+    used = {name}.union(
+        *(keys_of_data({"claims": claims, "assumptions": assumptions}[name](key)) for key in CLAIMS)
+    )
     assert keys_of(model) - used == set()
 
 
@@ -167,12 +219,27 @@ def test_no_key_of_a_kind_of_test_is_unused(name):
 
 
 FAULTS = {
-    "a check without a margin": ({"margin": None}, "checks: 0: margin: missing key; the smallest effect that matters"),
-    "a misspelt key": ({"direktion": "lower"}, "checks: 0: direktion: unknown key; did you mean direction?"),
-    "a misspelt kind of test": ({"test": "lowr"}, "checks: 0: test: lowr: unknown; did you mean lower?"),
+    "a check without a margin": (
+        {"margin": None},
+        "checks: 0: margin: missing key; the smallest effect that matters",
+    ),
+    "a misspelt key": (
+        {"direktion": "lower"},
+        "checks: 0: direktion: unknown key; did you mean direction?",
+    ),
+    "a misspelt kind of test": (
+        {"test": "lowr"},
+        "checks: 0: test: lowr: unknown; did you mean lower?",
+    ),
     "groups without than": ({"than": None}, "either groups and than, or pairs"),
-    "an unknown statistic": ({"statistic": "meen"}, "checks: 0: statistic: meen: unknown; did you mean mean?"),
-    "a margin of nothing": ({"margin": 0}, "checks: 0: margin: 0: expected the smallest effect that matters"),
+    "an unknown statistic": (
+        {"statistic": "meen"},
+        "checks: 0: statistic: meen: unknown; did you mean mean?",
+    ),
+    "a margin of nothing": (
+        {"margin": 0},
+        "checks: 0: margin: 0: expected the smallest effect that matters",
+    ),
     "no check that decides": ({"secondary": True}, "checks: "),
     "a share without a side": ({"test": "share", "threshold": 0.5}, "unknown key"),
 }
@@ -181,9 +248,23 @@ FAULTS = {
 @pytest.mark.parametrize("name", FAULTS)
 def test_faults(name):
     change, message = FAULTS[name]
-    check = {"test": "lower", "experiment": "e", "metric": "length", "groups": ["a"], "than": ["b"], "direction": "lower", "margin": 0.1}
+    check = {
+        "test": "lower",
+        "experiment": "e",
+        "metric": "length",
+        "groups": ["a"],
+        "than": ["b"],
+        "direction": "lower",
+        "margin": 0.1,
+    }
     check = {key: value for key, value in (check | change).items() if value is not None}
-    claim = {"id": "C1", "place": "1", "statement": "a is shorter than b.", "artefact": "table1", "checks": [check]}
+    claim = {
+        "id": "C1",
+        "place": "1",
+        "statement": "a is shorter than b.",
+        "artefact": "table1",
+        "checks": [check],
+    }
     with pytest.raises(checked.Fault) as fault:
         parsed(study_claims.ClaimsFile, {"claims": [claim]}, "here")
     assert message in str(fault.value)

@@ -1,7 +1,9 @@
-"""Every claim of the five papers on runs where its sentence is true and where it is false: it has to come out supported, and not.
+"""Every claim of the five papers on runs where its sentence is true and where it is false: it has
+to come out supported, and not.
 
-The runs are made from the claim's own checks, by large effects and small noise, so a claim whose checks contradict each other fails here.
-Claims that ask a function or printed numbers have data of their own.
+The runs are made from the claim's own checks, by large effects and small noise, so a claim whose
+checks contradict each other fails here. Claims that ask a function or printed numbers have data of
+their own.
 """
 
 import itertools
@@ -29,7 +31,16 @@ from bezierplan.workspaces.seeds import generator
 UNITS, LAYOUTS = 80, 8
 # A level is so many times the one below; single runs are about so much off, as a share.
 STEP, NOISE = 3.0, 0.0005
-TRUTHS = {"claimed_feasible", "feasible", "optimal", "near_optimal", "infeasible", "keeps_distance", "best_corridor", "collided"}
+TRUTHS = {
+    "claimed_feasible",
+    "feasible",
+    "optimal",
+    "near_optimal",
+    "infeasible",
+    "keeps_distance",
+    "best_corridor",
+    "collided",
+}
 SPREADS = ("iqr", "std", "range")
 PROBLEM = Problem("", from_lines(["..", ".."], 1.0, "m"), (0.5, 0.5), (1.5, 1.5))
 FALSE_VERDICTS = {"contradicted", "no effect", "partly"}
@@ -37,12 +48,17 @@ FALSE_VERDICTS = {"contradicted", "no effect", "partly"}
 
 @cache
 def published(key):
-    return {file.stem: pd.read_csv(file) for file in sorted((STUDIES / key / "published").glob("*.csv"))}
+    return {
+        file.stem: pd.read_csv(file) for file in sorted((STUDIES / key / "published").glob("*.csv"))
+    }
 
 
 @cache
 def artefacts(key):
-    return {name: artefact.plain() for name, artefact in (study(key).tables | study(key).figures).items()}
+    return {
+        name: artefact.plain()
+        for name, artefact in (study(key).tables | study(key).figures).items()
+    }
 
 
 @cache
@@ -51,23 +67,35 @@ def claims_of(key) -> list[dict]:
 
 
 def deciding(key, claim) -> list[dict]:
-    """The deciding checks of the deciding variant, `rest` filled in, seconds replaced by the work that counts."""
+    """The deciding checks of the deciding variant, `rest` filled in, seconds replaced by the work
+    that counts.
+    """
     material = Material({}, published(key), artefacts(key), {}, {}, {}, {}, {})
     sentence = Claim.model_validate(claim)
     first, *_ = variants.variants(sentence)
     checks = [comparisons.with_rest(check, sentence, material) for check in sentence.checks]
-    return [variants.with_work(check)[0].plain() for check in variants.in_variant(checks, first, first) if check.primary]
+    return [
+        variants.with_work(check)[0].plain()
+        for check in variants.in_variant(checks, first, first)
+        if check.primary
+    ]
 
 
 def is_generated(claim) -> bool:
-    return all(issubclass(kinds()[check["test"]], OfRuns) for check in claim["checks"] if "secondary" not in check)
+    return all(
+        issubclass(kinds()[check["test"]], OfRuns)
+        for check in claim["checks"]
+        if "secondary" not in check
+    )
 
 
 def is_untestable(claim) -> bool:
     return any(check["test"] == "untestable" for check in claim["checks"])
 
 
-UNTESTABLE = [(key, claim["id"]) for key in KEYS for claim in claims_of(key) if is_untestable(claim)]
+UNTESTABLE = [
+    (key, claim["id"]) for key in KEYS for claim in claims_of(key) if is_untestable(claim)
+]
 CASES = [(key, claim["id"]) for key in KEYS for claim in claims_of(key) if not is_untestable(claim)]
 GENERATED = [(key, claim["id"]) for key in KEYS for claim in claims_of(key) if is_generated(claim)]
 
@@ -116,15 +144,23 @@ def factors(key, claim, checks, experiment) -> dict[str, list]:
 
 
 def levels(checks, truth, values) -> dict[tuple, dict]:
-    """(metric, is it about spread?, column) -> value of the column -> (level, factor): what lies above what."""
+    """(metric, is it about spread?, column) -> value of the column -> (level, factor): what lies
+    above what.
+    """
     edges, equal = defaultdict(set), defaultdict(dict)
     for check in checks:
         place = (check["metric"], check.get("statistic") in SPREADS, column_of(check))
         match check["test"]:
             case "lower":
-                pairs = check["pairs"] if "pairs" in check else itertools.product(check["groups"], check["than"])
+                pairs = (
+                    check["pairs"]
+                    if "pairs" in check
+                    else itertools.product(check["groups"], check["than"])
+                )
             case "ordered":
-                pairs = itertools.chain.from_iterable(itertools.product(*tiers) for tiers in itertools.pairwise(check["order"]))
+                pairs = itertools.chain.from_iterable(
+                    itertools.product(*tiers) for tiers in itertools.pairwise(check["order"])
+                )
             case "trend":
                 x = sorted(values.get(check["x"], [])) if check["x"] in values else []
                 pairs = list(itertools.pairwise(x))
@@ -172,20 +208,35 @@ def of_event(check, happens) -> np.ndarray:
     if "event" not in check:
         return happens
     ((word, limit),) = check["event"].items()
-    other = {"below": (limit, limit - 1), "at_most": (limit + 1, limit), "above": (limit, limit + 1), "at_least": (limit - 1, limit)}
+    other = {
+        "below": (limit, limit - 1),
+        "at_most": (limit + 1, limit),
+        "above": (limit, limit + 1),
+        "at_least": (limit - 1, limit),
+    }
     return np.where(happens, *reversed(other.get(word, (limit + 1, limit))))
 
 
 def made(key, claim, truth) -> dict[str, Results]:
     """Results by experiment on which the claim's sentence is true, or its contrary."""
     checks = deciding(key, claim)
-    names = list(dict.fromkeys(name for check in checks for name in one_or_list(check["experiment"])))
+    names = list(
+        dict.fromkeys(name for check in checks for name in one_or_list(check["experiment"]))
+    )
     results = {}
     for name in names:
         own = [check for check in checks if name in one_or_list(check["experiment"])]
         columns = factors(key, claim, checks, name)
-        repeats = range(1 if columns.get("layout", [0])[-1] == UNITS - 1 else 12 if "layout" in columns else UNITS)
-        rows = pd.DataFrame(itertools.product(*columns.values(), repeats), columns=[*columns, "repeat"]).assign(experiment=name)
+        repeats = range(
+            1
+            if columns.get("layout", [0])[-1] == UNITS - 1
+            else 12
+            if "layout" in columns
+            else UNITS
+        )
+        rows = pd.DataFrame(
+            itertools.product(*columns.values(), repeats), columns=[*columns, "repeat"]
+        ).assign(experiment=name)
         rng = generator(f"{key}/{claim['id']}/{name}/{truth}")
         rows["feasible"] = True
         for check in claim["checks"]:
@@ -197,10 +248,21 @@ def made(key, claim, truth) -> dict[str, Results]:
                 rows[check["metric"]] = of_event(check, happened(check, truth, len(rows), rng))
         above = levels(checks, truth, columns)
         for metric in {place[0] for place in above}:
-            rank, most, factor, offset = np.zeros(len(rows)), 1, np.ones(len(rows)), np.zeros(len(rows))
+            rank, most, factor, offset = (
+                np.zeros(len(rows)),
+                1,
+                np.ones(len(rows)),
+                np.zeros(len(rows)),
+            )
             spread = np.zeros(len(rows))
-            for (_, spreads, column), ranks in ((place, ranks) for place, ranks in above.items() if place[0] == metric):
-                known = rows[column].map(lambda value, ranks=ranks: ranks.get(value, (0, None))[0]).to_numpy(dtype=float)
+            for (_, spreads, column), ranks in (
+                (place, ranks) for place, ranks in above.items() if place[0] == metric
+            ):
+                known = (
+                    rows[column]
+                    .map(lambda value, ranks=ranks: ranks.get(value, (0, None))[0])
+                    .to_numpy(dtype=float)
+                )
                 most = max(most, known.max() + 1)
                 if spreads:
                     spread += known
@@ -224,13 +286,19 @@ def made(key, claim, truth) -> dict[str, Results]:
             centre = 100 * STEP**rank * factor + offset
             rows[metric] = centre * (1 + NOISE * STEP ** (2 * spread) * rng.normal(size=len(rows)))
         others = [column for column in columns if column != "method"]
-        rows["condition"] = [",".join(map(str, values)) for values in zip(*(rows[other] for other in others))] if others else "only"
+        rows["condition"] = (
+            [",".join(map(str, values)) for values in zip(*(rows[other] for other in others))]
+            if others
+            else "only"
+        )
         if "problem" not in rows:
             rows["problem"] = "only"
         rows["feasible"] = rows["feasible"].astype(bool)
         for metric in {"length", "objective"}.difference(rows):
             rows[metric] = rng.random(len(rows))
-        results[name] = Results(rows, dict.fromkeys(rows["problem"].unique(), PROBLEM), pd.DataFrame())
+        results[name] = Results(
+            rows, dict.fromkeys(rows["problem"].unique(), PROBLEM), pd.DataFrame()
+        )
     return results
 
 
@@ -240,7 +308,10 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
 
 def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFrame]:
     own = study(key)
-    functions = {each.__name__.rpartition(".")[2]: each for each in (song2016, elhoseny2017, tharwat2018, ma2020, meledje)}
+    functions = {
+        each.__name__.rpartition(".")[2]: each
+        for each in (song2016, elhoseny2017, tharwat2018, ma2020, meledje)
+    }
     return judge.judge(
         [Claim.model_validate(claim).in_primary_variant()],
         *(results, printed or published(key), artefacts(key), key, vars(functions[key])),
@@ -253,7 +324,11 @@ def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFram
 @pytest.fixture
 def columns_alone(monkeypatch):
     """Every metric is a column of the runs, and draws are few."""
-    monkeypatch.setattr(metrics, "METRICS", {name: metric._replace(compute=None, needs=()) for name, metric in metrics.METRICS.items()})
+    monkeypatch.setattr(
+        metrics,
+        "METRICS",
+        {name: metric._replace(compute=None, needs=()) for name, metric in metrics.METRICS.items()},
+    )
     monkeypatch.setattr(statistics, "DRAWS", 200)
 
 
@@ -268,7 +343,9 @@ def test_true_sentence_is_supported(key, identity, columns_alone):
 def test_false_sentence_is_not_supported(key, identity, columns_alone):
     claim = claim_of(key, identity)
     row = verdict(key, claim, made(key, claim, truth=False))
-    assert row["verdict"] in FALSE_VERDICTS, row[["verdict", "holds", "where_it_holds", "reason"]].to_list()
+    assert row["verdict"] in FALSE_VERDICTS, row[
+        ["verdict", "holds", "where_it_holds", "reason"]
+    ].to_list()
 
 
 # Seconds differ from machine to machine, and with what else a machine does.
@@ -283,8 +360,13 @@ def decides_by_seconds(key, identity) -> bool:
 
 
 BY_SECONDS = [(key, identity) for key, identity in GENERATED if decides_by_seconds(key, identity)]
-TIMED = [case for case in GENERATED if case not in BY_SECONDS and any(map(is_timed, claim_of(*case)["checks"]))]
-# The same runs on another machine, or on a busy one, gave ratios of medians that differ by up to a fifth.
+TIMED = [
+    case
+    for case in GENERATED
+    if case not in BY_SECONDS and any(map(is_timed, claim_of(*case)["checks"]))
+]
+# The same runs on another machine, or on a busy one, gave ratios of medians that differ by up to a
+# fifth.
 OF_MACHINES = 0.25
 
 
@@ -296,8 +378,9 @@ def planners(key, check) -> set[str]:
 
 @pytest.mark.parametrize(("key", "identity"), CASES)
 def test_seconds_decide_only_where_counted_work_says_nothing(key, identity):
-    """Between planners of different kinds, and where settings fix how much is evaluated; then by medians, as a ratio, beyond what machines
-    differ by, with the evaluations as a variant. Nowhere else, whether a check names seconds or a variant does.
+    """Between planners of different kinds, and where settings fix how much is evaluated; then by
+    medians, as a ratio, beyond what machines differ by, with the evaluations as a variant. Nowhere
+    else, whether a check names seconds or a variant does.
     """
     claim = Claim.model_validate(claim_of(key, identity))
     fixed = {("ma2020", "C15")}  # generations
@@ -314,7 +397,9 @@ def test_seconds_decide_only_where_counted_work_says_nothing(key, identity):
 
 @pytest.mark.parametrize(("key", "identity"), CASES)
 def test_counted_work_decides_between_methods_of_one_planner_only(key, identity):
-    """An evaluation of another planner is another thing, and settings fix how many there are: two groups without variance."""
+    """An evaluation of another planner is another thing, and settings fix how many there are: two
+    groups without variance.
+    """
     claim = claim_of(key, identity)
     for check in deciding(key, claim):
         if check.get("metric") in ("evaluations", "points_evaluated"):
@@ -323,20 +408,26 @@ def test_counted_work_decides_between_methods_of_one_planner_only(key, identity)
 
 @pytest.mark.parametrize("truth", [True, False])
 @pytest.mark.parametrize(("key", "identity"), BY_SECONDS)
-def test_a_loaded_machine_changes_no_verdict_that_seconds_decide(key, identity, truth, columns_alone):
+def test_a_loaded_machine_changes_no_verdict_that_seconds_decide(
+    key, identity, truth, columns_alone
+):
     """All runs take twice as long, and one in ten, at random, three times as long again."""
     claim = claim_of(key, identity)
     results = made(key, claim, truth)
     idle = verdict(key, claim, results)["verdict"]
     rng = generator(f"{key}/{identity}/loaded")
     for each in results.values():
-        each.runs["cpu_s"] = each.runs["cpu_s"] * np.where(rng.random(len(each.runs)) < 0.1, 6.0, 2.0)
+        each.runs["cpu_s"] = each.runs["cpu_s"] * np.where(
+            rng.random(len(each.runs)) < 0.1, 6.0, 2.0
+        )
     assert verdict(key, claim, results)["verdict"] == idle
 
 
 def test_no_alternative_compares_seconds_of_runs_made_at_different_times():
     for key in KEYS:
-        tried = {identity for assumption in study(key).assumptions for identity in assumption.claims}
+        tried = {
+            identity for assumption in study(key).assumptions for identity in assumption.claims
+        }
         for identity in tried & {identity for own, identity in BY_SECONDS if own == key}:
             timed = [check for check in deciding(key, claim_of(key, identity)) if is_timed(check)]
             assert all(column_of(check) != "method" for check in timed), f"{key}: {identity}"
@@ -345,7 +436,9 @@ def test_no_alternative_compares_seconds_of_runs_made_at_different_times():
 @pytest.mark.parametrize("truth", [True, False])
 @pytest.mark.parametrize(("key", "identity"), TIMED)
 def test_a_loaded_machine_changes_no_verdict(key, identity, truth, columns_alone):
-    """The same runs, with times as they are and with others, of which some are fifty times as long."""
+    """The same runs, with times as they are and with others, of which some are fifty times as
+    long.
+    """
     claim = claim_of(key, identity)
     rows, effects = [], []
     for machine, slower in (("idle", 1.0), ("loaded", 50.0)):
@@ -367,9 +460,22 @@ def test_a_loaded_machine_changes_no_verdict(key, identity, truth, columns_alone
 
 def results_of(rows: pd.DataFrame, *names: str, **columns) -> dict[str, Results]:
     """The same rows as runs of experiments of these names, with further columns."""
-    described = {"condition": "only", "problem": "only", "workspace": "only", "feasible": True, "length": 1.0} | columns
-    rows = rows.assign(**{column: value for column, value in described.items() if column not in rows})
-    return {name: Results(rows.assign(experiment=name), dict.fromkeys(rows["problem"], PROBLEM), pd.DataFrame()) for name in names}
+    described = {
+        "condition": "only",
+        "problem": "only",
+        "workspace": "only",
+        "feasible": True,
+        "length": 1.0,
+    } | columns
+    rows = rows.assign(
+        **{column: value for column, value in described.items() if column not in rows}
+    )
+    return {
+        name: Results(
+            rows.assign(experiment=name), dict.fromkeys(rows["problem"], PROBLEM), pd.DataFrame()
+        )
+        for name in names
+    }
 
 
 def altered(key, table, change) -> dict[str, pd.DataFrame]:
@@ -380,26 +486,44 @@ def altered(key, table, change) -> dict[str, pd.DataFrame]:
 
 def genes(monkeypatch, truth):
     if not truth:
-        monkeypatch.setattr(song2016, "complement_bit", lambda chromosome, place, bits: chromosome.__iadd__(256))
+        monkeypatch.setattr(
+            song2016, "complement_bit", lambda chromosome, place, bits: chromosome.__iadd__(256)
+        )
     return {}, None
 
 
 def q_statistics(monkeypatch, truth):
-    return {}, None if truth else altered("elhoseny2017", "table1", lambda values: 1 - values.where(values.index > 0, 1 - values))
+    return {}, None if truth else altered(
+        "elhoseny2017", "table1", lambda values: 1 - values.where(values.index > 0, 1 - values)
+    )
 
 
 def parts_of_the_work(monkeypatch, truth):
     """As many evaluations as nothing else can match, or as few as the first population takes."""
     monkeypatch.setattr(elhoseny2017, "samples", lambda path, grid: (np.zeros(300), np.zeros(300)))
-    line = {"path_points": [np.array([0.5, 0.5, 1.5, 1.5])] * 8, "path_curve": "bezier", "history": [np.zeros(81)] * 8}
+    line = {
+        "path_points": [np.array([0.5, 0.5, 1.5, 1.5])] * 8,
+        "path_curve": "bezier",
+        "history": [np.zeros(81)] * 8,
+    }
     rows = pd.DataFrame(
-        {"repeat": range(8), "evaluations": (10**9 if truth else 60) + np.arange(8), "valid_share": 0.7, "extra_batches": 60} | line
+        {
+            "repeat": range(8),
+            "evaluations": (10**9 if truth else 60) + np.arange(8),
+            "valid_share": 0.7,
+            "extra_batches": 60,
+        }
+        | line
     )
-    return results_of(rows, "fields100", "fields200", workspace="published_like", method="mga"), None
+    return results_of(
+        rows, "fields100", "fields200", workspace="published_like", method="mga"
+    ), None
 
 
 def printed_lengths(monkeypatch, truth):
-    fields = pd.DataFrame(itertools.product(("case1", "case2"), (5, 10, 15, 20, 25)), columns=["route", "obstacles"])
+    fields = pd.DataFrame(
+        itertools.product(("case1", "case2"), (5, 10, 15, 20, 25)), columns=["route", "obstacles"]
+    )
     fields = fields.assign(workspace="published_like", method="mga", repeat=0)
     fields["problem"] = fields["route"] + fields["obstacles"].astype(str)
     made = {}
@@ -407,13 +531,16 @@ def printed_lengths(monkeypatch, truth):
         made |= results_of(fields.assign(octile_bound=1.6 * side), name, side=side)
     numbers = published("elhoseny2017")
     below = {
-        name: numbers[name].assign(value=numbers[name]["value"].clip(upper=2 * side)) for name, side in (("table2", 100), ("table3", 200))
+        name: numbers[name].assign(value=numbers[name]["value"].clip(upper=2 * side))
+        for name, side in (("table2", 100), ("table3", 200))
     }
     return made, numbers | below if truth else numbers
 
 
 def swarms(monkeypatch, truth):
-    rows = pd.DataFrame(itertools.product(range(5, 55, 5), range(20)), columns=["particles", "repeat"])
+    rows = pd.DataFrame(
+        itertools.product(range(5, 55, 5), range(20)), columns=["particles", "repeat"]
+    )
     rows["objective"] = 10 + 0.01 * rows["repeat"] + abs(rows["particles"] - (40 if truth else 10))
     return results_of(rows, "particles", method="cpso2_singer", profile="default"), None
 
@@ -422,14 +549,20 @@ def surface(monkeypatch, truth):
     grid = np.linspace(-1, 1, tharwat2018.GRID)
     x, y = (each.ravel() for each in np.meshgrid(grid, grid, indexing="ij"))
     fitness = np.hypot(x, y) + (0.2 * np.cos(20 * x) * np.cos(20 * y) if truth else 0.0)
-    monkeypatch.setattr(tharwat2018, "_landscape", lambda results: pd.DataFrame({"x": x, "y": y, "fitness": fitness}))
+    monkeypatch.setattr(
+        tharwat2018,
+        "_landscape",
+        lambda results: pd.DataFrame({"x": x, "y": y, "fitness": fitness}),
+    )
     rows = pd.DataFrame({"repeat": [0], "workspace": "equal", "profile": "default"})
     return results_of(rows, "maps", method="cpso2_singer"), None
 
 
 def classes(monkeypatch, truth):
     """False: all that converge come to one class; single runs that pass elsewhere do not count."""
-    monkeypatch.setitem(metrics.METRICS, "homotopy", metrics.METRICS["homotopy"]._replace(compute=None))
+    monkeypatch.setitem(
+        metrics.METRICS, "homotopy", metrics.METRICS["homotopy"]._replace(compute=None)
+    )
     rows = pd.DataFrame({"repeat": range(80), "workspace": "equal", "profile": "default"})
     rows["homotopy"] = np.where(rows["repeat"] < (40 if truth else 1), 1.0, 2.0)
     return results_of(rows, "maps", method="cpso2_singer"), None
@@ -443,8 +576,14 @@ def boxes(monkeypatch, truth):
 def outliers_of(maps):
     frames = []
     for variant, name in itertools.product(("cpso1", "cpso2"), tharwat2018.CHAOTIC):
-        objective = 10.0 + 0.1 * (np.arange(200) % 7) + 50 * ((np.arange(200) % 10 == 0) & (name in maps))
-        frames.append(pd.DataFrame({"repeat": range(200), "method": f"{variant}_{name}", "objective": objective}))
+        objective = (
+            10.0 + 0.1 * (np.arange(200) % 7) + 50 * ((np.arange(200) % 10 == 0) & (name in maps))
+        )
+        frames.append(
+            pd.DataFrame(
+                {"repeat": range(200), "method": f"{variant}_{name}", "objective": objective}
+            )
+        )
     return results_of(pd.concat(frames), "maps", workspace="equal", profile="default")
 
 
@@ -462,20 +601,50 @@ def sequences(monkeypatch, truth):
 
 def paths(monkeypatch, truth):
     points = [0.0, 0.0, 1.0, 2.0, 3.0, 2.0, 4.0, 0.0]
-    rows = pd.DataFrame({"repeat": range(6), "method": "bca", "path_points": [points] * 6, "path_curve": "bezier" if truth else "polyline"})
+    rows = pd.DataFrame(
+        {
+            "repeat": range(6),
+            "method": "bca",
+            "path_points": [points] * 6,
+            "path_curve": "bezier" if truth else "polyline",
+        }
+    )
     return results_of(rows, "environments", workspace="environment1"), None
 
 
 def clearances(monkeypatch, truth):
-    """Rows of one cell beside a path: BCA-Q passes at 0.4 cells, the others at 0.1; or the other way round."""
+    """Rows of one cell beside a path: BCA-Q passes at 0.4 cells, the others at 0.1; or the other
+    way round.
+    """
     grid = from_lines(["....", "....", "####"], 1.0, "cell")
     problem = {"environment1": Problem("environment1", grid, (0.0, 0.0), (4.0, 0.0))}
     rows = []
-    for method, repeat in itertools.product(("aco", "ga", "aco_ga", "asfa_ga", "bca", "bca_q"), range(80)):
-        height = 1 + ((0.4 if method == "bca_q" else 0.1) if truth else (0.1 if method == "bca_q" else 0.4)) + 0.0001 * repeat
+    for method, repeat in itertools.product(
+        ("aco", "ga", "aco_ga", "asfa_ga", "bca", "bca_q"), range(80)
+    ):
+        height = (
+            1
+            + (
+                (0.4 if method == "bca_q" else 0.1)
+                if truth
+                else (0.1 if method == "bca_q" else 0.4)
+            )
+            + 0.0001 * repeat
+        )
         points = [0.0, height, 4.0, height]
-        rows.append({"method": method, "repeat": repeat, "path_points": points, "path_curve": "polyline", "length": 4.0 + 0.01 * repeat})
-    both = [pd.DataFrame(rows).assign(workspace=name, condition=name, problem="environment1") for name in ("environment1", "environment2")]
+        rows.append(
+            {
+                "method": method,
+                "repeat": repeat,
+                "path_points": points,
+                "path_curve": "polyline",
+                "length": 4.0 + 0.01 * repeat,
+            }
+        )
+    both = [
+        pd.DataFrame(rows).assign(workspace=name, condition=name, problem="environment1")
+        for name in ("environment1", "environment2")
+    ]
     (found,) = results_of(pd.concat(both, ignore_index=True), "environments").values()
     return {"environments": found._replace(problems=problem)}, None
 

@@ -1,6 +1,8 @@
-"""The profiles for clusters: the README's lines on a Slurm of one node, and the generic profile on a stand-in for qsub.
+"""The profiles for clusters: the README's lines on a Slurm of one node, and the generic profile on
+a stand-in for qsub.
 
-Both must give the bits of a run without a cluster. The copy of the tree has an environment of its own, to which `make cluster` can add.
+Both must give the bits of a run without a cluster. The copy of the tree has an environment of its
+own, to which `make cluster` can add.
 """
 
 import os
@@ -17,9 +19,16 @@ import trees
 import yaml
 
 ROOT = Path(__file__).parents[1]
-(LINES,) = re.findall(r"^## From a laptop to a cluster$.*?^```sh\n(.*?)^```$", (ROOT / "README.md").read_text(), flags=re.M | re.S)
+(LINES,) = re.findall(
+    r"^## From a laptop to a cluster$.*?^```sh\n(.*?)^```$",
+    (ROOT / "README.md").read_text(),
+    flags=re.M | re.S,
+)
 COMMANDS = [re.split(r"\s+# ", line)[0] for line in LINES.splitlines()]
-PROFILES = {name: yaml.safe_load((ROOT / "profiles" / name / "profile.yaml").read_text()) for name in ("default", "slurm", "cluster")}
+PROFILES = {
+    name: yaml.safe_load((ROOT / "profiles" / name / "profile.yaml").read_text())
+    for name in ("default", "slurm", "cluster")
+}
 FIGURE = "results/smoke/song2016/figures/figure4.svg"
 RUN = "results/smoke/song2016/runs/routes/smooth/0.parquet"
 
@@ -41,10 +50,16 @@ def tree(tmp_path_factory):
     shutil.copytree(sysconfig.get_path("purelib"), site, dirs_exist_ok=True, copy_function=linked)
     linked(Path(sysconfig.get_path("scripts")) / "uv", tree / ".venv" / "bin" / "uv")
     (tree / ".venv" / "ready").touch()
-    # pytest may run with modules of its own; the tree's programs stand in its environment as in any other.
-    (tree / ".venv" / "bin" / "snakemake").write_text(f'#!/bin/sh\nexec "{tree}/.venv/bin/python" -m snakemake "$@"\n')
+    # pytest may run with modules of its own; the tree's programs stand in its environment as in any
+    # other.
+    (tree / ".venv" / "bin" / "snakemake").write_text(
+        f'#!/bin/sh\nexec "{tree}/.venv/bin/python" -m snakemake "$@"\n'
+    )
     (tree / ".venv" / "bin" / "snakemake").chmod(0o755)
-    for name in ("slurm", "cluster"):  # a test need not wait as long between two looks as a cluster of many users
+    for name in (
+        "slurm",
+        "cluster",
+    ):  # a test need not wait as long between two looks as a cluster of many users
         file = tree / "profiles" / name / "profile.yaml"
         file.write_text(re.sub(r"(checks|latency-wait): \d+", r"\1: 2", file.read_text()))
     done = executed(tree, "make cluster")
@@ -71,13 +86,22 @@ def local():
     """Hashes of the runs made without a cluster, which `make test` makes before the tests."""
     assert (ROOT / RUN).is_file(), f"no {RUN}: run snakemake smoke first"
     found = digests(ROOT)
-    return {name: found[name] for name in ("song2016/routes/smooth", "song2016/routes/smooth_cubic", "song2016/routes/smooth_single")}
+    return {
+        name: found[name]
+        for name in (
+            "song2016/routes/smooth",
+            "song2016/routes/smooth_cubic",
+            "song2016/routes/smooth_single",
+        )
+    }
 
 
 def test_slurm_gives_the_same_bits(tree, local, tmp_path_factory):
-    """One figure with what it needs, for each job costs two starts of Snakemake; the README's lines as dry runs."""
-    # Slurm comes as Debian's packages, not from PyPI, and only root can start its daemons; a machine that has a Slurm keeps its own.
-    # Continuous integration installs it (`.ci/run`).
+    """One figure with what it needs, for each job costs two starts of Snakemake; the README's lines
+    as dry runs.
+    """
+    # Slurm comes as Debian's packages, not from PyPI, and only root can start its daemons; a
+    # machine that has a Slurm keeps its own. Continuous integration installs it (`.ci/run`).
     if slurm.obstacle():
         pytest.skip(f"no Slurm: {slurm.obstacle()}")
     assert COMMANDS[0] == "make cluster"
@@ -117,13 +141,19 @@ def test_generic_profile_gives_the_same_bits(tree, local):
 @pytest.mark.parametrize("name", ["slurm", "cluster"])
 def test_profile_keeps_what_the_default_one_says(name):
     own, default = PROFILES[name], PROFILES["default"]
-    assert {key: own[key] for key in default if key != "cores"} == {key: value for key, value in default.items() if key != "cores"}
+    assert {key: own[key] for key in default if key != "cores"} == {
+        key: value for key, value in default.items() if key != "cores"
+    }
 
 
 @pytest.mark.parametrize("name", ["slurm", "cluster"])
 def test_every_rule_is_in_a_group_but_the_one_of_hours(name):
     text = "".join(file.read_text() for file in sorted((ROOT / "workflow/rules").glob("*.smk")))
-    rules = {rule for rule, body in re.findall(r"^rule (\w+):\n(.*?)(?=^\S|\Z)", text, flags=re.M | re.S) if "script:" in body}
+    rules = {
+        rule
+        for rule, body in re.findall(r"^rule (\w+):\n(.*?)(?=^\S|\Z)", text, flags=re.M | re.S)
+        if "script:" in body
+    }
     assert PROFILES[name]["groups"].keys() == rules - {"interpretations_of"}
     assert set(PROFILES[name]["groups"].values()) == PROFILES[name]["group-components"].keys()
     assert PROFILES[name]["groups"] == PROFILES["slurm"]["groups"]

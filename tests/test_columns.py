@@ -1,4 +1,6 @@
-"""Columns of runs are declared once: rows, files, what is read and the tables in results/README.md follow."""
+"""Columns of runs are declared once: rows, files, what is read and the tables in results/README.md
+follow.
+"""
 
 import numpy as np
 import pyarrow as pa
@@ -30,7 +32,10 @@ def test_tables_of_columns_are_those_of_the_declarations():
     """`python -m bezierplan.study.keys` renews them."""
     text = keys.RESULTS_README.read_text(encoding="utf-8")
     assert keys.renewed_columns(text) == text
-    assert all(f"<!-- columns of {name} -->" in text and f"<!-- columns of {name} of drives -->" in text for name in columns.TABLES)
+    assert all(
+        f"<!-- columns of {name} -->" in text and f"<!-- columns of {name} of drives -->" in text
+        for name in columns.TABLES
+    )
 
 
 def test_a_row_has_the_declared_columns_and_no_other():
@@ -50,7 +55,9 @@ def test_a_table_has_declared_types_whatever_its_values():
     table = rows.table([ROW | {"cpu_s": 1, "setting": 3}, ROW], columns.Times)
     assert [str(each.type) for each in table.schema] == ["string", "double", "double", "int64"]
     empty = columns.Bound("a", 1.0, np.inf, np.inf, [], np.nan)._asdict()
-    assert rows.table([empty], columns.Bound).schema.field("bound_path").type == pa.list_(pa.float64())
+    assert rows.table([empty], columns.Bound).schema.field("bound_path").type == pa.list_(
+        pa.float64()
+    )
 
 
 def test_a_table_without_a_declared_column_or_with_another_type_is_refused():
@@ -63,7 +70,9 @@ def test_a_table_without_a_declared_column_or_with_another_type_is_refused():
 def test_a_digest_does_not_depend_on_the_type_of_no_values():
     """Files of version 1.0.0 hold lists of nothing where no run has a path."""
     untyped = pa.table({"path_points": [[], []]})
-    assert rows.rows_digest(untyped) == rows.rows_digest(untyped.cast(pa.schema({"path_points": pa.list_(pa.float64())})))
+    assert rows.rows_digest(untyped) == rows.rows_digest(
+        untyped.cast(pa.schema({"path_points": pa.list_(pa.float64())}))
+    )
 
 
 def test_every_column_says_what_it_means():

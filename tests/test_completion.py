@@ -13,9 +13,19 @@ from bezierplan.commands import completion
 def completed(line: str, folder) -> list[str]:
     """What a shell is told when its reader presses the key after a line."""
     told = folder / "told"
-    asked = {"_ARGCOMPLETE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)), "_ARGCOMPLETE_IFS": "\n"}
+    asked = {
+        "_ARGCOMPLETE": "1",
+        "COMP_LINE": line,
+        "COMP_POINT": str(len(line)),
+        "_ARGCOMPLETE_IFS": "\n",
+    }
     command = [sys.executable, "-m", "bezierplan"]
-    subprocess.run(command, env=os.environ | asked | {"_ARGCOMPLETE_STDOUT_FILENAME": str(told)}, check=True, timeout=120)
+    subprocess.run(
+        command,
+        env=os.environ | asked | {"_ARGCOMPLETE_STDOUT_FILENAME": str(told)},
+        check=True,
+        timeout=120,
+    )
     return [word.strip() for word in told.read_text(encoding="utf-8").splitlines()]
 
 
@@ -53,7 +63,13 @@ def test_every_shell_gets_code_that_names_the_command(shell):
 
 
 def listed(*words: str) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, "-m", "bezierplan", "list", *words], capture_output=True, text=True, check=False, timeout=120)
+    return subprocess.run(
+        [sys.executable, "-m", "bezierplan", "list", *words],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
 
 
 def test_list_shows_the_kinds_and_studies_that_are_named():
@@ -61,13 +77,21 @@ def test_list_shows_the_kinds_and_studies_that_are_named():
     assert first.startswith("song2016: ")
     assert {line.split()[0] for line in lines} == {"method"}
     # One line says what the method is.
-    assert any("smooth" in line and "Genetic algorithm over the cells of a grid" in line for line in lines)
-    kinds = {line.split()[0] for line in listed("claims", "tables").stdout.splitlines() if line.startswith("  ")}
+    assert any(
+        "smooth" in line and "Genetic algorithm over the cells of a grid" in line for line in lines
+    )
+    kinds = {
+        line.split()[0]
+        for line in listed("claims", "tables").stdout.splitlines()
+        if line.startswith("  ")
+    }
     assert kinds == {"claim", "table"}
 
 
 def test_list_says_what_an_unknown_word_may_mean():
     refused = listed("metods")
     assert refused.returncode == 2
-    assert refused.stderr.startswith("list: metods: neither a kind nor a study; did you mean methods?")
+    assert refused.stderr.startswith(
+        "list: metods: neither a kind nor a study; did you mean methods?"
+    )
     assert len(refused.stderr.splitlines()) == 1

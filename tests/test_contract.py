@@ -1,4 +1,6 @@
-"""The contract tests: planners of the package pass, bad ones fail for exactly the right fact, bad input ends in one line."""
+"""The contract tests: planners of the package pass, bad ones fail for exactly the right fact, bad
+input ends in one line.
+"""
 
 import random
 import re
@@ -25,7 +27,9 @@ def settings_in_force() -> dict[str, dict]:
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)
-                condition = next(execution.conditions(list(described["problems"]), described["vary"]))
+                condition = next(
+                    execution.conditions(list(described["problems"]), described["vary"])
+                )
                 found.setdefault(study.planner(method), execution.settings_in(described, condition))
     return found
 
@@ -64,12 +68,28 @@ LEAVES = "import subprocess; subprocess.Popen(['sleep', '600'], start_new_sessio
 
 # A fault of a planner: what stands in WALK, what stands there instead, and the fact that fails.
 BAD = {
-    "draws from numpy": (DRAWN, "np.random.uniform(0, 1, (evaluations, 2)) + start", "global generators"),
+    "draws from numpy": (
+        DRAWN,
+        "np.random.uniform(0, 1, (evaluations, 2)) + start",
+        "global generators",
+    ),
     "draws from random": (DRAWN, f"{DRAWN} + random.random()", "global generators"),
-    "seeds numpy": ("    start, target", "    np.random.seed(5)\n    start, target", "global generators"),
-    "draws from numba's generator": (DRAWN, f"{DRAWN} + njit(lambda: np.random.random())()", "global generators"),
+    "seeds numpy": (
+        "    start, target",
+        "    np.random.seed(5)\n    start, target",
+        "global generators",
+    ),
+    "draws from numba's generator": (
+        DRAWN,
+        f"{DRAWN} + njit(lambda: np.random.random())()",
+        "global generators",
+    ),
     "draws from a generator of its own": (DRAWN, f"{DRAWN} + KEPT.random()", "same bits"),
-    "puts its generator back to the first state": ("    start, target", f"    {RESET}\n    start, target", "generators"),
+    "puts its generator back to the first state": (
+        "    start, target",
+        f"    {RESET}\n    start, target",
+        "generators",
+    ),
     "is not deterministic as it says": ("KEPT =", "deterministic = True\nKEPT =", "generators"),
     "exits": (RETURN, f"    raise SystemExit\n{RETURN}", "plan"),
     "leaves a process behind": (RETURN, f"    {LEAVES}\n{RETURN}", "plan"),
@@ -81,7 +101,8 @@ BAD = {
     ),
     "puts another array into the problem": (
         "    start, target",
-        '    object.__setattr__(problem.workspace, "radii", problem.workspace.radii * 0.5)\n    start, target',
+        '    object.__setattr__(problem.workspace, "radii", problem.workspace.radii * 0.5)\n    '
+        "start, target",
         "problem unchanged",
     ),
     "starts elsewhere": ("np.array([start,", "np.array([np.add(start, 1e-9),", "path"),
@@ -90,17 +111,33 @@ BAD = {
     "its history has a gap": (RETURN, f"    history[0] = np.nan\n{RETURN}", "plan"),
     "its history ends with something else": ("history[-1],", "history[-1] + 1,", "history"),
     "claims wrongly and to be exact": ("KEPT =", "exact = True\nKEPT =", "claims"),
-    "uses too many evaluations": ("evaluations=evaluations", "evaluations=evaluations + 1", "budget"),
-    "counts fewer evaluations than its history": ("evaluations=evaluations", "evaluations=evaluations - 1", "budget"),
+    "uses too many evaluations": (
+        "evaluations=evaluations",
+        "evaluations=evaluations + 1",
+        "budget",
+    ),
+    "counts fewer evaluations than its history": (
+        "evaluations=evaluations",
+        "evaluations=evaluations - 1",
+        "budget",
+    ),
     "an extra column has a taken name": ('"tries"', '"length"', "extra columns"),
     "an extra column has the name of a setting": ('"tries"', '"evaluations"', "extra columns"),
-    "an extra column is there at times": ('{"tries": 1}', '{"tries": 1} if start == target else {}', "extra columns"),
+    "an extra column is there at times": (
+        '{"tries": 1}',
+        '{"tries": 1} if start == target else {}',
+        "extra columns",
+    ),
     "raises": ("rng.uniform", "rng.unifrom", "plan"),
     "claims without a path": ("Plan(path,", "Plan(None,", "plan"),
     "its objective is not a number": ("history[-1],", "math.nan,", "plan"),
     "its objective is text": ("history[-1],", "str(history[-1]),", "plan"),
     "its claim is a word": ("claimed_feasible=True", 'claimed_feasible="yes"', "plan"),
-    "its evaluations are no whole number": ("evaluations=evaluations", "evaluations=1.0 * evaluations", "plan"),
+    "its evaluations are no whole number": (
+        "evaluations=evaluations",
+        "evaluations=1.0 * evaluations",
+        "plan",
+    ),
     "its history is a list": ("history=history", "history=history.tolist()", "plan"),
     "its history is empty": ("history=history", "history=history[:0]", "plan"),
     "its extra is text": ('{"tries": 1}', '{"tries": "one"}', "plan"),
@@ -148,20 +185,29 @@ def test_a_planner_in_a_file_passes_on_every_kind_of_workspace(tmp_path):
     file = written(tmp_path, WALK, ("grid", "circles", "polygons"))
     findings = list(contract.check_planner(file, {"evaluations": 20}))
     assert all(finding.passed for finding in findings)
-    assert {finding.problem.split(":")[0] for finding in findings} == {"grid", "circles", "polygons", "all problems"}
+    assert {finding.problem.split(":")[0] for finding in findings} == {
+        "grid",
+        "circles",
+        "polygons",
+        "all problems",
+    }
     assert contract.Finding("circles: open", "budget", True, "20 evaluations") in findings
 
 
 @pytest.mark.parametrize("fault", BAD, ids=str)
 def test_bad_planner_fails_for_its_fault_alone(fault, tmp_path):
     old, new, fact = BAD[fault]
-    assert {finding.fact for finding in failed(written(tmp_path, changed(old, new)), {"evaluations": 20})} == {fact}
+    assert {
+        finding.fact
+        for finding in failed(written(tmp_path, changed(old, new)), {"evaluations": 20})
+    } == {fact}
 
 
 def test_planner_that_raises_without_a_way_fails_there_alone(tmp_path):
     source = changed(
         "    start, target",
-        '    if math.isinf(shortest_paths.shortest_path(problem).length):\n        raise RuntimeError("no\\nway")\n    start, target',
+        "    if math.isinf(shortest_paths.shortest_path(problem).length):\n        raise "
+        'RuntimeError("no\\nway")\n    start, target',
     )
     assert failed(written(tmp_path, source), {"evaluations": 20}) == [
         contract.Finding("circles: sealed target", "plan", False, "raises RuntimeError: no way")
@@ -171,13 +217,18 @@ def test_planner_that_raises_without_a_way_fails_there_alone(tmp_path):
 def test_feasible_path_to_a_sealed_target_fails(tmp_path):
     """Such a path ends elsewhere, which is reported as well."""
     source = changed("middles[lengths.argmin()], target]", "start]")
-    assert ("circles: sealed target", "no way") in [finding[:2] for finding in failed(written(tmp_path, source), {"evaluations": 20})]
+    assert ("circles: sealed target", "no way") in [
+        finding[:2] for finding in failed(written(tmp_path, source), {"evaluations": 20})
+    ]
 
 
 def test_wrong_claims_of_a_planner_that_is_not_exact_are_counted():
     findings = {finding[:2]: finding for finding in contract.check_planner("straight_line", {})}
     assert findings["grid: obstacle in the way", "claims"].passed
-    assert findings["grid: obstacle in the way", "claims"].detail == "3 paths claimed feasible, 0 by the checker"
+    assert (
+        findings["grid: obstacle in the way", "claims"].detail
+        == "3 paths claimed feasible, 0 by the checker"
+    )
     assert findings["grid: open", "claims"].detail == "3 paths claimed feasible, 3 by the checker"
 
 
@@ -200,28 +251,84 @@ def test_problems_are_legal_and_only_the_sealed_one_has_no_way(kind):
         blocked = region(problem.workspace)
         for point in (problem.start, problem.target):
             assert checker.check(np.array([[point, point]]), blocked).feasible
-        assert np.isinf(shortest_paths.shortest_path(problem).length) == problem.name.endswith("sealed target")
+        assert np.isinf(shortest_paths.shortest_path(problem).length) == problem.name.endswith(
+            "sealed target"
+        )
 
 
-CHECK = 'def check(settings):\n    raise ValueError("evaluations: 20; an odd number is needed")\n\n\ndef plan('
+CHECK = (
+    'def check(settings):\n    raise ValueError("evaluations: 20; an odd number is '
+    'needed")\n\n\ndef plan('
+)
 FAULTS = {
-    "missing setting": ("plan(", "plan(", {}, "settings are missing: evaluations: a whole number at least 1"),
+    "missing setting": (
+        "plan(",
+        "plan(",
+        {},
+        "settings are missing: evaluations: a whole number at least 1",
+    ),
     "several missing settings": (
         "Range(1)]",
         'Range(1)], share: Annotated[float, Range(0, 1)], rule: Literal["a", "b"], quick: bool',
         {"quick": True},
-        "missing: evaluations: a whole number at least 1; share: a number from 0 to 1; rule: one of a, b",
+        "missing: evaluations: a whole number at least 1; share: a number from 0 to 1; rule: one "
+        "of a, b",
     ),
-    "unknown setting": ("plan(", "plan(", {"evaluation": 20}, "settings: evaluation: unknown; did you mean evaluations?"),
-    "wrong type": ("plan(", "plan(", {"evaluations": "many"}, "settings: evaluations: 'many'; expected a whole number"),
-    "out of range": ("plan(", "plan(", {"evaluations": 0}, "settings: evaluations: 0; expected a whole number at least 1"),
-    "settings that do not fit": ("def plan(", CHECK, {"evaluations": 20}, "settings: evaluations: 20; an odd number is needed"),
-    "default value": ("Range(1)]", "Range(1)] = 20", {}, "setting evaluations: has a default value"),
-    "no annotation": ("evaluations: Annotated[int, Range(1)]", "evaluations", {}, "setting evaluations: has no annotation"),
-    "wrong annotation": ("Annotated[int, Range(1)]", "str", {}, "setting evaluations: is annotated with str; expected bool, int,"),
-    "no function": ("def plan(", "def plant(", {}, "no function plan; expected plan(problem, rng, *, <settings>)"),
+    "unknown setting": (
+        "plan(",
+        "plan(",
+        {"evaluation": 20},
+        "settings: evaluation: unknown; did you mean evaluations?",
+    ),
+    "wrong type": (
+        "plan(",
+        "plan(",
+        {"evaluations": "many"},
+        "settings: evaluations: 'many'; expected a whole number",
+    ),
+    "out of range": (
+        "plan(",
+        "plan(",
+        {"evaluations": 0},
+        "settings: evaluations: 0; expected a whole number at least 1",
+    ),
+    "settings that do not fit": (
+        "def plan(",
+        CHECK,
+        {"evaluations": 20},
+        "settings: evaluations: 20; an odd number is needed",
+    ),
+    "default value": (
+        "Range(1)]",
+        "Range(1)] = 20",
+        {},
+        "setting evaluations: has a default value",
+    ),
+    "no annotation": (
+        "evaluations: Annotated[int, Range(1)]",
+        "evaluations",
+        {},
+        "setting evaluations: has no annotation",
+    ),
+    "wrong annotation": (
+        "Annotated[int, Range(1)]",
+        "str",
+        {},
+        "setting evaluations: is annotated with str; expected bool, int,",
+    ),
+    "no function": (
+        "def plan(",
+        "def plant(",
+        {},
+        "no function plan; expected plan(problem, rng, *, <settings>)",
+    ),
     "not Python": ("def plan(", "def plan((", {}, ": SyntaxError: "),
-    "unknown workspace": ("KEPT =", 'workspaces = ("gird",)\nKEPT =', {}, "workspaces: gird: unknown; did you mean grid?"),
+    "unknown workspace": (
+        "KEPT =",
+        'workspaces = ("gird",)\nKEPT =',
+        {},
+        "workspaces: gird: unknown; did you mean grid?",
+    ),
 }
 
 
@@ -240,7 +347,11 @@ def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
 @pytest.mark.parametrize(
     ("planner", "told"),
     [
-        ("strait_line", "strait_line: unknown planner, and not the path of a file that ends in .py; did you mean straight_line?"),
+        (
+            "strait_line",
+            "strait_line: unknown planner, and not the path of a file that ends in .py; did you "
+            "mean straight_line?",
+        ),
         ("nowhere/walk.py", "nowhere/walk.py: FileNotFoundError: "),
     ],
 )
@@ -250,9 +361,17 @@ def test_planner_that_is_not_there_is_told(planner, told):
 
 
 def test_order_that_is_another_in_each_process_is_found(tmp_path):
-    """One of 64 words has the least hash: the two processes agree once in 64 times, and never in one with the hash seed of this test."""
+    """One of 64 words has the least hash: the two processes agree once in 64 times, and never in
+    one with the hash seed of this test.
+    """
     words = [f"w{n}" for n in range(64)]
-    file = written(tmp_path, changed("    lengths =", f"    middles[0, 1] += 1e-3 * {words}.index(min({words}, key=hash))\n    lengths ="))
+    file = written(
+        tmp_path,
+        changed(
+            "    lengths =",
+            f"    middles[0, 1] += 1e-3 * {words}.index(min({words}, key=hash))\n    lengths =",
+        ),
+    )
     assert not failed(file, {"evaluations": 8})
     found = list(contract.check_elsewhere(file, {"evaluations": 8}))
     assert {each.fact for each in found if not each.passed} == {"another process"}

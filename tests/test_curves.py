@@ -31,7 +31,10 @@ def sampled(path, samples=201):
     return curves.sample_matrix(path.curve, len(path.points), samples) @ path.points
 
 
-@pytest.mark.parametrize(("curve", "degree"), [("polyline", 1), ("piecewise_quadratic", 2), ("piecewise_cubic", 3), ("bezier", 6)])
+@pytest.mark.parametrize(
+    ("curve", "degree"),
+    [("polyline", 1), ("piecewise_quadratic", 2), ("piecewise_cubic", 3), ("bezier", 6)],
+)
 def test_samples_are_those_of_a_clamped_uniform_b_spline(curve, degree):
     points = np.random.default_rng(0).normal(size=(7, 2))
     pieces = 7 - degree
@@ -43,7 +46,9 @@ def test_samples_are_those_of_a_clamped_uniform_b_spline(curve, degree):
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 9])
 def test_spline_is_the_not_a_knot_spline_through_its_points(count):
     points = np.random.default_rng(0).normal(size=(count, 2))
-    expected = CubicSpline(np.arange(count), points, bc_type="not-a-knot")(np.linspace(0, count - 1, 101))
+    expected = CubicSpline(np.arange(count), points, bc_type="not-a-knot")(
+        np.linspace(0, count - 1, 101)
+    )
     assert np.allclose(sampled(Path("spline", points), 101), expected, atol=1e-12)
     assert np.array_equal(sampled(Path("spline", points), 10 * (count - 1) + 1)[::10], points)
 
@@ -68,7 +73,9 @@ def test_weights_of_a_b_spline_are_a_partition_of_one(path):
     assert np.allclose(basis.sum(axis=1), 1)
 
 
-@pytest.mark.parametrize(("curve", "points"), [("spline", slice(None)), ("ferguson", slice(None, None, 2))])
+@pytest.mark.parametrize(
+    ("curve", "points"), [("spline", slice(None)), ("ferguson", slice(None, None, 2))]
+)
 def test_weights_of_the_points_of_an_interpolating_curve_add_to_one(curve, points):
     assert np.allclose(curves.sample_matrix(curve, 8, 201)[:, points].sum(axis=1), 1)
 
@@ -86,7 +93,9 @@ def test_length_lies_between_straight_line_and_control_polygons(path):
 
 
 def transformed(path, turn, shift, backwards):
-    """A path turned, moved, and perhaps passed from its end; tangents are turned, and reversed, only."""
+    """A path turned, moved, and perhaps passed from its end; tangents are turned, and reversed,
+    only.
+    """
     points = path.points @ turn
     if path.curve != "ferguson":
         return Path(path.curve, (points[::-1] if backwards else points) + shift)
@@ -115,14 +124,18 @@ def test_length_does_not_change_when_a_path_is_moved_or_reversed(path, angle, sh
     ids=["parabola", "cusp", "near cusp", "there and back", "repeated ends", "a point"],
 )
 def test_arc_length_is_exact(points, expected):
-    assert curves.length(Path("bezier", np.array(points, dtype=float))) == pytest.approx(expected, abs=1e-10)
+    assert curves.length(Path("bezier", np.array(points, dtype=float))) == pytest.approx(
+        expected, abs=1e-10
+    )
 
 
 def test_arc_length_agrees_with_quadrature_in_high_degree():
     points = np.random.default_rng(4).normal(size=(13, 2))
     differences = 12 * np.diff(points, axis=0)
     speed = lambda t: np.hypot(*(curves.bernstein(11, np.array([t])) @ differences)[0])  # noqa: E731
-    expected = sum(quad(speed, a, a + 0.05, epsabs=1e-13, epsrel=1e-13)[0] for a in np.arange(20) / 20)
+    expected = sum(
+        quad(speed, a, a + 0.05, epsabs=1e-13, epsrel=1e-13)[0] for a in np.arange(20) / 20
+    )
     assert curves.length(Path("bezier", points)) == pytest.approx(expected, rel=1e-10)
 
 
@@ -143,22 +156,34 @@ def test_curvature_of_a_parabola_at_its_apex():
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_curvature_is_positive_where_a_curve_turns_left(side):
-    """The parabola y = x^2 from left to right turns left, with the curvature 2 / (1 + 4 x^2)^1.5; its mirror image turns right."""
-    kappa, speed = curves.curvature(Path("bezier", np.array([[-1, 1], [0, -1], [1, 1]]) * [1, side]), 101)
+    """The parabola y = x^2 from left to right turns left, with the curvature 2 / (1 + 4 x^2)^1.5;
+    its mirror image turns right.
+    """
+    kappa, speed = curves.curvature(
+        Path("bezier", np.array([[-1, 1], [0, -1], [1, 1]]) * [1, side]), 101
+    )
     x = np.linspace(-1, 1, 101)
     assert kappa == pytest.approx(side * 2 / (1 + 4 * x**2) ** 1.5)
     assert speed == pytest.approx(2 * np.sqrt(1 + 4 * x**2))
 
 
 def test_curvature_is_left_out_where_the_curve_stands_still():
-    kappa, speed = curves.curvature(Path("bezier", np.array([[0, 0], [0, 0], [0, 0], [1, 2.0]])), 101)
+    kappa, speed = curves.curvature(
+        Path("bezier", np.array([[0, 0], [0, 0], [0, 0], [1, 2.0]])), 101
+    )
     assert np.isnan(kappa[0])
     assert speed[0] == 0
 
 
 @pytest.mark.parametrize(
     ("curve", "continuous"),
-    [("bezier", True), ("piecewise_cubic", True), ("spline", True), ("piecewise_quadratic", False), ("ferguson", False)],
+    [
+        ("bezier", True),
+        ("piecewise_cubic", True),
+        ("spline", True),
+        ("piecewise_quadratic", False),
+        ("ferguson", False),
+    ],
 )
 def test_only_cubic_splines_and_a_single_bezier_have_continuous_curvature(curve, continuous):
     points = np.random.default_rng(1).normal(size=(8, 2))
@@ -166,9 +191,13 @@ def test_only_cubic_splines_and_a_single_bezier_have_continuous_curvature(curve,
 
 
 def test_curvature_jumps_by_the_difference_where_an_s_changes_sides():
-    """Two quadratic pieces, point-symmetric about their joint: the curvature before it is -3 / (4 sqrt 2), behind it the opposite."""
+    """Two quadratic pieces, point-symmetric about their joint: the curvature before it is -3 / (4
+    sqrt 2), behind it the opposite.
+    """
     points = np.array([[-3, 0], [-1, 1], [1, -1], [3, 0.0]])
-    assert curves.curvature_jump(Path("piecewise_quadratic", points)) == pytest.approx(3 / (2 * math.sqrt(2)))
+    assert curves.curvature_jump(Path("piecewise_quadratic", points)) == pytest.approx(
+        3 / (2 * math.sqrt(2))
+    )
 
 
 def test_curvature_jumps_without_limit_at_the_corner_of_a_polyline():
@@ -185,8 +214,12 @@ def test_a_cubic_chain_is_its_pieces():
     points = np.random.default_rng(0).normal(size=(7, 2))
     path = Path("cubic_chain", points)
     assert np.array_equal(curves.bezier_pieces(path), np.stack([points[:4], points[3:]]))
-    assert np.array_equal(curves.piece_matrix("cubic_chain", 7) @ points, curves.bezier_pieces(path))
-    assert curves.length(path) == pytest.approx(sum(curves.length(Path("bezier", each)) for each in (points[:4], points[3:])), rel=1e-12)
+    assert np.array_equal(
+        curves.piece_matrix("cubic_chain", 7) @ points, curves.bezier_pieces(path)
+    )
+    assert curves.length(path) == pytest.approx(
+        sum(curves.length(Path("bezier", each)) for each in (points[:4], points[3:])), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("count", [5, 6])

@@ -15,13 +15,19 @@ ASK = "from bezierplan.running.digest import source_digest; print(source_digest(
 
 @pytest.fixture
 def tree(tmp_path):
-    (tmp_path / "config" / "studies").mkdir(parents=True)  # as in a clone, so that caches lie beside it
-    return Path(shutil.copytree(SOURCE, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__")))
+    (tmp_path / "config" / "studies").mkdir(
+        parents=True
+    )  # as in a clone, so that caches lie beside it
+    return Path(
+        shutil.copytree(SOURCE, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    )
 
 
 def digest(tree, *modules):
     command = [sys.executable, "-c", ASK.format(modules=modules)]
-    return subprocess.run(command, env={"PYTHONPATH": str(tree)}, capture_output=True, text=True, check=True).stdout
+    return subprocess.run(
+        command, env={"PYTHONPATH": str(tree)}, capture_output=True, text=True, check=True
+    ).stdout
 
 
 def append(file, text):
@@ -39,12 +45,18 @@ def test_docstrings_do_not_count(tree):
     file = tree / "bezierplan" / "running" / "execution.py"
     text = file.read_text()
     assert '    """One row of the runs table' in text
-    file.write_text('"""New words.' + text.removeprefix('"""').replace('    """One row', '    """New words. One row'))
+    file.write_text(
+        '"""New words.'
+        + text.removeprefix('"""').replace('    """One row', '    """New words. One row')
+    )
     assert digest(tree, "bezierplan.running.execution") == before
 
 
 def test_code_of_a_module_that_is_imported_by_way_of_others_counts(tree):
-    before = digest(tree, "bezierplan.running.execution"), digest(tree, "bezierplan.analysis.statistics")
+    before = (
+        digest(tree, "bezierplan.running.execution"),
+        digest(tree, "bezierplan.analysis.statistics"),
+    )
     append(tree / "bezierplan" / "workspaces" / "grid.py", "\nNEW = 1\n")
     assert digest(tree, "bezierplan.running.execution") != before[0]
     assert digest(tree, "bezierplan.analysis.statistics") == before[1]
@@ -60,7 +72,9 @@ def test_planner_is_named_to_it(tree):
     before = digest(tree, "bezierplan.running.execution")
     append(tree / "bezierplan" / "planners" / "binary_genetic.py", "\nNEW = 1\n")
     assert digest(tree, "bezierplan.running.execution") == before
-    assert digest(tree, "bezierplan.running.execution", "bezierplan.planners.binary_genetic") != before
+    assert (
+        digest(tree, "bezierplan.running.execution", "bezierplan.planners.binary_genetic") != before
+    )
 
 
 def test_own_planner_counts_with_what_it_imports(tree, tmp_path):
@@ -77,7 +91,10 @@ def test_modules_beside_an_own_planner_count(tree, tmp_path):
     planner = tmp_path / "mine.py"
     planner.write_text("import near\nfrom parts import step\n")
     (tmp_path / "parts").mkdir()
-    files = [tmp_path / name for name in ("near.py", "parts/__init__.py", "parts/step.py", "parts/far.py")]
+    files = [
+        tmp_path / name
+        for name in ("near.py", "parts/__init__.py", "parts/step.py", "parts/far.py")
+    ]
     for file in files:
         file.write_text("")
     (tmp_path / "parts" / "step.py").write_text("from . import far\n")
@@ -121,7 +138,13 @@ print(sum(genetic.complement_bit.stats.cache_hits.values()), genetic.complement_
 
 def kernel(tree):
     """Whether a kernel was found compiled, and the folder that it is kept in."""
-    answer = subprocess.run([sys.executable, "-c", KERNELS], env={"PYTHONPATH": str(tree)}, capture_output=True, text=True, check=True)
+    answer = subprocess.run(
+        [sys.executable, "-c", KERNELS],
+        env={"PYTHONPATH": str(tree)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     hits, folder = answer.stdout.split()
     return int(hits), folder
 
@@ -142,7 +165,10 @@ def test_a_kernel_outlives_an_edit_that_cannot_change_it(tree):
 def test_a_kernel_outlives_a_move(tree, tmp_path_factory):
     assert kernel(tree)[0] == 0
     moved = shutil.copytree(tree.parent, tmp_path_factory.mktemp("moved") / "tree")
-    assert kernel(moved / "src") == (1, str(moved / ".cache" / "kernels" / Path(kernel(tree)[1]).name))
+    assert kernel(moved / "src") == (
+        1,
+        str(moved / ".cache" / "kernels" / Path(kernel(tree)[1]).name),
+    )
 
 
 def test_versions_of_the_libraries_that_compute_are_part_of_what_a_job_depends_on(monkeypatch):
@@ -150,10 +176,14 @@ def test_versions_of_the_libraries_that_compute_are_part_of_what_a_job_depends_o
     real = digests.library_version
     line, table = "bezierplan.planners.straight_line", "bezierplan.analysis.tables"
     before = {name: digests.versioned_digest(name) for name in (line, table)}
-    monkeypatch.setattr(digests, "library_version", lambda name: "99" if name == "pandas" else real(name))
+    monkeypatch.setattr(
+        digests, "library_version", lambda name: "99" if name == "pandas" else real(name)
+    )
     assert digests.versioned_digest(line) == before[line]
     assert digests.versioned_digest(table) != before[table]
     assert " pandas 99" in digests.versioned_digest(table)
-    monkeypatch.setattr(digests, "library_version", lambda name: "99" if name == "numpy" else real(name))
+    monkeypatch.setattr(
+        digests, "library_version", lambda name: "99" if name == "numpy" else real(name)
+    )
     assert digests.versioned_digest(line) != before[line]
     assert digests.versioned_digest(line).split()[0] == digests.source_digest(line)

@@ -1,4 +1,6 @@
-"""The examples of docs/python.md give what they print, and its workflow includes this one as a module."""
+"""The examples of docs/python.md give what they print, and its workflow includes this one as a
+module.
+"""
 
 import doctest
 import re
@@ -34,7 +36,9 @@ def snakemake(folder: Path, *words: str) -> CompletedProcess:
 
 @pytest.fixture(scope="module")
 def own(tmp_path_factory):
-    """The page's workflow in a folder with a configuration of its own, which has nothing to do with this project's."""
+    """The page's workflow in a folder with a configuration of its own, which has nothing to do with
+    this project's.
+    """
     folder = tmp_path_factory.mktemp("own")
     (folder / "Snakefile").write_text(SNAKEFILE.replace("/path/to/bezierplan", str(ROOT)))
     (folder / "config").mkdir()
@@ -46,12 +50,23 @@ def test_module_makes_the_figure_with_the_settings_given(own):
     done = snakemake(own)
     assert done.returncode == 0, done.stderr
     figure = own / "results/smoke/song2016/figures/figure4.svg"
-    assert (own / "mine.txt").read_text().split() == [str(figure.stat().st_size), str(figure.relative_to(own))]
-    runs = parquet.read_table(own / "results/smoke/song2016/runs/routes/smooth/0.parquet").to_pandas()
+    assert (own / "mine.txt").read_text().split() == [
+        str(figure.stat().st_size),
+        str(figure.relative_to(own)),
+    ]
+    runs = parquet.read_table(
+        own / "results/smoke/song2016/runs/routes/smooth/0.parquet"
+    ).to_pandas()
     assert set(runs["population"]) == {20}
     assert set(runs["generations"]) == {10}
     assert set(runs["genes"]) == {6}  # as in the study
-    assert sorted(file.name for file in own.iterdir()) == [".snakemake", "Snakefile", "config", "mine.txt", "results"]
+    assert sorted(file.name for file in own.iterdir()) == [
+        ".snakemake",
+        "Snakefile",
+        "config",
+        "mine.txt",
+        "results",
+    ]
 
 
 def test_fault_in_the_configuration_of_a_module_is_told_in_one_line(own):
@@ -60,16 +75,28 @@ def test_fault_in_the_configuration_of_a_module_is_told_in_one_line(own):
     done = snakemake(own, "--snakefile", "faulty", "--dry-run")
     (line,) = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
     assert done.returncode == 2
-    assert "population: 21; parents are crossed in pairs, so an even number is needed (with the configuration's settings: {" in line
+    assert (
+        "population: 21; parents are crossed in pairs, so an even number is needed (with the "
+        "configuration's settings: {" in line
+    )
 
 
 @pytest.mark.parametrize(
     ("given", "expected"),
     [
-        ({"studies": ["song2061"]}, "studies: song2061: no experiments.yaml in .*; did you mean song2016?"),
-        ({"settings": {"song": {"population": 20}}}, "settings: song: not one of the studies to run; did you mean song2016?"),
+        (
+            {"studies": ["song2061"]},
+            "studies: song2061: no experiments.yaml in .*; did you mean song2016?",
+        ),
+        (
+            {"settings": {"song": {"population": 20}}},
+            "settings: song: not one of the studies to run; did you mean song2016?",
+        ),
         ({"settings": {"song2016": 20}}, "settings: song2016: 20: expected a mapping"),
-        ({"settings": {"song2016": {"population": [20]}}}, r"settings: song2016: population: \[20\]: expected a word, a number"),
+        (
+            {"settings": {"song2016": {"population": [20]}}},
+            r"settings: song2016: population: \[20\]: expected a word, a number",
+        ),
         ({"setting": {}}, "setting: unknown key; did you mean settings?"),
     ],
 )
@@ -79,11 +106,26 @@ def test_configuration_of_a_module_is_checked(given, expected):
 
 
 def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
-    file = shutil.copytree(ROOT / "config/studies/song2016", tmp_path / "song2016") / "experiments.yaml"
-    file.write_text(file.read_text().replace("  genes: 6", "  binary_genetic: {generations: 8, population: 8}\n  genes: 6", 1))
-    given = {"studies": [f"{tmp_path}/song2016"], "settings": {"song2016": {"penalty": 5.0, "binary_genetic": {"generations": 9}}}}
+    file = (
+        shutil.copytree(ROOT / "config/studies/song2016", tmp_path / "song2016")
+        / "experiments.yaml"
+    )
+    file.write_text(
+        file.read_text().replace(
+            "  genes: 6", "  binary_genetic: {generations: 8, population: 8}\n  genes: 6", 1
+        )
+    )
+    given = {
+        "studies": [f"{tmp_path}/song2016"],
+        "settings": {"song2016": {"penalty": 5.0, "binary_genetic": {"generations": 9}}},
+    }
     resolved = reading.load(reading.read_config(given, alone=True))["song2016"].resolved("smooth")
-    assert (resolved["penalty"], resolved["generations"], resolved["population"], resolved["samples"]) == (5.0, 9, 8, 601)
+    assert (
+        resolved["penalty"],
+        resolved["generations"],
+        resolved["population"],
+        resolved["samples"],
+    ) == (5.0, 9, 8, 601)
 
 
 def test_a_study_with_other_settings_is_checked_anew():

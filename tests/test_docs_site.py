@@ -1,4 +1,6 @@
-"""The documentation as a site: `make docs` builds it without a warning, and every method and every paper has its page."""
+"""The documentation as a site: `make docs` builds it without a warning, and every method and every
+paper has its page.
+"""
 
 import subprocess
 import sys
@@ -16,8 +18,24 @@ ROOT = Path(__file__).parents[1]
 def site(tmp_path_factory):
     """The built site."""
     folder = tmp_path_factory.mktemp("site")
-    command = [sys.executable, "-m", "sphinx", "--quiet", "--fail-on-warning", "--builder", "html", "--doctree-dir", str(folder / "trees")]
-    built = subprocess.run([*command, "docs", str(folder / "html")], cwd=ROOT, capture_output=True, text=True, check=False)
+    command = [
+        sys.executable,
+        "-m",
+        "sphinx",
+        "--quiet",
+        "--fail-on-warning",
+        "--builder",
+        "html",
+        "--doctree-dir",
+        str(folder / "trees"),
+    ]
+    built = subprocess.run(
+        [*command, "docs", str(folder / "html")],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert built.returncode == 0, built.stderr
     return folder / "html"
 
@@ -50,5 +68,7 @@ def test_links_between_pages_lead_somewhere(site):
     import re
 
     for page in site.rglob("*.html"):
-        for target in re.findall(r'href="([^"#:?]+\.html)(?:#[^"]*)?"', page.read_text(encoding="utf-8")):
+        for target in re.findall(
+            r'href="([^"#:?]+\.html)(?:#[^"]*)?"', page.read_text(encoding="utf-8")
+        ):
             assert (page.parent / target).is_file(), f"{page.name}: {target}"

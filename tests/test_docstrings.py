@@ -1,4 +1,6 @@
-"""Docstrings name modules, functions and attributes that exist; those of public names describe each parameter and attribute."""
+"""Docstrings name modules, functions and attributes that exist; those of public names describe each
+parameter and attribute.
+"""
 
 import ast
 import inspect
@@ -66,28 +68,44 @@ for each in FILES:
 
 
 def is_there(name: str) -> bool:
-    """Whether a name is that of a module, of what a module defines, or of an attribute of a class."""
+    """Whether a name is that of a module, of what a module defines, or of an attribute of a
+    class.
+    """
     parts = tuple(name.removeprefix("bezierplan.").split("."))
     if any(parts[1] in defined(each.body) for each in CLASSES.get(parts[0], [])):
         return True
     return parts in MODULES or any(
-        _holds(tree(file).body, parts[end:]) for end in range(1, len(parts)) for file in MODULES.get(parts[:end], [])
+        _holds(tree(file).body, parts[end:])
+        for end in range(1, len(parts))
+        for file in MODULES.get(parts[:end], [])
     )
 
 
 def _holds(body: list[ast.stmt], parts: tuple[str, ...]) -> bool:
     node = defined(body).get(parts[0])
-    return node is not None and (len(parts) == 1 or not isinstance(node, ast.ClassDef) or _holds(node.body, parts[1:]))
+    return node is not None and (
+        len(parts) == 1 or not isinstance(node, ast.ClassDef) or _holds(node.body, parts[1:])
+    )
 
 
 def named(file: Path) -> set[str]:
     """The names with dots in the docstrings of a file, without foreign ones and names of files."""
-    texts = [node.value.value for node in ast.walk(tree(file)) if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)]
+    texts = [
+        node.value.value
+        for node in ast.walk(tree(file))
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    ]
     names = {name for text in texts if isinstance(text, str) for name in NAME.findall(text)}
-    return {name for name in names if name.split(".")[0] not in FOREIGN and name.rpartition(".")[2] not in ENDINGS}
+    return {
+        name
+        for name in names
+        if name.split(".")[0] not in FOREIGN and name.rpartition(".")[2] not in ENDINGS
+    }
 
 
-@pytest.mark.parametrize("file", [file for file in FILES if named(file)], ids=lambda file: str(file.relative_to(PACKAGE)))
+@pytest.mark.parametrize(
+    "file", [file for file in FILES if named(file)], ids=lambda file: str(file.relative_to(PACKAGE))
+)
 def test_names_in_docstrings_exist(file):
     assert [name for name in sorted(named(file)) if not is_there(name)] == []
 
@@ -101,15 +119,36 @@ def test_a_name_that_is_gone_is_found():
     assert not is_there("problem.Plan")
 
 
-# What users and other programs see: sections of its docstrings name all that there is, in its order.
+# What users and other programs see: sections of its docstrings name all that there is, in its
+# order.
 TUPLES = [
-    *(planners.Plan, problem.Path, problem.Problem, checker.Check, graph.Bound, metrics.Metric, statistics.Prediction),
+    *(
+        planners.Plan,
+        problem.Path,
+        problem.Problem,
+        checker.Check,
+        graph.Bound,
+        metrics.Metric,
+        statistics.Prediction,
+    ),
     *(region.GridRegion, region.CircleRegion, region.PolygonRegion),
 ]
 FUNCTIONS = [
     *(api.read_map, api.plan, api.check, api.shortest_path, api.results, api.replay),
-    *(checker.check, shortest_paths.shortest_path, shortest_paths.least_length, region.region, region.blocks),
-    *(metrics.values, metrics.unit, statistics.statistic, statistics.interval, statistics.prediction),
+    *(
+        checker.check,
+        shortest_paths.shortest_path,
+        shortest_paths.least_length,
+        region.region,
+        region.blocks,
+    ),
+    *(
+        metrics.values,
+        metrics.unit,
+        statistics.statistic,
+        statistics.interval,
+        statistics.prediction,
+    ),
 ]
 
 
@@ -124,7 +163,9 @@ def test_every_attribute_is_described(documented):
     assert section(documented, "Attributes") == list(documented._fields)
 
 
-@pytest.mark.parametrize("documented", FUNCTIONS, ids=lambda each: f"{each.__module__}.{each.__name__}")
+@pytest.mark.parametrize(
+    "documented", FUNCTIONS, ids=lambda each: f"{each.__module__}.{each.__name__}"
+)
 def test_every_parameter_is_described(documented):
     assert section(documented, "Parameters") == list(inspect.signature(documented).parameters)
     assert section(documented, "Returns")

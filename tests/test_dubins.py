@@ -1,4 +1,6 @@
-"""Paths that turn no tighter than a radius: Dubins paths in closed form, and the search among obstacles, judged by others than itself."""
+"""Paths that turn no tighter than a radius: Dubins paths in closed form, and the search among
+obstacles, judged by others than itself.
+"""
 
 import itertools
 import math
@@ -38,7 +40,10 @@ def end_of(a, word, radius):
             continue
         centre = x - turn * radius * math.sin(heading), y + turn * radius * math.cos(heading)
         heading += turn * length / radius
-        x, y = centre[0] + turn * radius * math.sin(heading), centre[1] - turn * radius * math.cos(heading)
+        x, y = (
+            centre[0] + turn * radius * math.sin(heading),
+            centre[1] - turn * radius * math.cos(heading),
+        )
     return x, y, heading
 
 
@@ -52,7 +57,12 @@ CLOSED = {
     "a quarter, then ahead": ((0, 0, 0), (1, 4, ANY), 1.0, math.pi / 2 + 3),
     "a change of lanes": ((0, 0, 0), (2, 2, 0), 1.0, math.pi),
     "back on the spot": ((0, 0, 0), (0, 0, math.pi), 1.0, 7 * math.pi / 3),
-    "behind": ((0, 0, 0), (-4, 0, ANY), 1.0, math.pi + math.acos(1 / math.hypot(4, 1)) * -1 + math.atan2(1, 4) * -1 + math.pi / 2 + 4),
+    "behind": (
+        (0, 0, 0),
+        (-4, 0, ANY),
+        1.0,
+        math.pi + math.acos(1 / math.hypot(4, 1)) * -1 + math.atan2(1, 4) * -1 + math.pi / 2 + 4,
+    ),
     "without headings": ((1, 1, ANY), (4, 5, ANY), 1.0, 5.0),
 }
 
@@ -60,8 +70,16 @@ CLOSED = {
 @pytest.mark.parametrize("case", CLOSED)
 def test_lengths_in_closed_form(case):
     a, b, radius, length = CLOSED[case]
-    if case == "behind":  # an arc and its tangent through the point: 1 - cos t + sin t (line) and so on, solved by another way
-        t = brentq(lambda t: (1 - math.cos(t)) * math.cos(t) - (math.sin(t) + 4) * math.sin(t), math.pi / 2, 2 * math.pi)
+    if (
+        case == "behind"
+        # An arc and its tangent through the point: 1 - cos t + sin t (line) and so on, solved by
+        # another way.
+    ):
+        t = brentq(
+            lambda t: (1 - math.cos(t)) * math.cos(t) - (math.sin(t) + 4) * math.sin(t),
+            math.pi / 2,
+            2 * math.pi,
+        )
         length = t + math.hypot(4 + math.sin(t), 1 - math.cos(t))
     assert shortest(a, b, radius) == pytest.approx(length, abs=1e-9)
 
@@ -85,7 +103,9 @@ def test_every_word_ends_where_it_should_and_backwards_is_as_long():
 
 
 def test_no_chain_of_arcs_and_lines_is_shorter():
-    """Of all chains left, straight or right with three parts, on a grid of lengths, none arrives sooner than the shortest word."""
+    """Of all chains left, straight or right with three parts, on a grid of lengths, none arrives
+    sooner than the shortest word.
+    """
     lengths = np.linspace(0, 3, 6)
     for turns in itertools.product((-1.0, 0.0, 1.0), repeat=3):
         for sizes in itertools.product(lengths, repeat=3):
@@ -102,7 +122,9 @@ def test_pieces_keep_the_curvature_and_the_length():
         found = words(a, b, radius)
         word = found[found[:, 7].argmin()]
         count = dubins.pieces_of(a, b, word, radius, pieces)
-        path = Path("cubic_chain", np.concatenate([pieces[0, :1], pieces[:count, 1:].reshape(-1, 2)]))
+        path = Path(
+            "cubic_chain", np.concatenate([pieces[0, :1], pieces[:count, 1:].reshape(-1, 2)])
+        )
         kappa, _ = curves.curvature(path, 3001)
         assert np.nanmax(np.abs(kappa)) * radius < 1 + dubins.CURVATURE_EXCESS
         assert curves.length(path) == pytest.approx(word[7], rel=1e-6)
@@ -121,17 +143,28 @@ def heads(answer):
 
 def test_in_free_space_the_answer_is_the_dubins_path():
     problem = bp.Problem("free", ROOM, (12.0, 10.0), (8.0, 10.0))
-    answer = bp.plan(problem, start_heading=math.pi / 2, target_heading=-math.pi / 2, turning_radius=2.0)
-    assert (answer.method, answer.stop, answer.feasible, answer.corners) == ("dubins_search", "direct", True, False)
+    answer = bp.plan(
+        problem, start_heading=math.pi / 2, target_heading=-math.pi / 2, turning_radius=2.0
+    )
+    assert (answer.method, answer.stop, answer.feasible, answer.corners) == (
+        "dubins_search",
+        "direct",
+        True,
+        False,
+    )
     assert answer.length == pytest.approx(2 * math.pi, rel=1e-6)
     assert answer.turning_radius == 2.0
     assert heads(answer) == pytest.approx((math.pi / 2, -math.pi / 2), abs=1e-9)
     assert densest(answer) < 0.5 * (1 + dubins.CURVATURE_EXCESS)
-    assert bp.plan(problem, "dubins_search", turning_radius=2.0).length == pytest.approx(4.0, rel=1e-12)
+    assert bp.plan(problem, "dubins_search", turning_radius=2.0).length == pytest.approx(
+        4.0, rel=1e-12
+    )
 
 
 def test_in_a_corridor_the_robot_cannot_turn_and_drives_on_to_where_it_can():
-    """A corridor 1 m wide ends in a room: who looks the wrong way there, and turns in 1 m, drives out, turns, and comes back."""
+    """A corridor 1 m wide ends in a room: who looks the wrong way there, and turns in 1 m, drives
+    out, turns, and comes back.
+    """
     walls = [(0.0, 12.0, 0.0, 4.5), (0.0, 12.0, 5.5, 10.0)]
     rings = tuple((np.array([(a, c), (b, c), (b, d), (a, d)]),) for a, b, c, d in walls)
     home = bp.Polygons((0.0, 20.0, 0.0, 10.0), rings, "m")
@@ -140,21 +173,38 @@ def test_in_a_corridor_the_robot_cannot_turn_and_drives_on_to_where_it_can():
     assert ahead.length == pytest.approx(4.0, rel=1e-9)
     back = bp.plan(problem, start_heading=0.0, target_heading=math.pi, turning_radius=1.0)
     assert (back.feasible, back.stop, back.corners) == (True, "search", False)
-    assert heads(back) == pytest.approx((0.0, math.pi), abs=1e-9) or heads(back) == pytest.approx((0.0, -math.pi), abs=1e-9)
+    assert heads(back) == pytest.approx((0.0, math.pi), abs=1e-9) or heads(back) == pytest.approx(
+        (0.0, -math.pi), abs=1e-9
+    )
     assert densest(back) < 1 + dubins.CURVATURE_EXCESS
-    # Out and back to the corridor's mouth, and there a loop of 7/3 pi radii, less what the width of the corridor allows.
+    # Out and back to the corridor's mouth, and there a loop of 7/3 pi radii, less what the width of
+    # the corridor allows.
     assert 10 + 6 + 5 < back.length < 10 + 6 + 9.5
     none = bp.plan(problem, start_heading=math.pi, target_heading=0.0, turning_radius=1.0)
     assert (none.path, none.feasible, none.stop) == (None, False, "none found")
-    with pytest.raises(ValueError, match="turning_radius: 1 m asked: no path was found; expected one that can be kept, or not strict"):
+    with pytest.raises(
+        ValueError,
+        match="turning_radius: 1 m asked: no path was found; expected one that can be kept, or "
+        "not strict",
+    ):
         bp.plan(problem, start_heading=math.pi, target_heading=0.0, turning_radius=1.0, strict=True)
 
 
-@pytest.mark.parametrize("name", ["back_and_forth", "bugtrap1", "complex2", "gaps", "hidden_U", "square_spiral"])
+@pytest.mark.parametrize(
+    "name", ["back_and_forth", "bugtrap1", "complex2", "gaps", "hidden_U", "square_spiral"]
+)
 def test_on_the_six_maps_a_path_with_headings_is_found(name):
     room = bp.read_map(BENCHMARK_MAPS / f"{name}.geojson")
-    ends = {"back_and_forth": ((1, 1.25), (1, 8.75)), "bugtrap1": ((12.6, 14.4), (22.4, 24.2)), "complex2": ((1, 1), (19, 19))}
-    ends |= {"gaps": ((2, 10), (18, 10)), "hidden_U": ((10, 3), (10, 27)), "square_spiral": ((2.5, 2.5), (12.5, 7.5))}
+    ends = {
+        "back_and_forth": ((1, 1.25), (1, 8.75)),
+        "bugtrap1": ((12.6, 14.4), (22.4, 24.2)),
+        "complex2": ((1, 1), (19, 19)),
+    }
+    ends |= {
+        "gaps": ((2, 10), (18, 10)),
+        "hidden_U": ((10, 3), (10, 27)),
+        "square_spiral": ((2.5, 2.5), (12.5, 7.5)),
+    }
     problem = bp.Problem(name, room, *(tuple(map(float, end)) for end in ends[name]))
     for start, target in ((math.pi, math.pi), (math.pi / 2, -math.pi / 2)):
         answer = bp.plan(problem, start_heading=start, target_heading=target, turning_radius=0.4)
@@ -163,25 +213,41 @@ def test_on_the_six_maps_a_path_with_headings_is_found(name):
         assert not answer.corners
         assert answer.gap < 0.08
         assert densest(answer) < 2.5 * (1 + dubins.CURVATURE_EXCESS)
-        assert [math.remainder(one - other, math.tau) for one, other in zip(heads(answer), (start, target))] == pytest.approx(
-            [0, 0], abs=1e-9
-        )
+        assert [
+            math.remainder(one - other, math.tau)
+            for one, other in zip(heads(answer), (start, target))
+        ] == pytest.approx([0, 0], abs=1e-9)
         again = bp.plan(problem, start_heading=start, target_heading=target, turning_radius=0.4)
         assert np.array_equal(again.path.points, answer.path.points)
 
 
 def test_with_a_radius_the_written_path_keeps_its_distance(capsys, tmp_path):
     file = BENCHMARK_MAPS / "gaps.geojson"
-    words = ["--start", "2,10,1.5", "--target", "18,10", "--robot-radius", "0.3", "--settings", "{turning_radius: 0.5}", "--strict"]
+    words = [
+        "--start",
+        "2,10,1.5",
+        "--target",
+        "18,10",
+        "--robot-radius",
+        "0.3",
+        "--settings",
+        "{turning_radius: 0.5}",
+        "--strict",
+    ]
     main(["plan", str(file), *words, "--step", "0.002", "--out", str(tmp_path / "path.csv")])
     told = capsys.readouterr().out
     assert "planner         dubins_search" in told
     assert "start_heading 1.5, target_heading any" in told
     assert "turning radius  0.5 m asked and kept" in told
     rows = np.loadtxt(tmp_path / "path.csv", delimiter=",", skiprows=1)
-    obstacles = shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in bp.read_map(file).obstacles])
+    obstacles = shapely.union_all(
+        [shapely.Polygon(outer, holes) for outer, *holes in bp.read_map(file).obstacles]
+    )
     line = shapely.LineString(rows[:, 1:3])
-    assert min(line.distance(obstacles), line.distance(shapely.box(0, 0, 20, 20).exterior)) > 0.3 - 1e-5  # chords of arcs
+    assert (
+        min(line.distance(obstacles), line.distance(shapely.box(0, 0, 20, 20).exterior))
+        > 0.3 - 1e-5
+    )  # chords of arcs
     assert rows[0, 3] == pytest.approx(1.5, abs=1e-8)
     assert np.abs(rows[:, 4]).max() < 2 * (1 + dubins.CURVATURE_EXCESS)
 
@@ -190,9 +256,19 @@ def test_on_cells_and_among_circles():
     cells = np.zeros((20, 20), dtype=bool)
     cells[5:15, 9:11] = True
     grid = bp.Grid(cells, 0.5, "m", (-3.0, 40.0))
-    discs = bp.Circles((-5.0, 5.0, -5.0, 5.0), centres=np.array([[0.0, 0.0], [1.0, 2.0]]), radii=np.array([1.0, 0.7]), unit="m")
+    discs = bp.Circles(
+        (-5.0, 5.0, -5.0, 5.0),
+        centres=np.array([[0.0, 0.0], [1.0, 2.0]]),
+        radii=np.array([1.0, 0.7]),
+        unit="m",
+    )
     for home, start, target in ((grid, (0.0, 45.0), (4.0, 45.0)), (discs, (-3.0, 0.0), (3.0, 0.0))):
-        answer = bp.plan(bp.Problem("", home, start, target), start_heading=0.0, target_heading=0.0, turning_radius=0.8)
+        answer = bp.plan(
+            bp.Problem("", home, start, target),
+            start_heading=0.0,
+            target_heading=0.0,
+            turning_radius=0.8,
+        )
         assert answer.feasible
         assert answer.claimed_feasible
         assert densest(answer) < 1.25 * (1 + dubins.CURVATURE_EXCESS)
@@ -201,7 +277,12 @@ def test_on_cells_and_among_circles():
 
 def test_way_points_are_passed_without_a_corner():
     via = [(10.0, 4.0), (4.0, 12.0)]
-    answer = bp.plan(bp.Problem("free", ROOM, (2.0, 2.0), (18.0, 18.0)), via=via, start_heading=0.0, turning_radius=1.5)
+    answer = bp.plan(
+        bp.Problem("free", ROOM, (2.0, 2.0), (18.0, 18.0)),
+        via=via,
+        start_heading=0.0,
+        turning_radius=1.5,
+    )
     assert not answer.corners
     along = answer.sample(step=0.01)
     line = shapely.LineString(np.column_stack([along.x, along.y]))

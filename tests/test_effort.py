@@ -48,8 +48,13 @@ def test_a_block_within_another_counts_once(spent):
 def test_imports_are_timed_with_all_that_they_import(tmp_path):
     (tmp_path / "outer.py").write_text("import inner\n")
     (tmp_path / "inner.py").write_text("sum(range(10_000_000))\n")
-    code = "from bezierplan.running import effort\neffort.spent['importing'] = 60.0\neffort.begin()\nimport outer\nprint(effort.line())"
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    code = (
+        "from bezierplan.running import effort\neffort.spent['importing'] = "
+        "60.0\neffort.begin()\nimport outer\nprint(effort.line())"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
     noted = json.loads(done.stdout.removeprefix("effort "))
     assert 0.03 < noted["importing"] < noted["cpu"]
 
@@ -58,7 +63,10 @@ def test_a_log_holds_what_its_job_noted(tmp_path, caplog, spent):
     with caplog.at_level(logging.INFO), effort.spending("compiling"):
         logging.info(effort.line())
     file = tmp_path / "job.log"
-    file.write_text(f"2026-01-01 00:00:00,000 INFO all 2 runs done\n2026-01-01 00:00:00,000 INFO {caplog.messages[-1]}\n")
+    file.write_text(
+        f"2026-01-01 00:00:00,000 INFO all 2 runs done\n2026-01-01 00:00:00,000 INFO "
+        f"{caplog.messages[-1]}\n"
+    )
     assert effort.of_job(file)["cpu"] > 0
     file.write_text("2026-01-01 00:00:00,000 INFO an effort\n")
     assert effort.of_job(file) is None
@@ -73,25 +81,65 @@ def job(folder: Path, rule: str, name: str, started: float, outputs: list[str], 
     for output in outputs:
         metadata = folder / ".snakemake" / "metadata" / base64.b64encode(output.encode()).decode()
         metadata.parent.mkdir(parents=True, exist_ok=True)
-        metadata.write_text(json.dumps({"rule": rule, "log": [log], "starttime": started, "endtime": started + 1}))
+        metadata.write_text(
+            json.dumps({"rule": rule, "log": [log], "starttime": started, "endtime": started + 1})
+        )
 
 
 def test_table_of_a_start(tmp_path):
     chunk = "results/smoke/song2016/runs/routes/smooth/0"
-    noted = {"cpu": 10.0, "importing": 1.0, "loading kernels": 0.5, "compiling": 2.0, "waiting": 7.0}
-    job(tmp_path, "runs", "runs/routes/smooth/0", 1001.0, [f"{chunk}.parquet", f"{chunk}.times.parquet"], **noted)
+    noted = {
+        "cpu": 10.0,
+        "importing": 1.0,
+        "loading kernels": 0.5,
+        "compiling": 2.0,
+        "waiting": 7.0,
+    }
+    job(
+        tmp_path,
+        "runs",
+        "runs/routes/smooth/0",
+        1001.0,
+        [f"{chunk}.parquet", f"{chunk}.times.parquet"],
+        **noted,
+    )
     (tmp_path / chunk).parent.mkdir(parents=True)
-    parquet.write_table(pa.table({"id": ["a", "b"], "cpu_s": [2.0, 3.0], "wall_s": [2.5, 3.5]}), tmp_path / f"{chunk}.times.parquet")
-    figures = [f"results/smoke/song2016/figures/figure4.{ending}" for ending in ("svg", "png", "csv")]
+    parquet.write_table(
+        pa.table({"id": ["a", "b"], "cpu_s": [2.0, 3.0], "wall_s": [2.5, 3.5]}),
+        tmp_path / f"{chunk}.times.parquet",
+    )
+    figures = [
+        f"results/smoke/song2016/figures/figure4.{ending}" for ending in ("svg", "png", "csv")
+    ]
     job(tmp_path, "figure", "figures/figure4", 1050.0, figures, cpu=4.0, importing=1.0)
-    job(tmp_path, "figure", "figures/figure5", 900.0, ["results/smoke/song2016/figures/figure5.svg"], cpu=50.0)  # of an earlier start
+    job(
+        tmp_path,
+        "figure",
+        "figures/figure5",
+        900.0,
+        ["results/smoke/song2016/figures/figure5.svg"],
+        cpu=50.0,
+    )  # of an earlier start
     found, jobs, waited = command.spent(SESSION, tmp_path)
-    expected = {"planning": 5.0, "importing": 2.0, "loading kernels": 0.5, "compiling": 2.0, "drawing figures": 3.0}
-    expected |= {"checking paths, warm-up, files of runs": 1.5, "Snakemake itself": 20.0, "importing once for all jobs, forking": 5.0}
+    expected = {
+        "planning": 5.0,
+        "importing": 2.0,
+        "loading kernels": 0.5,
+        "compiling": 2.0,
+        "drawing figures": 3.0,
+    }
+    expected |= {
+        "checking paths, warm-up, files of runs": 1.5,
+        "Snakemake itself": 20.0,
+        "importing once for all jobs, forking": 5.0,
+    }
     expected |= {"starting and ending processes of jobs": 1.5}
     assert (found, jobs, waited) == (expected, 2, 7.0)
     table = command.lines(SESSION, found, jobs, waited)
-    assert table[0] == "2 jobs in 100 s on 2 cores; jobs waited 7 s for kernels that another job compiled"
+    assert (
+        table[0]
+        == "2 jobs in 100 s on 2 cores; jobs waited 7 s for kernels that another job compiled"
+    )
     assert "| planning | 5.0 | 2.5% |" in table
     assert table[-1] == "| cores idle, or busy with other programs | 159.5 | 79.8% |"
 
@@ -112,22 +160,39 @@ def test_a_note_of_snakemake_counts_the_process_that_is_forked(tmp_path, monkeyp
     monkeypatch.chdir(tmp_path)
     (tmp_path / ".snakemake").mkdir()
     with subprocess.Popen(
-        [sys.executable, "-c", "import time; sum(range(10_000_000)); print(flush=True); time.sleep(60)"], stdout=subprocess.PIPE
+        [
+            sys.executable,
+            "-c",
+            "import time; sum(range(10_000_000)); print(flush=True); time.sleep(60)",
+        ],
+        stdout=subprocess.PIPE,
     ) as fork:
         fork.stdout.readline()
         effort.keep(3, fork.pid)
         fork.kill()
     noted = effort.last(tmp_path)
-    assert (noted.cores, noted.forked > 0.03, noted.snakemake > 0, noted.started < noted.ended) == (3, True, True, True)
+    assert (noted.cores, noted.forked > 0.03, noted.snakemake > 0, noted.started < noted.ended) == (
+        3,
+        True,
+        True,
+        True,
+    )
 
 
-# Elsewhere there is no fork to count: libraries may not survive one there, so Snakemake starts an interpreter for each job (test_forks.py).
-@pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux only; elsewhere there are none to count")
+# Elsewhere there is no fork to count: libraries may not survive one there, so Snakemake starts an
+# interpreter for each job (test_forks.py).
+@pytest.mark.skipif(
+    sys.platform != "linux",
+    reason="jobs are forks on Linux only; elsewhere there are none to count",
+)
 def test_a_note_of_snakemake_counts_all_forks_to_their_end(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / ".snakemake").mkdir()
     forks = Forks(sys.executable, lambda: None)
-    source = "import sys, time; from bezierplan.running import effort; sum(range(10_000_000)); snakemake.write_text(effort.line())"
+    source = (
+        "import sys, time; from bezierplan.running import effort; sum(range(10_000_000)); "
+        "snakemake.write_text(effort.line())"
+    )
     noted = [tmp_path / str(number) for number in range(3)]
     assert all(forks.succeeds("work.py", source, file) for file in noted)
     effort.keep(2, forks.process)
@@ -138,7 +203,9 @@ def test_a_note_of_snakemake_counts_all_forks_to_their_end(tmp_path, monkeypatch
 
 
 def test_a_note_that_cannot_be_made_is_left_out(tmp_path, monkeypatch):
-    """The workflow has ended well: neither a killed process nor a missing folder may say otherwise."""
+    """The workflow has ended well: neither a killed process nor a missing folder may say
+    otherwise.
+    """
     monkeypatch.chdir(tmp_path)
     with subprocess.Popen([sys.executable, "-c", ""]) as gone:
         pass

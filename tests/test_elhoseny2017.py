@@ -1,4 +1,6 @@
-"""elhoseny2017: its printed numbers, worked example, audit and claims of its own; faults of its random fields and settings."""
+"""elhoseny2017: its printed numbers, worked example, audit and claims of its own; faults of its
+random fields and settings.
+"""
 
 import shutil
 from pathlib import Path as File
@@ -19,7 +21,10 @@ from bezierplan.study import reading, targets
 from bezierplan.study.jobs import job, problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
-PUBLISHED = {file.stem: audit.read_published(str(file)) for file in sorted((FOLDER / "published").glob("*.csv"))}
+PUBLISHED = {
+    file.stem: audit.read_published(str(file))
+    for file in sorted((FOLDER / "published").glob("*.csv"))
+}
 
 
 # Printed numbers.
@@ -37,7 +42,12 @@ def test_every_cell_of_the_tables_of_lengths_is_there():
 def test_every_cell_of_the_tables_of_times_is_there():
     assert len(PUBLISHED["table5"]) == len(PUBLISHED["table6"]) == 20
     assert PUBLISHED["table6"].query("method == 'prm' and obstacles == 15")["value"].item() == 1.9
-    assert PUBLISHED["table5"].query("method == 'mga_plain' and obstacles == 25 and statistic == 'std'")["value"].item() == 0.47
+    assert (
+        PUBLISHED["table5"]
+        .query("method == 'mga_plain' and obstacles == 25 and statistic == 'std'")["value"]
+        .item()
+        == 0.47
+    )
 
 
 # The worked example.
@@ -46,10 +56,25 @@ def test_every_cell_of_the_tables_of_times_is_there():
 def test_the_table_of_the_example():
     table = elhoseny2017.q_table(PUBLISHED).set_index("solutions")
     pairs = table.loc[["S1, S2", "S1, S3", "S2, S3"]]
-    assert pairs[["N11", "N00", "N10", "N01"]].to_numpy().tolist() == [[3, 2, 2, 3], [2, 3, 3, 2], [2, 2, 4, 2]]
+    assert pairs[["N11", "N00", "N10", "N01"]].to_numpy().tolist() == [
+        [3, 2, 2, 3],
+        [2, 3, 3, 2],
+        [2, 2, 4, 2],
+    ]
     assert pairs["Q"].tolist() == [0.0, 0.0, -0.3333]
     assert table.loc["mean", "Q"] == -0.1111
-    assert table.loc["S3", [f"gene {gene}" for gene in range(1, 11)]].tolist() == [1, 1, 1, 1, 0, 0, 0, 0, 0, 0]
+    assert table.loc["S3", [f"gene {gene}" for gene in range(1, 11)]].tolist() == [
+        1,
+        1,
+        1,
+        1,
+        0,
+        0,
+        0,
+        0,
+        0,
+        0,
+    ]
 
 
 def test_the_example_agrees_with_the_text():
@@ -74,7 +99,10 @@ def broken(rows, rule):
 
 
 def test_where_roadmaps_are_not_the_longest(rows):
-    assert broken(rows, "PRM the longest") == {"route=case2, obstacles=5, method=prm", "route=case2, obstacles=25, method=prm"}
+    assert broken(rows, "PRM the longest") == {
+        "route=case2, obstacles=5, method=prm",
+        "route=case2, obstacles=25, method=prm",
+    }
 
 
 def test_the_proposed_method_is_printed_as_the_shortest_and_ga_as_second(rows):
@@ -85,13 +113,18 @@ def test_the_proposed_method_is_printed_as_the_shortest_and_ga_as_second(rows):
 def test_the_least_possible_length_is_kept(rows):
     assert broken(rows, "counts less than 1.5") == set()
     turning_back = broken(rows, "at most 2 cells")
-    assert {"route=case2, obstacles=25, method=mga", "route=case1, obstacles=25, method=mga"} <= turning_back
+    assert {
+        "route=case2, obstacles=25, method=mga",
+        "route=case1, obstacles=25, method=mga",
+    } <= turning_back
     assert "route=case1, obstacles=20, method=mga" not in turning_back
 
 
 def test_where_the_proposed_method_is_not_the_cheapest(rows):
     places = {f"method=mga, obstacles={obstacles}, beside mga_plain" for obstacles in (5, 10, 15)}
-    assert broken(rows, "cheaper than all others") == places | {"method=mga, obstacles=5, beside ga"}
+    assert broken(rows, "cheaper than all others") == places | {
+        "method=mga, obstacles=5, beside ga"
+    }
 
 
 def test_tables_5_and_6_agree_on_the_proposed_method_and_not_on_ga(rows):
@@ -159,16 +192,26 @@ def results(side, least):
     return Results(twice, {}, pd.DataFrame())
 
 
-CHECK = function.Options(test="function", name="printed_over_bound", effect="ratio", effect_unit="-")
+CHECK = function.Options(
+    test="function", name="printed_over_bound", effect="ratio", effect_unit="-"
+)
 
 
 def test_printed_lengths_over_the_bounds():
     found = {"fields100": results(100, 150.0), "fields200": results(200, 300.0)}
     mark, effect, _, fields = elhoseny2017.printed_over_bound(CHECK, found, PUBLISHED)
     assert (mark, fields) == ("-", 80)
-    largest = {name: PUBLISHED[name].query("method != 'mga'")["value"].max() for name in ("table2", "table3")}
-    assert effect == pytest.approx(max(largest["table2"] / 151.5, largest["table3"] / 301.5), rel=1e-12)
-    low = {name: PUBLISHED[name].assign(value=150.0 * factor) for name, factor in (("table2", 1), ("table3", 2))}
+    largest = {
+        name: PUBLISHED[name].query("method != 'mga'")["value"].max()
+        for name in ("table2", "table3")
+    }
+    assert effect == pytest.approx(
+        max(largest["table2"] / 151.5, largest["table3"] / 301.5), rel=1e-12
+    )
+    low = {
+        name: PUBLISHED[name].assign(value=150.0 * factor)
+        for name, factor in (("table2", 1), ("table3", 2))
+    }
     assert elhoseny2017.printed_over_bound(CHECK, found, PUBLISHED | low)[0] == "+"
 
 
@@ -182,24 +225,72 @@ def folder(tmp_path):
 
 
 FAULTS = {
-    "no side": ("    side: 100\n", "", "problems: case1_100: workspace: published_like: side is needed"),
-    "no cell of the field": ("target: [100, 100]", "target: [101, 100]", "target: [101, 100]: outside the field; expected x and y from 0"),
-    "a start without coordinates": ("start: [0, 0]\n    target: [100, 100]", "start_cell: 0\n    target_cell: 5", "start_cell: 0: "),
+    "no side": (
+        "    side: 100\n",
+        "",
+        "problems: case1_100: workspace: published_like: side is needed",
+    ),
+    "no cell of the field": (
+        "target: [100, 100]",
+        "target: [101, 100]",
+        "target: [101, 100]: outside the field; expected x and y from 0",
+    ),
+    "a start without coordinates": (
+        "start: [0, 0]\n    target: [100, 100]",
+        "start_cell: 0\n    target_cell: 5",
+        "start_cell: 0: ",
+    ),
     "no layouts": (
         "layouts: &fields {smoke: 2, full: 10, extended: 40}",
         "layouts: &fields 5",
         "layouts: 5: expected a mapping with smoke, full, extended",
     ),
-    "obstacles below 0": ("[5, 10, 15, 20, 25]", "[-5, 10, 15, 20, 25]", "obstacles: 0: -5: expected a whole number from 0"),
+    "obstacles below 0": (
+        "[5, 10, 15, 20, 25]",
+        "[-5, 10, 15, 20, 25]",
+        "obstacles: 0: -5: expected a whole number from 0",
+    ),
     "a field with no way through": ("radius: 0.06,", "radius: 0.4,", "radius: "),
-    "a radius of 0": ("radius: 0.025,", "radius: 0,", "radius: 0: expected the radius of every circle"),
-    "an odd population": ("population: 60 ", "population: 61 ", "population: 61; parents are crossed in pairs"),
-    "a population of none": ("population: 60 ", "population: 0 ", "population: 0; expected a whole number at least 2"),
-    "no iterations": ("iterations: 80 ", "iterations: 0 ", "iterations: 0; expected a whole number at least 1"),
-    "a probability above 1": ("crossover_probability: 0.8", "crossover_probability: 1.8", "1.8; expected a number from 0 to 1"),
-    "a rate below 0": ("mutation_rate: 0.006", "mutation_rate: -0.006", "-0.006; expected a number from 0 to 1"),
-    "more first points than a curve can have": ("first_points: 5", "first_points: 60", "first_points: 60; a curve has at most 59"),
-    "an unknown rule for diversity": ("diversity: more_offspring", "diversity: more", "diversity: 'more'; expected one of none"),
+    "a radius of 0": (
+        "radius: 0.025,",
+        "radius: 0,",
+        "radius: 0: expected the radius of every circle",
+    ),
+    "an odd population": (
+        "population: 60 ",
+        "population: 61 ",
+        "population: 61; parents are crossed in pairs",
+    ),
+    "a population of none": (
+        "population: 60 ",
+        "population: 0 ",
+        "population: 0; expected a whole number at least 2",
+    ),
+    "no iterations": (
+        "iterations: 80 ",
+        "iterations: 0 ",
+        "iterations: 0; expected a whole number at least 1",
+    ),
+    "a probability above 1": (
+        "crossover_probability: 0.8",
+        "crossover_probability: 1.8",
+        "1.8; expected a number from 0 to 1",
+    ),
+    "a rate below 0": (
+        "mutation_rate: 0.006",
+        "mutation_rate: -0.006",
+        "-0.006; expected a number from 0 to 1",
+    ),
+    "more first points than a curve can have": (
+        "first_points: 5",
+        "first_points: 60",
+        "first_points: 60; a curve has at most 59",
+    ),
+    "an unknown rule for diversity": (
+        "diversity: more_offspring",
+        "diversity: more",
+        "diversity: 'more'; expected one of none",
+    ),
 }
 
 
@@ -216,9 +307,13 @@ def test_a_fault_is_told_in_one_line(fault, folder):
 
 
 def test_means_of_fields_follow_the_free_diagonals():
-    """The expected length is that of a monotone path: 1.5 N where the diagonal is free, and 2 N where it is not."""
+    """The expected length is that of a monotone path: 1.5 N where the diagonal is free, and 2 N
+    where it is not.
+    """
     blocked = np.array([1 - (1 - np.sqrt(2) * 0.025) ** (2 * n) for n in (5, 25)])
-    np.testing.assert_allclose(elhoseny2017.expected_length(100, 0.025, np.array([5, 25])), 150 + 50 * blocked)
+    np.testing.assert_allclose(
+        elhoseny2017.expected_length(100, 0.025, np.array([5, 25])), 150 + 50 * blocked
+    )
 
 
 def test_memory_is_of_the_fields_of_the_study():
@@ -227,11 +322,17 @@ def test_memory_is_of_the_fields_of_the_study():
     given = arguments("elhoseny2017", "memory")
     same = {key: given[key] for key in ("radius", "clear_ends")}
     assert described["workspaces"]["gravel"] == {"kind": "random_field", "unit": "cell", **same}
-    assert (gravel["start"], gravel["target"], gravel["side"]) == ([0, 0], [given["side"]] * 2, given["side"])
+    assert (gravel["start"], gravel["target"], gravel["side"]) == (
+        [0, 0],
+        [given["side"]] * 2,
+        given["side"],
+    )
     assert gravel["obstacles"] == given["obstacles"]
     table = elhoseny2017.memory(**given).set_index(["held", "obstacles", "side"])["megabytes"]
     cells = table["occupied cells"]
-    assert (cells.xs(500, level="side") == 501**2 / 1e6).all(), "obstacles take no cells of their own"
+    assert (cells.xs(500, level="side") == 501**2 / 1e6).all(), (
+        "obstacles take no cells of their own"
+    )
     assert table["certified check"].xs(500, level="side").is_monotonic_increasing, "but edges"
 
 
@@ -240,17 +341,29 @@ def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
     """Claim C19 compares both: evaluations on three fields for each number of obstacles."""
     own = study("elhoseny2017")
     made, _ = problems.build_all(problems_job(own, "fields100", "full"), own.folder)
-    names = [f"{problem}_{layout}_{obstacles}" for layout in range(3) for obstacles in (5, 10, 15, 20, 25)]
+    names = [
+        f"{problem}_{layout}_{obstacles}"
+        for layout in range(3)
+        for obstacles in (5, 10, 15, 20, 25)
+    ]
     evaluations = {}
     for method in ("mga", "mga_plain_100"):
         described = job(own, "fields100", method, "full", 0)
-        plans = [execution.run(described, next(iter(execution.conditions([name], {}))), 0, made[name]) for name in names]
+        plans = [
+            execution.run(described, next(iter(execution.conditions([name], {}))), 0, made[name])
+            for name in names
+        ]
         evaluations[method] = sum(plan.evaluations for plan in plans)
     assert evaluations["mga_plain_100"] == pytest.approx(evaluations["mga"], rel=0.1)
 
 
 @pytest.mark.parametrize(
-    ("key", "fitted"), [("song2016", set()), ("meledje", {"table2", "table3", "table4", "table5"}), ("ma2020", {"table1", "table2"})]
+    ("key", "fitted"),
+    [
+        ("song2016", set()),
+        ("meledje", {"table2", "table3", "table4", "table5"}),
+        ("ma2020", {"table1", "table2"}),
+    ],
 )
 def test_numbers_to_which_a_map_was_fitted_are_not_compared_with_its_bound(key, fitted):
     layouts = targets.audit_params(studies(), "smoke", key)["job"]["layouts"]

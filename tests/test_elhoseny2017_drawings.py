@@ -1,4 +1,6 @@
-"""elhoseny2017: the radius of the obstacles from the printed lengths, and what its drawings draw."""
+"""elhoseny2017: the radius of the obstacles from the printed lengths, and what its drawings
+draw.
+"""
 
 import math
 from pathlib import Path as File
@@ -36,14 +38,20 @@ def test_expected_lengths_are_those_of_free_and_blocked_diagonals():
         free = (abs(x - y) / math.sqrt(2) > radius).all(axis=1)
         lengths = np.where(free, 150.0, 200.0)
         error = lengths.std() / math.sqrt(trials)
-        assert elhoseny2017.expected_length(100, radius, obstacles) == pytest.approx(lengths.mean(), abs=4 * error)
+        assert elhoseny2017.expected_length(100, radius, obstacles) == pytest.approx(
+            lengths.mean(), abs=4 * error
+        )
     assert elhoseny2017.expected_length(200, 0.025, 0) == 300
     assert elhoseny2017.expected_length(200, 0.5, 1000) == pytest.approx(400)
 
 
 def test_the_lengths_along_free_and_blocked_diagonals_are_those_of_cells4():
-    empty = random_field.from_circles(Circles((0, 40, 0, 40), np.empty((0, 2)), np.empty(0), "cell"))
-    assert cell_length.length4(Path("polyline", np.array([[0.0, 0], [40, 40]])), empty) == elhoseny2017.expected_length(40, 0.025, 0)
+    empty = random_field.from_circles(
+        Circles((0, 40, 0, 40), np.empty((0, 2)), np.empty(0), "cell")
+    )
+    assert cell_length.length4(
+        Path("polyline", np.array([[0.0, 0], [40, 40]])), empty
+    ) == elhoseny2017.expected_length(40, 0.025, 0)
     around = Path("polyline", np.array([[0.0, 0], [14.2, 23.7], [40, 40]]))
     assert cell_length.length4(around, empty) == elhoseny2017.expected_length(40, 0.7, 1000) == 80
 
@@ -65,7 +73,12 @@ def test_the_curves_beside_the_printed_lengths():
     assert set(frame["side"]) == {100, 200}
     own = frame[(frame["side"] == 100) & (frame["lengths"] == "printed, Case 2")]
     assert own["cells4"].tolist() == [159, 168, 183, 195, 211]
-    assert frame[frame["lengths"].str.startswith("R")].groupby("lengths")["cells4"].max().is_monotonic_increasing
+    assert (
+        frame[frame["lengths"].str.startswith("R")]
+        .groupby("lengths")["cells4"]
+        .max()
+        .is_monotonic_increasing
+    )
 
 
 def colours(operator):
@@ -120,9 +133,13 @@ def test_the_genes_of_a_chromosome_are_those_of_its_field():
     path = Path("bezier", np.array([(0, 0), *points, (4, 4)], dtype=float))
     np.testing.assert_allclose(curve_of(marks)[[0, -1]] - (0, base), [[0, 0], [4, 4]])
     middle = curves.sample_matrix("bezier", 4, 201) @ path.points
-    distances = np.hypot(*(curve_of(marks)[:, None] - (0, base) - middle).transpose(2, 0, 1)).min(axis=1)
+    distances = np.hypot(*(curve_of(marks)[:, None] - (0, base) - middle).transpose(2, 0, 1)).min(
+        axis=1
+    )
     assert distances.max() < 0.05
-    grid = random_field.from_circles(Circles((0, 4, 0, 4), np.array([[2.0, 2.0]]), np.array([0.8]), "cell"))
+    grid = random_field.from_circles(
+        Circles((0, 4, 0, 4), np.array([[2.0, 2.0]]), np.array([0.8]), "cell")
+    )
     assert check(curves.bezier_pieces(path), region(grid)).feasible
 
 
@@ -145,4 +162,6 @@ def test_ten_points_are_judged_in_turn():
     assert len(rings) == len(accepted)
     curve = curve_of(marks)
     np.testing.assert_allclose(curve[[0, -1]], [[4, 0], [16, 18]])
-    assert np.hypot(*(curve[:, None] - circles[["x", "y"]].to_numpy()).transpose(2, 0, 1)).min() > 1 - math.sqrt(0.5)
+    assert np.hypot(
+        *(curve[:, None] - circles[["x", "y"]].to_numpy()).transpose(2, 0, 1)
+    ).min() > 1 - math.sqrt(0.5)

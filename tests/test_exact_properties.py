@@ -1,4 +1,6 @@
-"""What holds for every workspace: the check agrees with dense sampling, and neither it nor a bound depends on how a problem is written."""
+"""What holds for every workspace: the check agrees with dense sampling, and neither it nor a bound
+depends on how a problem is written.
+"""
 
 import itertools
 import math
@@ -15,7 +17,12 @@ from hypothesis.extra import numpy as hnp
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.curves import bernstein, bezier_pieces, least_points
 from bezierplan.geometry.region import region
-from bezierplan.geometry.shortest_paths import centre_path, lattice_path, least_length, shortest_path
+from bezierplan.geometry.shortest_paths import (
+    centre_path,
+    lattice_path,
+    least_length,
+    shortest_path,
+)
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -25,19 +32,22 @@ from bezierplan.workspaces.problem import Path, Problem
 MAPS = File(__file__).parent / "data" / "maps"
 KINDS = ("circles", "cells", "polygons")
 
-# Curves of every degree, and the one whose control points are no points of the plane alone; `spline` is made of cubic pieces as well.
+# Curves of every degree, and the one whose control points are no points of the plane alone;
+# `spline` is made of cubic pieces as well.
 CURVES = ("polyline", "piecewise_quadratic", "piecewise_cubic", "bezier", "ferguson")
 
 # Deeper than the first is never called free, not deeper than the second never colliding.
 CERTAINLY_DEEP = 4e-9
 CERTAINLY_FREE = 5e-10
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Against dense sampling
 
 
 class Judge:
-    """Depth and clearance of points of a workspace: shapely's distances to free and to blocked space; closed forms for circles."""
+    """Depth and clearance of points of a workspace: shapely's distances to free and to blocked
+    space; closed forms for circles.
+    """
 
     def __init__(self, workspace):
         self.circles = workspace if isinstance(workspace, Circles) else None
@@ -58,10 +68,17 @@ class Judge:
         places = shapely.points(points)
         signed = shapely.distance(self.blocked, places)
         # shapely gives no number for the distance to free space if there is none.
-        signed -= np.where(signed > 0, 0, np.nan_to_num(shapely.distance(self.free, places), nan=math.inf))
+        signed -= np.where(
+            signed > 0, 0, np.nan_to_num(shapely.distance(self.free, places), nan=math.inf)
+        )
         if self.circles:
             offsets = points[:, None] - self.circles.centres
-            signed = np.minimum(signed, (np.hypot(offsets[..., 0], offsets[..., 1]) - self.circles.radii).min(axis=1, initial=math.inf))
+            signed = np.minimum(
+                signed,
+                (np.hypot(offsets[..., 0], offsets[..., 1]) - self.circles.radii).min(
+                    axis=1, initial=math.inf
+                ),
+            )
         return signed
 
 
@@ -80,7 +97,9 @@ def evaluate(pieces, at):
 
 
 def least(function, pieces, samples, minima=4):
-    """Least value of a function of points along a path: over its joints and uniform samples, refined to 1e-7 around the least minima."""
+    """Least value of a function of points along a path: over its joints and uniform samples,
+    refined to 1e-7 around the least minima.
+    """
     at = np.union1d(np.linspace(0, len(pieces), samples), np.arange(len(pieces)))
     values = function(evaluate(pieces, at))
     padded = np.pad(values, 1, constant_values=math.inf)
@@ -115,7 +134,9 @@ def assert_check_is_right(workspace, pieces, blocked, judge):
 
 
 def random_path(rng, curve, extent):
-    """A random path in a square workspace; every other one is short. Bezier curves have degrees up to 11."""
+    """A random path in a square workspace; every other one is short. Bezier curves have degrees up
+    to 11.
+    """
     count = int(rng.integers(least_points(curve), 13))
     if curve == "ferguson":
         count -= count % 2  # points and tangents by turns
@@ -123,15 +144,28 @@ def random_path(rng, curve, extent):
         low, high = extent
         return Path(curve, rng.uniform(low, high, (count, 2)))
     size = 0.1 * (extent[1] - extent[0])
-    return Path(curve, rng.uniform(*extent, 2) + np.cumsum(rng.normal(0, size / math.sqrt(count), (count, 2)), axis=0))
+    return Path(
+        curve,
+        rng.uniform(*extent, 2)
+        + np.cumsum(rng.normal(0, size / math.sqrt(count), (count, 2)), axis=0),
+    )
 
 
 def random_workspaces(kind, rng):
     if kind == "circles":
-        return [Circles((-10.0, 10.0, -10.0, 10.0), rng.uniform(-9, 9, (n, 2)), rng.uniform(0.2, 2, n), "m") for n in (3, 8, 12)]
+        return [
+            Circles(
+                (-10.0, 10.0, -10.0, 10.0), rng.uniform(-9, 9, (n, 2)), rng.uniform(0.2, 2, n), "m"
+            )
+            for n in (3, 8, 12)
+        ]
     if kind == "cells":
         song = from_lines((MAPS / "song2016.txt").read_text().splitlines(), 10.0, "m")
-        return [song, Grid(rng.random((12, 12)) < 0.25, 1.0, "m"), Grid(rng.random((20, 20)) < 0.1, 0.1, "m")]
+        return [
+            song,
+            Grid(rng.random((12, 12)) < 0.25, 1.0, "m"),
+            Grid(rng.random((20, 20)) < 0.1, 0.1, "m"),
+        ]
     complex2 = polygons_from_geojson((BENCHMARK_MAPS / "complex2.geojson").read_text(), "m")
     triangles = tuple((rng.uniform(1, 19, 2) + rng.uniform(-3, 3, (3, 2)),) for _ in range(8))
     spiral = polygons_from_geojson((BENCHMARK_MAPS / "square_spiral.geojson").read_text(), "m")
@@ -164,12 +198,19 @@ def test_tangent_paths_against_dense_sampling(curve, kind):
                 return np.hypot(*(points - centre).T)
 
             radius = least(function, pieces, 400)
-            workspaces = [Circles((-99.0, 99.0, -99.0, 99.0), centre[None], np.array([radius + depth]), "m") for depth in (0, 4e-9)]
+            workspaces = [
+                Circles((-99.0, 99.0, -99.0, 99.0), centre[None], np.array([radius + depth]), "m")
+                for depth in (0, 4e-9)
+            ]
         else:
             angle = 0.0 if kind == "cells" else rng.uniform(-1, 1)
             normal = np.array([-math.sin(angle), math.cos(angle)])
             least_height = least(lambda points, normal=normal: points @ normal, pieces, 400)
-            pieces = pieces + (50 - least_height) * normal + 50 * np.array([math.cos(angle), math.sin(angle)])
+            pieces = (
+                pieces
+                + (50 - least_height) * normal
+                + 50 * np.array([math.cos(angle), math.sin(angle)])
+            )
             workspaces = [half_blocked(kind, angle)] * 2
         for workspace, depth in zip(workspaces, (0, 4.2e-9)):
             moved = pieces if kind == "circles" else pieces - depth * normal
@@ -186,10 +227,12 @@ def half_blocked(kind, angle):
     along = np.array([math.cos(angle), math.sin(angle)])
     normal = np.array([-along[1], along[0]])
     ends = 50 * normal + np.array([[-400], [400]]) * along
-    return Polygons((-500.0, 500.0, -500.0, 500.0), ((np.concatenate([ends, ends[::-1] - 50 * normal]),),), "m")
+    return Polygons(
+        (-500.0, 500.0, -500.0, 500.0), ((np.concatenate([ends, ends[::-1] - 50 * normal]),),), "m"
+    )
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # However a problem is written
 
 SIZE = 6
@@ -199,13 +242,17 @@ PLACE = st.tuples(LATTICE, LATTICE)
 
 @st.composite
 def circle_workspaces(draw):
-    table = draw(st.lists(st.tuples(LATTICE, LATTICE, st.sampled_from([0.25, 0.5, 1.0, 1.25])), max_size=5))
+    table = draw(
+        st.lists(st.tuples(LATTICE, LATTICE, st.sampled_from([0.25, 0.5, 1.0, 1.25])), max_size=5)
+    )
     table = np.array(table, dtype=float).reshape(-1, 3)
     return Circles((0.0, float(SIZE), 0.0, float(SIZE)), table[:, :2], table[:, 2], "m")
 
 
 def grid_workspaces():
-    return hnp.arrays(bool, (SIZE, SIZE), elements=st.sampled_from([False, False, True])).map(lambda occupied: Grid(occupied, 1.0, "m"))
+    return hnp.arrays(bool, (SIZE, SIZE), elements=st.sampled_from([False, False, True])).map(
+        lambda occupied: Grid(occupied, 1.0, "m")
+    )
 
 
 @st.composite
@@ -245,10 +292,20 @@ def test_touching_paths_against_dense_sampling(workspace, pieces):
 def mapped(workspace, flip):
     """A workspace mirrored at its main diagonal, or at its vertical middle line."""
     if isinstance(workspace, Grid):
-        return Grid(np.ascontiguousarray(workspace.occupied.T if flip == "diagonal" else workspace.occupied[:, ::-1]), workspace.cell, "m")
+        return Grid(
+            np.ascontiguousarray(
+                workspace.occupied.T if flip == "diagonal" else workspace.occupied[:, ::-1]
+            ),
+            workspace.cell,
+            "m",
+        )
     if isinstance(workspace, Circles):
-        return Circles(workspace.bounds, mapped_points(workspace.centres, flip), workspace.radii, "m")
-    rings = tuple(tuple(mapped_points(ring, flip) for ring in obstacle) for obstacle in workspace.obstacles)
+        return Circles(
+            workspace.bounds, mapped_points(workspace.centres, flip), workspace.radii, "m"
+        )
+    rings = tuple(
+        tuple(mapped_points(ring, flip) for ring in obstacle) for obstacle in workspace.obstacles
+    )
     return Polygons(workspace.bounds, rings, "m")
 
 
@@ -263,7 +320,11 @@ def moved(workspace, by):
     bounds = (left + by[0], right + by[0], bottom + by[1], top + by[1])
     if isinstance(workspace, Circles):
         return Circles(bounds, workspace.centres + by, workspace.radii, "m")
-    return Polygons(bounds, tuple(tuple(ring + by for ring in obstacle) for obstacle in workspace.obstacles), "m")
+    return Polygons(
+        bounds,
+        tuple(tuple(ring + by for ring in obstacle) for obstacle in workspace.obstacles),
+        "m",
+    )
 
 
 def pieces_along(bound):
@@ -285,27 +346,48 @@ def test_a_shortest_path_is_free_and_no_shorter_than_the_straight_line(problem, 
 def test_a_straight_line_is_the_shortest_path_if_it_is_free(problem):
     line = np.array([[problem.start, problem.target]])
     if check(line, region(problem.workspace)).feasible:
-        assert shortest_path(problem).length == pytest.approx(math.dist(problem.start, problem.target), rel=1e-12)
+        assert shortest_path(problem).length == pytest.approx(
+            math.dist(problem.start, problem.target), rel=1e-12
+        )
     else:
         assert shortest_path(problem).length > math.dist(problem.start, problem.target)
 
 
 @settings(deadline=None, max_examples=100)
-@given(PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]), st.sampled_from(["open", "closed"]))
+@given(
+    PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]), st.sampled_from(["open", "closed"])
+)
 def test_mirroring(problem, pieces, flip, corner_cutting):
-    mirrored = Problem("", mapped(problem.workspace, flip), *(tuple(mapped_points(p, flip)) for p in (problem.start, problem.target)))
-    assert shortest_path(mirrored, corner_cutting).length == pytest.approx(shortest_path(problem, corner_cutting).length, rel=1e-9)
+    mirrored = Problem(
+        "",
+        mapped(problem.workspace, flip),
+        *(tuple(mapped_points(p, flip)) for p in (problem.start, problem.target)),
+    )
+    assert shortest_path(mirrored, corner_cutting).length == pytest.approx(
+        shortest_path(problem, corner_cutting).length, rel=1e-9
+    )
     found = check(pieces, region(problem.workspace), corner_cutting)
-    assert_same_check(check(mapped_points(pieces, flip), region(mirrored.workspace), corner_cutting), found)
+    assert_same_check(
+        check(mapped_points(pieces, flip), region(mirrored.workspace), corner_cutting), found
+    )
 
 
 @settings(deadline=None, max_examples=60)
-@given(st.builds(Problem, st.just(""), st.one_of(circle_workspaces(), polygon_workspaces()), PLACE, PLACE), paths())
+@given(
+    st.builds(
+        Problem, st.just(""), st.one_of(circle_workspaces(), polygon_workspaces()), PLACE, PLACE
+    ),
+    paths(),
+)
 def test_shifting(problem, pieces):
     by = np.array([16.0, -32.0])
-    shifted = Problem("", moved(problem.workspace, by), *(tuple(by + p) for p in (problem.start, problem.target)))
+    shifted = Problem(
+        "", moved(problem.workspace, by), *(tuple(by + p) for p in (problem.start, problem.target))
+    )
     assert shortest_path(shifted).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
-    assert_same_check(check(pieces + by, region(shifted.workspace)), check(pieces, region(problem.workspace)))
+    assert_same_check(
+        check(pieces + by, region(shifted.workspace)), check(pieces, region(problem.workspace))
+    )
 
 
 def assert_same_check(a, b):
@@ -319,14 +401,20 @@ def assert_same_check(a, b):
 @given(grid_workspaces(), PLACE, PLACE, paths())
 def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     row, column = np.nonzero(grid.occupied)
-    squares = tuple((np.array([(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)], dtype=float),) for x, y in zip(column, row))
+    squares = tuple(
+        (np.array([(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)], dtype=float),)
+        for x, y in zip(column, row)
+    )
     squares = Polygons(grid.bounds, squares, "m")
     assert shortest_path(Problem("", squares, start, target)).length == pytest.approx(
         shortest_path(Problem("", grid, start, target)).length, rel=1e-12
     )
     found = check(pieces, region(grid))
-    # The parameter depends on which depth above the tolerance is noticed, which is free; where a path dives in slowly it matters.
-    assert_same_check(check(pieces, region(squares))._replace(collision_at=found.collision_at), found)
+    # The parameter depends on which depth above the tolerance is noticed, which is free; where a
+    # path dives in slowly it matters.
+    assert_same_check(
+        check(pieces, region(squares))._replace(collision_at=found.collision_at), found
+    )
 
 
 @settings(deadline=None, max_examples=80)
@@ -338,11 +426,18 @@ def test_a_larger_obstacle_makes_no_path_shorter(problem, place):
         occupied[workspace.cell_of(*place)] = True
         larger = Grid(occupied, 1.0, "m")
     elif isinstance(workspace, Circles):
-        larger = Circles(workspace.bounds, np.vstack([workspace.centres, place]), np.append(workspace.radii, 0.75), "m")
+        larger = Circles(
+            workspace.bounds,
+            np.vstack([workspace.centres, place]),
+            np.append(workspace.radii, 0.75),
+            "m",
+        )
     else:
         ring = np.clip(np.add(place, [(-1, -1), (1, -1), (0.5, 1.5)]), 0, SIZE)
         larger = Polygons(workspace.bounds, (*workspace.obstacles, (ring,)), "m")
-    assert shortest_path(problem._replace(workspace=larger)).length >= shortest_path(problem).length * (1 - 1e-12)
+    assert shortest_path(problem._replace(workspace=larger)).length >= shortest_path(
+        problem
+    ).length * (1 - 1e-12)
 
 
 def regular(circle, corners, shape):
@@ -360,7 +455,9 @@ def test_circles_lie_between_polygons_inside_and_around_them(circles, start, tar
     lengths = []
     for shape in ("inside", "around"):
         rings = tuple((regular(circle, 60, shape),) for circle in table)
-        lengths.append(shortest_path(Problem("", Polygons(circles.bounds, rings, "m"), start, target)).length)
+        lengths.append(
+            shortest_path(Problem("", Polygons(circles.bounds, rings, "m"), start, target)).length
+        )
     length = shortest_path(Problem("", circles, start, target)).length
     assert lengths[0] * (1 - 1e-9) <= length <= lengths[1] * (1 + 1e-9)
 
@@ -385,8 +482,16 @@ def split(piece, t):
 
 
 @settings(deadline=None, max_examples=150)
-@given(WORKSPACES, paths(), st.integers(1, 3), st.floats(0.05, 0.95), st.sampled_from(["open", "closed"]))
-def test_the_verdict_does_not_depend_on_how_a_path_is_written(workspace, pieces, times, t, corner_cutting):
+@given(
+    WORKSPACES,
+    paths(),
+    st.integers(1, 3),
+    st.floats(0.05, 0.95),
+    st.sampled_from(["open", "closed"]),
+)
+def test_the_verdict_does_not_depend_on_how_a_path_is_written(
+    workspace, pieces, times, t, corner_cutting
+):
     blocked = region(workspace)
     found = check(pieces, blocked, corner_cutting)
     higher = check(np.array([elevated(piece, times) for piece in pieces]), blocked, corner_cutting)
@@ -412,7 +517,10 @@ def test_lattice_centre_and_any_angle_paths(grid, start, target):
     """Each serves more routes than the one before it, and all of them are free."""
     ends = [tuple(value + 0.5 for value in cell[::-1]) for cell in (start, target)]
     problem = Problem("", grid, *ends)
-    bounds = [lattice_path(grid.occupied, start, target, math.sqrt(2), rule) for rule in ("none", "one", "free")]
+    bounds = [
+        lattice_path(grid.occupied, start, target, math.sqrt(2), rule)
+        for rule in ("none", "one", "free")
+    ]
     bounds += [centre_path(problem), shortest_path(problem)]
     blocked = region(grid)
     for bound in bounds:

@@ -12,7 +12,9 @@ from bezierplan.workspaces import grid
 
 PACKAGE = Path(bezierplan.__file__).parent
 PROMPT = ">>> "
-FILES = [file for file in sorted(PACKAGE.rglob("*.py")) if PROMPT in file.read_text(encoding="utf-8")]
+FILES = [
+    file for file in sorted(PACKAGE.rglob("*.py")) if PROMPT in file.read_text(encoding="utf-8")
+]
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(PACKAGE).as_posix())

@@ -20,7 +20,17 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.results import Results
 from bezierplan.figures import panels as kinds_of_panel
 from bezierplan.figures import sheet, style
-from bezierplan.figures.panels import Sources, along_path, boxes, convergence, dots, drawing, lines, paths, workspace
+from bezierplan.figures.panels import (
+    Sources,
+    along_path,
+    boxes,
+    convergence,
+    dots,
+    drawing,
+    lines,
+    paths,
+    workspace,
+)
 from bezierplan.geometry import curves
 from bezierplan.workspaces import ground, random_field
 from bezierplan.workspaces.circles import Circles
@@ -35,8 +45,12 @@ def grid() -> Grid:
     return from_lines(["....", ".##.", "..#.", "...."], 10.0, "unit")
 
 
-def results(feasible: tuple[bool, ...] = (True, True, False), curve: str = "piecewise_quadratic") -> Results:
-    """Runs of one method on one problem, the later the shorter; the last one stops a generation early."""
+def results(
+    feasible: tuple[bool, ...] = (True, True, False), curve: str = "piecewise_quadratic"
+) -> Results:
+    """Runs of one method on one problem, the later the shorter; the last one stops a generation
+    early.
+    """
     problem = Problem("0_15", grid(), (5.0, 5.0), (35.0, 35.0))
     points = np.array([problem.start, (5.0, 25.0), (5.0, 35.0), (5.0, 35.0), problem.target])
     runs = pd.DataFrame(
@@ -61,15 +75,23 @@ def results(feasible: tuple[bool, ...] = (True, True, False), curve: str = "piec
 
 
 def other_workspaces() -> dict[str, Workspace]:
-    circles = Circles((-10.0, 10.0, -5.0, 5.0), np.array([[0.0, 1.0], [4.0, -2.0]]), np.array([1.0, 2.0]), "m")
+    circles = Circles(
+        (-10.0, 10.0, -5.0, 5.0), np.array([[0.0, 1.0], [4.0, -2.0]]), np.array([1.0, 2.0]), "m"
+    )
     square = np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 4.0], [1.0, 4.0]])
     hole = np.array([[3.0, 2.0], [5.0, 2.0], [5.0, 3.0], [3.0, 3.0]])
     return {"circles": circles, "polygons": Polygons((0.0, 10.0, 0.0, 5.0), ((square, hole),), "m")}
 
 
 def scene(found: Results) -> sheet.Scene:
-    workspaces = {"map": grid(), "narrow": from_lines(["..."] * 4, 10.0, "unit"), **other_workspaces()}
-    return sheet.Scene({"routes": found.problems}, workspaces, {"smooth": "smooth (quadratic pieces)"}, "unit")
+    workspaces = {
+        "map": grid(),
+        "narrow": from_lines(["..."] * 4, 10.0, "unit"),
+        **other_workspaces(),
+    }
+    return sheet.Scene(
+        {"routes": found.problems}, workspaces, {"smooth": "smooth (quadratic pieces)"}, "unit"
+    )
 
 
 def panels() -> list[dict]:
@@ -78,13 +100,21 @@ def panels() -> list[dict]:
         {"kind": "paths", "title": "0 to 15", **run},
         {"kind": "convergence", "title": "0 to 15", **run},
         {"kind": "along_path", "title": "0 to 15", **run, "quantity": "curvature", "limit": 0.1},
-        {"kind": "workspace", "title": "embedded", "workspace": "narrow", "numbers": "all", "embed": True},
+        {
+            "kind": "workspace",
+            "title": "embedded",
+            "workspace": "narrow",
+            "numbers": "all",
+            "embed": True,
+        },
         {"kind": "workspace", "title": "circles", "workspace": "circles"},
     ]
 
 
 def comparison(published: pd.DataFrame | None = None) -> Results:
-    """Runs of three methods with two, three and five points, in a workspace of circles; objectives are methods' bases plus the repeat."""
+    """Runs of three methods with two, three and five points, in a workspace of circles; objectives
+    are methods' bases plus the repeat.
+    """
     problem = Problem("field", other_workspaces()["circles"], (-9.0, 0.0), (9.0, 0.0))
     points = np.array([problem.start, (0.0, 9.0), problem.target])
     runs = pd.DataFrame(
@@ -99,7 +129,10 @@ def comparison(published: pd.DataFrame | None = None) -> Results:
             "feasible": repeat % 4 > 0,
             "collision_at": np.nan if repeat % 4 else 0.5,
             "bound": 18.5,
-            "history": [base + number + repeat + 9.0, *([base + number + repeat] * (1 + repeat % 2))],
+            "history": [
+                base + number + repeat + 9.0,
+                *([base + number + repeat] * (1 + repeat % 2)),
+            ],
             "path_curve": "bezier",
             "path_points": points.ravel().tolist(),
         }
@@ -112,7 +145,9 @@ def comparison(published: pd.DataFrame | None = None) -> Results:
 
 
 def printed_means() -> pd.DataFrame:
-    """Published numbers: a mean of a method, one of a method with five points, and what is no mean of the objective."""
+    """Published numbers: a mean of a method, one of a method with five points, and what is no mean
+    of the objective.
+    """
     return pd.DataFrame(
         {
             "method": ["smooth", "smooth", "coarse", "coarse"],
@@ -128,12 +163,17 @@ def printed_means() -> pd.DataFrame:
 
 def sequence() -> pd.DataFrame:
     """A table of a study's function: two sequences of numbers, one of them long."""
-    short, long = pd.DataFrame({"map": "short", "k": range(9)}), pd.DataFrame({"map": "long", "k": range(300)})
+    short, long = (
+        pd.DataFrame({"map": "short", "k": range(9)}),
+        pd.DataFrame({"map": "long", "k": range(300)}),
+    )
     return pd.concat([short, long]).assign(value=lambda table: np.sin(table["k"]))
 
 
 def marks(home: Workspace | None = None) -> pd.DataFrame:
-    """A drawing of a study's function: every mark once, about the middle of a workspace where there is one."""
+    """A drawing of a study's function: every mark once, about the middle of a workspace where there
+    is one.
+    """
     x, y = (home.bounds[1] / 2, home.bounds[3] / 2) if home else (0.0, 0.0)
     rows = [
         {"mark": "cell", "role": "obstacle", "x": x, "y": y, "width": 4.0, "height": 2.0},
@@ -153,12 +193,50 @@ def comparing_panels() -> list[dict]:
     smooth = {"experiment": "routes", "where": {"method": "smooth"}}
     return [
         {"kind": "convergence", "title": "methods", **runs, "hue": "method"},
-        {"kind": "convergence", "title": "points", **smooth, "hue": "points", "statistic": "median"},
-        {"kind": "lines", "title": "points", **smooth, "x": "points", "metric": "objective", "repeats": [0, 1]},
-        {"kind": "lines", "title": "methods", **runs, "x": "points", "metric": "length", "hue": "method"},
-        {"kind": "lines", "title": "sequence", "data": "sequence", "where": {"map": "long"}, "x": "k", "metric": "value"},
-        {"kind": "dots", "title": "points", **runs, "x": "points", "hue": "method", "metric": "length"},
-        {"kind": "paths", "title": "explicit", "explicit": {"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]}},
+        {
+            "kind": "convergence",
+            "title": "points",
+            **smooth,
+            "hue": "points",
+            "statistic": "median",
+        },
+        {
+            "kind": "lines",
+            "title": "points",
+            **smooth,
+            "x": "points",
+            "metric": "objective",
+            "repeats": [0, 1],
+        },
+        {
+            "kind": "lines",
+            "title": "methods",
+            **runs,
+            "x": "points",
+            "metric": "length",
+            "hue": "method",
+        },
+        {
+            "kind": "lines",
+            "title": "sequence",
+            "data": "sequence",
+            "where": {"map": "long"},
+            "x": "k",
+            "metric": "value",
+        },
+        {
+            "kind": "dots",
+            "title": "points",
+            **runs,
+            "x": "points",
+            "hue": "method",
+            "metric": "length",
+        },
+        {
+            "kind": "paths",
+            "title": "explicit",
+            "explicit": {"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]},
+        },
         {"kind": "boxes", "title": "methods", **runs, "metric": "objective"},
         {"kind": "drawing", "title": "marks", "data": "marks"},
         {"kind": "drawing", "title": "marks in a field", "data": "marks", "workspace": "circles"},
@@ -166,13 +244,22 @@ def comparing_panels() -> list[dict]:
 
 
 def gallery(panels: int) -> list[dict]:
-    run = {"experiment": "routes", "where": {"method": "smooth", "points": 3}, "pick": {"median": "length"}}
-    return [{"kind": "paths", "title": f"n = {n}", **run, "control": "points", "view": [-9, 9, -4, 5]} for n in range(panels)]
+    run = {
+        "experiment": "routes",
+        "where": {"method": "smooth", "points": 3},
+        "pick": {"median": "length"},
+    }
+    return [
+        {"kind": "paths", "title": f"n = {n}", **run, "control": "points", "view": [-9, 9, -4, 5]}
+        for n in range(panels)
+    ]
 
 
 def sources(found: Results) -> Sources:
     """What panels of a figure draw from."""
-    return Sources({"routes": found}, scene(found).workspaces, {"sequence": sequence, "marks": marks})
+    return Sources(
+        {"routes": found}, scene(found).workspaces, {"sequence": sequence, "marks": marks}
+    )
 
 
 def drawn(found: Results, own: list[dict], columns: int, folder: File) -> Figure:
@@ -184,7 +271,9 @@ def drawn(found: Results, own: list[dict], columns: int, folder: File) -> Figure
 
 def words(figure: Figure) -> list[str]:
     """All texts of a figure, and its caption."""
-    return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [figure.get_label()]
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [
+        figure.get_label()
+    ]
 
 
 def test_csv_keeps_every_number(tmp_path):
@@ -212,41 +301,70 @@ def test_paths_data_holds_all_that_is_drawn():
 
 def test_paths_side_by_side(tmp_path):
     found = results()
-    other = found.runs.assign(method="other", id=found.runs["id"].str.replace("smooth", "other"), length=found.runs["length"] + 1)
+    other = found.runs.assign(
+        method="other",
+        id=found.runs["id"].str.replace("smooth", "other"),
+        length=found.runs["length"] + 1,
+    )
     both = found._replace(runs=pd.concat([found.runs, other], ignore_index=True))
     frame = paths.data(both, options_of(paths, pick=LOWEST, hue="method"))
     assert set(frame["part"]) == {"start", "target", "bound", "path"}, "no control points"
     for method, own in frame.groupby("method"):
-        alone = paths.data(both._replace(runs=both.runs[both.runs["method"] == method]), options_of(paths, pick=LOWEST, control="none"))
+        alone = paths.data(
+            both._replace(runs=both.runs[both.runs["method"] == method]),
+            options_of(paths, pick=LOWEST, control="none"),
+        )
         pd.testing.assert_frame_equal(own.reset_index(drop=True)[alone.columns], alone)
-    panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method", "where": {"method": ["other", "smooth"]}}
+    panel = {
+        "kind": "paths",
+        "experiment": "routes",
+        "pick": LOWEST,
+        "hue": "method",
+        "where": {"method": ["other", "smooth"]},
+    }
     figure = drawn(both, [panel], 1, tmp_path)
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     expected = ["other", "smooth (quadratic pieces)", "exact shortest path", "start", "target"]
     assert [text for text in legend if "cell" not in text] == expected
     length = found.runs["length"].iloc[1]
-    wanted = f"length (unit): other {round(length + 1, 2):g}, smooth (quadratic pieces) {round(length, 2):g}"
+    wanted = (
+        f"length (unit): other {round(length + 1, 2):g}, smooth (quadratic pieces) "
+        f"{round(length, 2):g}"
+    )
     assert any(wanted in " ".join(text.split()) for text in words(figure))
 
 
 def test_paths_side_by_side_say_who_has_none(tmp_path):
     found = results(feasible=(False, False, False))
     panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method"}
-    assert any("(quadratic pieces) no path" in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path)))
+    assert any(
+        "(quadratic pieces) no path" in " ".join(text.split())
+        for text in words(drawn(found, [panel], 1, tmp_path))
+    )
 
 
 def test_paths_side_by_side_give_the_measure_that_is_asked_for(tmp_path):
     found = results()
     found.runs["clearance"] = [1.25, 2.5, 3.75]
-    panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method", "measure": "clearance"}
+    panel = {
+        "kind": "paths",
+        "experiment": "routes",
+        "pick": LOWEST,
+        "hue": "method",
+        "measure": "clearance",
+    }
     assert any(
-        "clearance (unit): smooth (quadratic pieces) 2.5" in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path))
+        "clearance (unit): smooth (quadratic pieces) 2.5" in " ".join(text.split())
+        for text in words(drawn(found, [panel], 1, tmp_path))
     )
 
 
 def test_a_bare_field_shows_no_path(tmp_path):
     panel = panels()[0] | {"bare": True, "letters": ["S", "T"]}
-    assert set(paths.data(results(), options_of(paths, pick=LOWEST, bare=True))["part"]) == {"start", "target"}
+    assert set(paths.data(results(), options_of(paths, pick=LOWEST, bare=True))["part"]) == {
+        "start",
+        "target",
+    }
     figure = drawn(results(), [panel], 1, tmp_path)
     assert {"S", "T", "start", "target"} <= set(words(figure))
     assert not any("run" in text or "path" in text for text in words(figure))
@@ -254,9 +372,23 @@ def test_a_bare_field_shows_no_path(tmp_path):
 
 def test_only_runs_that_have_some_of_a_metric_are_picked():
     found = results((True, True, True))
-    inside = [5.0, 5.0, 25.0, 15.0, 5.0, 35.0, 5.0, 35.0, 35.0, 35.0]  # the second one is the centre of an occupied cell
+    inside = [
+        5.0,
+        5.0,
+        25.0,
+        15.0,
+        5.0,
+        35.0,
+        5.0,
+        35.0,
+        35.0,
+        35.0,
+    ]  # the second one is the centre of an occupied cell
     found.runs.at[0, "path_points"] = inside
-    best, having = (paths.data(found, options_of(paths, pick=LOWEST | more)) for more in ({}, {"having": "occupied_points"}))
+    best, having = (
+        paths.data(found, options_of(paths, pick=LOWEST | more))
+        for more in ({}, {"having": "occupied_points"})
+    )
     assert best["run"].iloc[0].endswith("/2")
     assert having["run"].iloc[0].endswith("/0")
     assert having.loc[having["part"] == "occupied", ["x", "y"]].to_numpy().tolist() == [[25, 15]]
@@ -265,12 +397,21 @@ def test_only_runs_that_have_some_of_a_metric_are_picked():
 
 def test_cells_that_changed_are_marked(tmp_path):
     found = results()
-    other = found.problems["0_15"]._replace(name="before", workspace=from_lines(["....", ".#..", "..##", "...."], 10.0, "unit"))
+    other = found.problems["0_15"]._replace(
+        name="before", workspace=from_lines(["....", ".#..", "..##", "...."], 10.0, "unit")
+    )
     found = found._replace(problems=found.problems | {"before": other})
     frame = paths.data(found, options_of(paths, pick=LOWEST, changed_from="before"))
-    changed = {part: own[["x", "y"]].to_numpy().tolist() for part, own in frame.groupby("part") if part in ("appeared", "vanished")}
+    changed = {
+        part: own[["x", "y"]].to_numpy().tolist()
+        for part, own in frame.groupby("part")
+        if part in ("appeared", "vanished")
+    }
     now, before = found.problems["0_15"].workspace.occupied, other.workspace.occupied
-    assert {part: len(cells) for part, cells in changed.items()} == {"appeared": (now & ~before).sum(), "vanished": (before & ~now).sum()}
+    assert {part: len(cells) for part, cells in changed.items()} == {
+        "appeared": (now & ~before).sum(),
+        "vanished": (before & ~now).sum(),
+    }
     for part, cells in changed.items():
         for cell in cells:
             at = other.workspace.cell_of(*cell)
@@ -294,18 +435,34 @@ def test_the_shortest_path_from_cell_to_cell_has_the_length_of_the_optimum(tmp_p
 
 
 def test_a_path_stands_beside_the_shortest_one_printed(tmp_path):
-    numbers = {"table": ["table1", "table1", "table2"], "method": "smooth", "metric": "length", "statistic": ["min", "max", "min"]}
+    numbers = {
+        "table": ["table1", "table1", "table2"],
+        "method": "smooth",
+        "metric": "length",
+        "statistic": ["min", "max", "min"],
+    }
     found = results()._replace(published=pd.DataFrame({**numbers, "value": [44.125, 70.0, 1.0]}))
     panel = panels()[0] | {"printed": "table1"}
-    assert set(paths.data(found, options_of(paths, pick=LOWEST, printed="table1"))["printed"]) == {44.125}
-    assert any("shortest printed 44.12 unit" in text for text in words(drawn(found, [panel], 1, tmp_path)))
+    assert set(paths.data(found, options_of(paths, pick=LOWEST, printed="table1"))["printed"]) == {
+        44.125
+    }
+    assert any(
+        "shortest printed 44.12 unit" in text for text in words(drawn(found, [panel], 1, tmp_path))
+    )
 
 
 def test_large_fields_are_drawn_by_their_circles():
     circles = Circles((0.0, 40.0, 0.0, 40.0), np.array([[10.0, 20.0]]), np.array([3.0]), "cell")
     small = workspace.parts(random_field.from_circles(circles))
-    assert small["part"].value_counts().to_dict() == {"free": 1681 - 29, "occupied": 29, "corner": 2, "circle": 1}
-    large = workspace.parts(random_field.from_circles(replace(circles, bounds=(0.0, 100.0, 0.0, 100.0))))
+    assert small["part"].value_counts().to_dict() == {
+        "free": 1681 - 29,
+        "occupied": 29,
+        "corner": 2,
+        "circle": 1,
+    }
+    large = workspace.parts(
+        random_field.from_circles(replace(circles, bounds=(0.0, 100.0, 0.0, 100.0)))
+    )
     assert large["part"].tolist() == ["corner", "corner", "circle"]
     assert large["x"].tolist() == [-0.5, 100.5, 10.0]
 
@@ -316,12 +473,17 @@ def test_functions_get_the_published_tables_that_they_ask_for():
 
     published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
     panel = {"kind": "lines", "data": "double", "published": True, "x": "k", "metric": "value"}
-    assert sheet.data(panels_of([panel]), Sources(functions={"double": double}, published=published))["value"].tolist() == [6, 8]
+    assert sheet.data(
+        panels_of([panel]), Sources(functions={"double": double}, published=published)
+    )["value"].tolist() == [6, 8]
 
 
 def test_paths_meet_the_corners_of_a_polyline():
     frame = paths.data(results(curve="polyline"), options_of(paths, pick=LOWEST))
-    points = {part: {tuple(point) for point in own[["x", "y"]].round(9).to_numpy()} for part, own in frame.groupby("part")}
+    points = {
+        part: {tuple(point) for point in own[["x", "y"]].round(9).to_numpy()}
+        for part, own in frame.groupby("part")
+    }
     assert points["control"] <= points["path"]
 
 
@@ -342,7 +504,9 @@ def test_convergence_of_groups_holds_last_values():
     coarse = frame.loc[frame["method"] == "coarse", "objective"]
     middle = 20 + np.mean([2, 3, 5]) + np.mean(range(8))
     np.testing.assert_allclose(coarse, [middle + 9, middle, middle])
-    median = convergence.data(comparison(), options_of(convergence, hue="points", statistic="median"))
+    median = convergence.data(
+        comparison(), options_of(convergence, hue="points", statistic="median")
+    )
     np.testing.assert_allclose(median.loc[median["points"] == 3, "objective"].iloc[-1], 33 + 3.5)
 
 
@@ -351,24 +515,40 @@ def test_convergence_goes_on_to_the_end_that_is_asked_for():
     coarse = frame[frame["method"] == "coarse"]
     assert list(coarse["generation"]) == [0, 1, 2, 3, 4, 5]
     assert coarse["objective"].iloc[2:].nunique() == 1
-    assert list(convergence.data(results(), options_of(convergence, pick=LOWEST, until=4))["objective"]) == [90, 70, 59, 59, 59]
-    assert list(convergence.data(results(), options_of(convergence, pick=LOWEST, until=1))["generation"]) == [0, 1, 2], "no run is cut"
+    assert list(
+        convergence.data(results(), options_of(convergence, pick=LOWEST, until=4))["objective"]
+    ) == [90, 70, 59, 59, 59]
+    assert list(
+        convergence.data(results(), options_of(convergence, pick=LOWEST, until=1))["generation"]
+    ) == [0, 1, 2], "no run is cut"
 
 
 def test_convergence_of_groups_has_the_interval_of_its_statistic():
     frame = convergence.data(comparison(), options_of(convergence, hue="method", until=5))
     assert (frame["low95"] < frame["objective"]).all()
     assert (frame["objective"] < frame["high95"]).all()
-    assert frame[frame["generation"] > 2].groupby("method")[["low95", "high95"]].nunique().eq(1).all(axis=None)
-    # Histories differ by a constant from generation 0 to the last one, so do intervals from the same draws.
+    assert (
+        frame[frame["generation"] > 2]
+        .groupby("method")[["low95", "high95"]]
+        .nunique()
+        .eq(1)
+        .all(axis=None)
+    )
+    # Histories differ by a constant from generation 0 to the last one, so do intervals from the
+    # same draws.
     width = (frame["high95"] - frame["low95"]).groupby(frame["method"]).agg(["first", "last"])
     np.testing.assert_allclose(width["first"], width["last"])
 
 
 def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
-    published = pd.concat([printed_means().assign(table="table3"), printed_means().assign(table="table4", value=1.0)], ignore_index=True)
+    published = pd.concat(
+        [printed_means().assign(table="table3"), printed_means().assign(table="table4", value=1.0)],
+        ignore_index=True,
+    )
     found = comparison(published[published["points"].isna()])
-    frame = convergence.data(found, options_of(convergence, hue="method", until=5, printed="table3"))
+    frame = convergence.data(
+        found, options_of(convergence, hue="method", until=5, printed="table3")
+    )
     marked = frame[frame["printed"].notna()]
     assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
     panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
@@ -377,27 +557,48 @@ def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
     (strip,) = figure.axes[0].child_axes
     (mark,) = [line for line in strip.lines if line.get_label() == "published final mean"]
     assert mark.get_ydata() == [36.5]
-    assert "printed" not in convergence.data(comparison(), options_of(convergence, hue="method", printed="table3"))
+    assert "printed" not in convergence.data(
+        comparison(), options_of(convergence, hue="method", printed="table3")
+    )
 
 
 def test_last_values_stand_beside_the_lines_with_their_intervals(tmp_path):
     panel = comparing_panels()[0]
     figure = drawn(comparison(), [panel], 1, tmp_path)
-    frame = convergence.data(comparison(), options_of(convergence, hue="method")).groupby("method").last()
+    frame = (
+        convergence.data(comparison(), options_of(convergence, hue="method"))
+        .groupby("method")
+        .last()
+    )
     (strip,) = figure.axes[0].child_axes
     marks = [line for line in strip.lines if line.get_marker() not in ("", "None")]
-    assert [line.get_ydata()[0] for line in marks] == pytest.approx(list(frame.loc[panel["where"]["method"], "objective"]))
+    assert [line.get_ydata()[0] for line in marks] == pytest.approx(
+        list(frame.loc[panel["where"]["method"], "objective"])
+    )
     spans = [sorted(line.get_ydata()) for line in strip.lines if len(line.get_ydata()) == 2]
-    assert spans == [pytest.approx(list(ends)) for ends in frame.loc[panel["where"]["method"], ["low95", "high95"]].to_numpy()]
+    assert spans == [
+        pytest.approx(list(ends))
+        for ends in frame.loc[panel["where"]["method"], ["low95", "high95"]].to_numpy()
+    ]
     assert strip.get_ylim() == figure.axes[0].get_ylim()
 
 
 def test_at_most_five_bands_lie_on_each_other():
     runs = comparison().runs
-    many = pd.concat([runs.assign(method=f"m{n}", objective=runs["objective"] + n, history=runs["history"]) for n in range(6)])
+    many = pd.concat(
+        [
+            runs.assign(method=f"m{n}", objective=runs["objective"] + n, history=runs["history"])
+            for n in range(6)
+        ]
+    )
     for count, banded in ((5, True), (6, False)):
-        own = comparison()._replace(runs=many[many["method"].isin([f"m{n}" for n in range(count)])].reset_index(drop=True))
-        for kind, options in ((convergence, {"hue": "method"}), (lines, {"x": "points", "metric": "objective", "hue": "method"})):
+        own = comparison()._replace(
+            runs=many[many["method"].isin([f"m{n}" for n in range(count)])].reset_index(drop=True)
+        )
+        for kind, options in (
+            (convergence, {"hue": "method"}),
+            (lines, {"x": "points", "metric": "objective", "hue": "method"}),
+        ):
             axes = Figure().subplots()
             panel = options_of(kind, **options)
             kind.draw(axes, kind.data(own, panel), sheet.Scene({}, {}, {}, "m"), panel)
@@ -406,7 +607,9 @@ def test_at_most_five_bands_lie_on_each_other():
 
 
 def test_lines_have_intervals_and_single_repeats():
-    frame = lines.data(comparison(), options_of(lines, x="points", metric="length", hue="method", repeats=[1]))
+    frame = lines.data(
+        comparison(), options_of(lines, x="points", metric="length", hue="method", repeats=[1])
+    )
     statistic = frame[frame["part"] == "statistic"]
     assert len(statistic) == 9
     assert set(statistic["n"]) == {6}, "lengths are of feasible runs"
@@ -421,7 +624,11 @@ def test_lines_have_intervals_and_single_repeats():
 def test_order_of_runs_changes_no_bit():
     found = comparison()
     other = found._replace(runs=found.runs.sample(frac=1, random_state=1).reset_index(drop=True))
-    for kind, options in ((lines, {"x": "points", "hue": "method"}), (dots, {"x": "points", "hue": "method"}), (boxes, {})):
+    for kind, options in (
+        (lines, {"x": "points", "hue": "method"}),
+        (dots, {"x": "points", "hue": "method"}),
+        (boxes, {}),
+    ):
         panel = options_of(kind, metric="objective", **options)
         pd.testing.assert_frame_equal(kind.data(found, panel), kind.data(other, panel))
     panel = options_of(convergence, hue="method")
@@ -448,7 +655,14 @@ def test_axes_name_their_values_in_full():
 
 
 def test_what_has_no_order_is_not_joined(tmp_path):
-    panel = {"kind": "lines", "experiment": "routes", "x": "points", "metric": "length", "hue": "method", "joined": False}
+    panel = {
+        "kind": "lines",
+        "experiment": "routes",
+        "x": "points",
+        "metric": "length",
+        "hue": "method",
+        "joined": False,
+    }
     axes = drawn(comparison(), [panel], 1, tmp_path).axes[0]
     marks = [line for line in axes.lines if len(line.get_xdata()) == 3]
     assert [line.get_linestyle() for line in marks] == ["None"] * 3
@@ -459,9 +673,19 @@ def test_what_has_no_order_is_not_joined(tmp_path):
 
 
 def test_boxes_show_published_ends_and_a_limit(tmp_path):
-    ends = pd.DataFrame({"method": "smooth", "metric": "objective", "statistic": ["min", "max"], "value": [31.0, 44.0]})
+    ends = pd.DataFrame(
+        {
+            "method": "smooth",
+            "metric": "objective",
+            "statistic": ["min", "max"],
+            "value": [31.0, 44.0],
+        }
+    )
     frame = boxes.data(comparison(ends), options_of(boxes, metric="objective", limit=33.5))
-    assert frame.loc[frame["part"] == "published_end", ["method", "value"]].to_numpy().tolist() == [["smooth", 31.0], ["smooth", 44.0]]
+    assert frame.loc[frame["part"] == "published_end", ["method", "value"]].to_numpy().tolist() == [
+        ["smooth", 31.0],
+        ["smooth", 44.0],
+    ]
     assert frame.loc[frame["part"] == "limit", "value"].tolist() == [33.5]
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
     figure = drawn(comparison(ends), [panel], 1, tmp_path)
@@ -485,8 +709,14 @@ def test_boxes_show_the_published_means_of_their_runs(tmp_path):
     shown = frame.loc[frame["part"] == "published", ["method", "value"]].to_numpy().tolist()
     assert shown == [["smooth", 36.5]], "not that of one of their conditions"
     three = found._replace(runs=found.runs[found.runs["points"] == 3])
-    assert list(boxes.data(three, options_of(boxes, metric="objective")).query("part == 'published'")["value"]) == [36.5]
-    assert "published" not in set(boxes.data(comparison(), options_of(boxes, metric="objective"))["part"])
+    assert list(
+        boxes.data(three, options_of(boxes, metric="objective")).query("part == 'published'")[
+            "value"
+        ]
+    ) == [36.5]
+    assert "published" not in set(
+        boxes.data(comparison(), options_of(boxes, metric="objective"))["part"]
+    )
     figure = drawn(found, comparing_panels()[7:], 1, tmp_path)
     assert "published mean" in words(figure)
 
@@ -502,7 +732,14 @@ def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
             "value": [400.0, 900.0, 650.0, 0.25, 500.0],
         }
     )
-    told = words(drawn(comparison(far), [{"kind": "boxes", "experiment": "routes", "metric": "objective"}], 1, tmp_path))
+    told = words(
+        drawn(
+            comparison(far),
+            [{"kind": "boxes", "experiment": "routes", "metric": "objective"}],
+            1,
+            tmp_path,
+        )
+    )
     numbers = {"400 to 900", "0.25", "500", "400", "650", "900"}
     assert sorted(text for text in told if text in numbers) == ["0.25", "400 to 900", "500"]
     assert "published mean, off the scale" in told
@@ -516,11 +753,19 @@ def test_dots_say_who_has_no_feasible_run_and_know_the_bound(tmp_path):
     assert set(frame.loc[frame["method"] != "random", "bound"]) == {18.5}
     assert frame.loc[frame["method"] == "random", "bound"].isna().all()
     assert frame.loc[frame["method"] == "random", "value"].isna().all()
-    assert dots.data(found, options_of(dots, x="points", hue="method", metric="feasible", statistic="share"))["bound"].isna().all()
+    assert (
+        dots.data(
+            found, options_of(dots, x="points", hue="method", metric="feasible", statistic="share")
+        )["bound"]
+        .isna()
+        .all()
+    )
     said = words(drawn(found, comparing_panels()[5:6], 1, tmp_path))
     assert {"hollow: some runs are not feasible", "no feasible run"} <= set(said)
     found.runs["feasible"] = True
-    assert not {"hollow: some runs are not feasible", "no feasible run"} & set(words(drawn(found, comparing_panels()[5:6], 1, tmp_path)))
+    assert not {"hollow: some runs are not feasible", "no feasible run"} & set(
+        words(drawn(found, comparing_panels()[5:6], 1, tmp_path))
+    )
 
 
 def test_dots_without_a_bound_name_none(tmp_path):
@@ -529,7 +774,10 @@ def test_dots_without_a_bound_name_none(tmp_path):
 
 
 def test_dots_show_what_the_paper_prints_of_their_runs():
-    frame = dots.data(comparison(printed_means().iloc[1:]), options_of(dots, x="points", hue="method", metric="objective"))
+    frame = dots.data(
+        comparison(printed_means().iloc[1:]),
+        options_of(dots, x="points", hue="method", metric="objective"),
+    )
     printed = frame.set_index(["method", "points"])["published"]
     assert printed.dropna().to_dict() == {("smooth", 5): 38.0}
 
@@ -537,18 +785,27 @@ def test_dots_show_what_the_paper_prints_of_their_runs():
 def test_lines_show_what_the_paper_prints_where_it_belongs():
     printed = printed_means().assign(table="table6").iloc[1:2]
     options = {"x": "points", "metric": "objective", "hue": "method", "printed": "table6"}
-    frame = lines.data(comparison(pd.concat([printed, printed.assign(table="table7", value=1.0)])), options_of(lines, **options))
+    frame = lines.data(
+        comparison(pd.concat([printed, printed.assign(table="table7", value=1.0)])),
+        options_of(lines, **options),
+    )
     shown = frame[frame["part"] == "published"]
     assert shown[["method", "points", "value"]].to_numpy().tolist() == [["smooth", 5, 38.0]]
     axes = Figure().subplots()
     lines.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(lines, **options))
-    (mark,) = [line for line in axes.lines if line.get_marker() == style.PUBLISHED_MARK["marker"] and len(line.get_xdata()) == 1]
+    (mark,) = [
+        line
+        for line in axes.lines
+        if line.get_marker() == style.PUBLISHED_MARK["marker"] and len(line.get_xdata()) == 1
+    ]
     assert (mark.get_xdata().tolist(), mark.get_ydata().tolist()) == ([5], [38.0])
 
 
 def test_dots_and_lines_keep_the_order_of_where(tmp_path):
     figure = drawn(comparison(), comparing_panels()[5:6], 1, tmp_path)
-    named = [text for text in words(figure) if text in ("smooth (quadratic pieces)", "coarse", "random")]
+    named = [
+        text for text in words(figure) if text in ("smooth (quadratic pieces)", "coarse", "random")
+    ]
     assert named == ["smooth (quadratic pieces)", "coarse", "random"]
 
 
@@ -556,10 +813,17 @@ def test_tangents_are_no_control_points(tmp_path):
     found = results()
     found.runs["path_curve"] = "ferguson"
     found.runs["path_points"] = [[5, 5, 30, 0, 5, 25, 0, 30, 35, 35, 30, 0.0]] * 3
-    assert set(paths.data(found, options_of(paths, pick=LOWEST))["part"]) == {"start", "target", "bound", "path"}
+    assert set(paths.data(found, options_of(paths, pick=LOWEST))["part"]) == {
+        "start",
+        "target",
+        "bound",
+        "path",
+    }
     drawing = words(drawn(found, panels()[:1], 1, tmp_path))
     assert not any("no path" in text or "distinct" in text for text in drawing)
-    assert "hull" not in set(paths.data(results(curve="spline"), options_of(paths, pick=LOWEST))["part"])
+    assert "hull" not in set(
+        paths.data(results(curve="spline"), options_of(paths, pick=LOWEST))["part"]
+    )
 
 
 def test_control_points_alone_or_not_at_all():
@@ -572,7 +836,9 @@ def test_control_points_alone_or_not_at_all():
 
 
 def test_explicit_path_needs_no_run(tmp_path):
-    frame = paths.data(None, options_of(paths, explicit={"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]}))
+    frame = paths.data(
+        None, options_of(paths, explicit={"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]})
+    )
     assert frame.loc[frame["part"] == "target", ["x", "y"]].to_numpy().tolist() == [[3, 0]]
     figure = drawn(comparison(), comparing_panels()[6:7], 1, tmp_path)
     assert figure.axes[0].get_xlabel() == "x (unit)"
@@ -596,11 +862,15 @@ def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
 
 def test_along_path_leaves_out_where_the_curve_stands_still(tmp_path):
     found = results()
-    frame = along_path.data(found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1))
+    frame = along_path.data(
+        found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1)
+    )
     still = frame.loc[frame["value"].isna(), "t"]
     assert frame["value"].abs().max() == 0, "it is straight"
     assert len(still) > 0
-    assert still.between(0.66, 0.67).all(), "two equal control points stop the curve where its second piece ends"
+    assert still.between(0.66, 0.67).all(), (
+        "two equal control points stop the curve where its second piece ends"
+    )
     figure = drawn(found, panels()[2:3], 1, tmp_path)
     assert any(f"{len(still)} of {len(frame)} samples left out" in text for text in words(figure))
 
@@ -615,11 +885,15 @@ def test_workspace_numbers(numbers, printed):
 
 
 def test_embedding_marks_surplus_cells():
-    frame = workspace.data(from_lines(["..."] * 3, 10.0, "unit"), options_of(workspace, numbers="all", embed=True))
+    frame = workspace.data(
+        from_lines(["..."] * 3, 10.0, "unit"), options_of(workspace, numbers="all", embed=True)
+    )
     assert set(frame.loc[frame["part"] == "surplus", "number"]) == {3, 7, 11, 12, 13, 14, 15}
 
 
-@pytest.mark.parametrize(("name", "parts"), [("circles", {"corner", "circle"}), ("polygons", {"corner", "ring"})])
+@pytest.mark.parametrize(
+    ("name", "parts"), [("circles", {"corner", "circle"}), ("polygons", {"corner", "ring"})]
+)
 def test_workspaces_without_cells(name, parts, tmp_path):
     assert set(workspace.data(other_workspaces()[name], options_of(workspace))["part"]) == parts
     with pytest.raises(ValueError, match="kind grid"):
@@ -655,7 +929,10 @@ def test_absent_repeat_is_said(tmp_path):
 
 
 def test_counts_stay_whole_beside_panels_without_runs(tmp_path):
-    assert any("2 of 3 runs are feasible" in text for text in words(drawn(results(), panels(), 2, tmp_path)))
+    assert any(
+        "2 of 3 runs are feasible" in text
+        for text in words(drawn(results(), panels(), 2, tmp_path))
+    )
 
 
 def test_picked_run_that_is_not_feasible_is_marked(tmp_path):
@@ -690,7 +967,9 @@ def test_peak_far_above_the_limit_is_cut_and_said(tmp_path):
     found = results()
     found.runs["path_points"] = [[5, 5, 35, 5, 5, 5.1, 5, 35, 35, 35.0]] * 3
     figure = drawn(found, panels()[2:3], 1, tmp_path)
-    highest = along_path.data(found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1))["value"].max()
+    highest = along_path.data(
+        found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1)
+    )["value"].max()
     assert highest > 1
     assert figure.axes[0].get_ylim()[1] == pytest.approx(0.4)
     assert any(f"largest {highest:.3g} 1/unit" in text for text in words(figure))
@@ -701,15 +980,25 @@ def ticks_beyond(axes):
     found = []
     for axis in (axes.xaxis, axes.yaxis):
         low, high = sorted(axis.get_view_interval())
-        found += [tick.label1 for tick in axis.get_major_ticks() if not low - 1e-9 <= tick.get_loc() <= high + 1e-9]
+        found += [
+            tick.label1
+            for tick in axis.get_major_ticks()
+            if not low - 1e-9 <= tick.get_loc() <= high + 1e-9
+        ]
     return found
 
 
 @pytest.mark.parametrize(
     ("found", "own", "columns", "width"),
     [
-        *((results(), panels(), columns, width) for columns, width in ((1, 85), (2, 174), (3, 174))),
-        *((comparison(printed_means()), comparing_panels(), columns, width) for columns, width in ((1, 85), (2, 174))),
+        *(
+            (results(), panels(), columns, width)
+            for columns, width in ((1, 85), (2, 174), (3, 174))
+        ),
+        *(
+            (comparison(printed_means()), comparing_panels(), columns, width)
+            for columns, width in ((1, 85), (2, 174))
+        ),
         *((comparison(), gallery(10), columns, 174) for columns in (4, 5)),
     ],
 )
@@ -718,7 +1007,11 @@ def test_every_sheet_is_fit_for_print(found, own, columns, width, tmp_path):
     assert figure.get_figwidth() * 25.4 == pytest.approx(width)
     figure.draw_without_rendering()
     beyond = [label for axes in figure.axes for label in ticks_beyond(axes)]
-    seen = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible() and text not in beyond]
+    seen = [
+        text
+        for text in figure.findobj(Text)
+        if text.get_text() and text.get_visible() and text not in beyond
+    ]
     assert min(text.get_fontsize() for text in seen) >= style.SMALLEST_TEXT
     for text in seen:
         extent = text.get_window_extent()
@@ -730,19 +1023,29 @@ def test_every_sheet_is_fit_for_print(found, own, columns, width, tmp_path):
 
 def test_axes_have_units(tmp_path):
     figure = drawn(results(), panels(), 2, tmp_path)
-    labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
+    labels = [
+        label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label
+    ]
     assert len(labels) == 8, "four panels with scales"
-    assert all(label.endswith(("(unit)", "(1/unit)", "(m)")) or label in ("generation", "curve parameter t") for label in labels)
+    assert all(
+        label.endswith(("(unit)", "(1/unit)", "(m)"))
+        or label in ("generation", "curve parameter t")
+        for label in labels
+    )
 
 
 def test_panels_have_letters_and_the_interpretation_of_the_curve(tmp_path):
     figure = drawn(results(), panels(), 2, tmp_path)
-    assert "(a) 0 to 15, smooth (quadratic pieces)" in [axes.get_title(loc="left") for axes in figure.axes]
+    assert "(a) 0 to 15, smooth (quadratic pieces)" in [
+        axes.get_title(loc="left") for axes in figure.axes
+    ]
     assert "(e) circles" in words(figure)
 
 
 def test_a_drawing_shows_the_marks_of_its_function_in_their_order(tmp_path):
-    figure = drawn(results(), [{"kind": "drawing", "data": "marks", "workspace": "circles"}], 1, tmp_path)
+    figure = drawn(
+        results(), [{"kind": "drawing", "data": "marks", "workspace": "circles"}], 1, tmp_path
+    )
     axes = figure.axes[0]
     assert [text.get_text() for text in axes.texts if text.get_text()] == ["7"]
     assert [line.get_label() for line in axes.lines][:1] == ["before"]
@@ -767,12 +1070,20 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
     here.mkdir()
     there.mkdir()
     save(here)
-    command = "import sys; from pathlib import Path; from test_figures import save; save(Path(sys.argv[1]))"
-    subprocess.run([sys.executable, "-c", command, str(there)], check=True, cwd=File(__file__).parent)
+    command = (
+        "import sys; from pathlib import Path; from test_figures import save; "
+        "save(Path(sys.argv[1]))"
+    )
+    subprocess.run(
+        [sys.executable, "-c", command, str(there)], check=True, cwd=File(__file__).parent
+    )
     for name in ("figure.svg", "figure.png", "figure.pdf", "figure.csv"):
         assert (here / name).read_bytes() == (there / name).read_bytes(), name
     assert "generation" in (here / "figure.svg").read_text(), "words of a figure stay words"
-    assert "run study/routes/0_15/smooth/1; 2 of 3 runs are feasible" in (here / "figure.svg").read_text(), "and it has its caption"
+    assert (
+        "run study/routes/0_15/smooth/1; 2 of 3 runs are feasible"
+        in (here / "figure.svg").read_text()
+    ), "and it has its caption"
 
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())
@@ -784,7 +1095,9 @@ def test_options_stand_in_the_options_of_a_kind_alone(kind):
 
 
 def test_a_panel_of_a_job_has_the_defaults_of_its_kind():
-    panel = kinds_of_panel.panel_of({"kind": "boxes", "experiment": "routes", "metric": "objective"})
+    panel = kinds_of_panel.panel_of(
+        {"kind": "boxes", "experiment": "routes", "metric": "objective"}
+    )
     assert (panel.by, panel.limits, panel.limit) == ("method", False, None)
     assert kinds_of_panel.panel_of(panel.plain()) == panel
 
@@ -797,7 +1110,12 @@ def test_a_function_is_called_once_for_panels_that_draw_the_same_table():
         return marks(*workspaces)
 
     one = {"kind": "drawing", "data": "table"}
-    given = [one, one | {"title": "again"}, one | {"workspace": "circles"}, one | {"arguments": {"first": 1}}]
+    given = [
+        one,
+        one | {"title": "again"},
+        one | {"workspace": "circles"},
+        one | {"arguments": {"first": 1}},
+    ]
     sheet.data(panels_of(given), Sources(workspaces=other_workspaces(), functions={"table": table}))
     assert calls == [(0, 0), (1, 0), (0, 1)]
 
@@ -806,7 +1124,9 @@ def test_a_band_around_occupied_cells_is_shaded_and_the_clearance_written(tmp_pa
     found = results((True, True, True))
     frame = paths.data(found, options_of(paths, pick=LOWEST, band=2.5))
     clearance = frame["obstacle_clearance"].iloc[0]
-    assert clearance == pytest.approx(metrics.values(found.runs, "obstacle_clearance", found.problems).iloc[-1])
+    assert clearance == pytest.approx(
+        metrics.values(found.runs, "obstacle_clearance", found.problems).iloc[-1]
+    )
     figure = drawn(found, [panels()[0] | {"band": 2.5}], 1, tmp_path)
     assert any(f"clearance {clearance:.3f}" in text for text in words(figure))
     assert not any("clearance" in text for text in words(drawn(found, panels()[:1], 1, tmp_path)))
@@ -820,4 +1140,7 @@ def test_a_band_around_occupied_cells_is_shaded_and_the_clearance_written(tmp_pa
 def test_a_band_needs_occupied_cells():
     found = comparison()
     with pytest.raises(ValueError, match="band: field: not a grid"):
-        paths.data(found._replace(runs=found.runs[found.runs["method"] == "smooth"]), options_of(paths, pick=LOWEST, band=1.0))
+        paths.data(
+            found._replace(runs=found.runs[found.runs["method"] == "smooth"]),
+            options_of(paths, pick=LOWEST, band=1.0),
+        )

@@ -6,7 +6,14 @@ import numpy as np
 from test_lattice_planners import SETTINGS, environment, plan
 
 from bezierplan.planners import fish_swarm_genetic
-from bezierplan.planners.fish_swarm_genetic import _ARRIVED, _DEAD, _SWIMMING, Settings, _follow, _release
+from bezierplan.planners.fish_swarm_genetic import (
+    _ARRIVED,
+    _DEAD,
+    _SWIMMING,
+    Settings,
+    _follow,
+    _release,
+)
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces.grid import Grid
@@ -35,7 +42,9 @@ FAR = cell(0, 11)
 
 def test_a_fish_goes_next_to_the_one_in_sight_that_is_nearest_to_the_target():
     assert follow([cell(2, 2), cell(2, 6), cell(8, 2), FAR, FAR]) == cell(3, 2)
-    assert follow([cell(2, 2), cell(2, 6), cell(9, 2), FAR, FAR]) == cell(2, 3)  # the other one is out of sight
+    assert follow([cell(2, 2), cell(2, 6), cell(9, 2), FAR, FAR]) == cell(
+        2, 3
+    )  # the other one is out of sight
 
 
 def test_a_fish_that_is_nearest_itself_follows_nobody():
@@ -52,12 +61,20 @@ def test_a_crowd_is_not_followed():
 
 
 def test_a_dead_fish_is_not_followed():
-    assert follow([cell(2, 2), cell(2, 6), FAR, FAR, FAR], [_SWIMMING, _DEAD, _SWIMMING, _SWIMMING, _SWIMMING]) == -1
+    assert (
+        follow(
+            [cell(2, 2), cell(2, 6), FAR, FAR, FAR],
+            [_SWIMMING, _DEAD, _SWIMMING, _SWIMMING, _SWIMMING],
+        )
+        == -1
+    )
 
 
 def test_a_fish_does_not_follow_into_a_cell_that_it_has_visited():
     beside = {cell(2, 3), cell(1, 3), cell(3, 3)}
-    assert follow([cell(2, 2), cell(2, 6), FAR, FAR, FAR], visited=[cell(2, 3)]) in beside - {cell(2, 3)}
+    assert follow([cell(2, 2), cell(2, 6), FAR, FAR, FAR], visited=[cell(2, 3)]) in beside - {
+        cell(2, 3)
+    }
     around = {cell(2 + up, 2 + right) for up in (-1, 0, 1) for right in (-1, 0, 1)}
     assert follow([cell(2, 2), cell(2, 6), FAR, FAR, FAR], visited=around) == -1
 
@@ -75,7 +92,9 @@ def test_fish_that_arrive_give_as_many_paths_as_wanted():
     for path, size in zip(paths, sizes, strict=True):
         assert (path[0], path[size - 1]) == (places.start, places.target)
         assert len(set(path[:size].tolist())) == size
-        assert all(cell_paths.step_between(places, *pair) >= 0 for pair in itertools.pairwise(path[:size]))
+        assert all(
+            cell_paths.step_between(places, *pair) >= 0 for pair in itertools.pairwise(path[:size])
+        )
 
 
 def test_releases_end_when_there_are_enough_paths_or_no_more_releases():
@@ -99,8 +118,12 @@ def test_the_compiled_releases_agree_with_their_plain_python(monkeypatch):
     compiled = released(wanted=10, seed=4)[1:]
     monkeypatch.setattr(fish_swarm_genetic, "_release", _release.py_func)
     places = released()[0]
-    plain = _release.py_func(np.random.default_rng(4), places, SWARM._replace(fish=20, population=10, releases=200))
-    for (one, size), (other, other_size) in zip(zip(*compiled[:2], strict=True), zip(*plain[:2], strict=True), strict=True):
+    plain = _release.py_func(
+        np.random.default_rng(4), places, SWARM._replace(fish=20, population=10, releases=200)
+    )
+    for (one, size), (other, other_size) in zip(
+        zip(*compiled[:2], strict=True), zip(*plain[:2], strict=True), strict=True
+    ):
         assert one[:size].tolist() == other[:other_size].tolist()
 
 

@@ -1,4 +1,6 @@
-"""The footprint of a robot along its path: clearance in closed form, judged beside dense samples by shapely, and what is refused."""
+"""The footprint of a robot along its path: clearance in closed form, judged beside dense samples by
+shapely, and what is refused.
+"""
 
 import math
 
@@ -35,12 +37,24 @@ def line(*points):
 
 def arc(centre, radius, begin, end):
     """An arc to the left about a centre as cubic pieces."""
-    start = np.array([centre[0] + radius * math.cos(begin), centre[1] + radius * math.sin(begin), begin + math.pi / 2])
-    target = np.array([centre[0] + radius * math.cos(end), centre[1] + radius * math.sin(end), end + math.pi / 2])
-    word = np.array([1.0, radius * (end - begin), 0, 0, 0, 0, begin + math.pi / 2, radius * (end - begin)])
+    start = np.array(
+        [
+            centre[0] + radius * math.cos(begin),
+            centre[1] + radius * math.sin(begin),
+            begin + math.pi / 2,
+        ]
+    )
+    target = np.array(
+        [centre[0] + radius * math.cos(end), centre[1] + radius * math.sin(end), end + math.pi / 2]
+    )
+    word = np.array(
+        [1.0, radius * (end - begin), 0, 0, 0, 0, begin + math.pi / 2, radius * (end - begin)]
+    )
     pieces = np.empty((dubins.MOST_PIECES, 4, 2))
     count = dubins.pieces_of(start, target, word, radius, pieces)
-    return bp.Path("cubic_chain", np.concatenate([pieces[0, :1], pieces[:count, 1:].reshape(-1, 2)]))
+    return bp.Path(
+        "cubic_chain", np.concatenate([pieces[0, :1], pieces[:count, 1:].reshape(-1, 2)])
+    )
 
 
 def test_sizes_of_a_footprint():
@@ -55,7 +69,12 @@ def test_sizes_of_a_footprint():
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, -2.0])
 def test_along_a_wall_the_clearance_is_the_distance_less_half_the_width(angle):
-    room = bp.Circles((-10.0, 10.0, -10.0, 10.0), np.array([(20 * math.sin(angle), -20 * math.cos(angle))]), np.array([19.0]), "m")
+    room = bp.Circles(
+        (-10.0, 10.0, -10.0, 10.0),
+        np.array([(20 * math.sin(angle), -20 * math.cos(angle))]),
+        np.array([19.0]),
+        "m",
+    )
     wall = -1.0  # the disc is a wall but for its sagitta
     start, target = (np.array([math.cos(angle), math.sin(angle)]) * s for s in (-0.4, 1e-6 - 0.4))
     found = judged(room, line(start, target), CAR)
@@ -122,7 +141,9 @@ def test_an_obstacle_within_the_footprint_and_one_around_it_are_seen():
     assert not judged(small, line((4, 5), (4.1, 5)), wide).feasible
     ahead = bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(5, 9, 0, 10),), "m")
     assert not judged(ahead, line((1, 5), (2, 5)), [(6, 1), (5, 1), (5, -1), (6, -1)]).feasible
-    assert judged(ahead, line((1, 5), (2, 5)), [(2.9, 1), (2, 1), (2, -1), (2.9, -1)]).clearance == pytest.approx(0.1, abs=1e-5)
+    assert judged(
+        ahead, line((1, 5), (2, 5)), [(2.9, 1), (2, 1), (2, -1), (2.9, -1)]
+    ).clearance == pytest.approx(0.1, abs=1e-5)
 
 
 def test_where_the_heading_is_not_known_the_circle_around_the_footprint_is_judged():
@@ -137,24 +158,35 @@ def obstacles(rng, kind):
     bounds = (0.0, 10.0, 0.0, 10.0)
     if kind == "circles":
         centres, radii = rng.uniform(0, 10, (5, 2)), rng.uniform(0.1, 0.8, 5)
-        return bp.Circles(bounds, centres, radii, "m"), [shapely.Point(c).buffer(r, 256) for c, r in zip(centres, radii)]
+        return bp.Circles(bounds, centres, radii, "m"), [
+            shapely.Point(c).buffer(r, 256) for c, r in zip(centres, radii)
+        ]
     if kind == "polygons":
         low = rng.uniform(0.5, 8.5, (5, 2))
         boxes = [(x, x + 0.7, y, y + 0.4) for x, y in low.round(2).tolist()]
-        return bp.Polygons(bounds, tuple(box(*each) for each in boxes), "m"), [shapely.box(a, c, b, d) for a, b, c, d in boxes]
+        return bp.Polygons(bounds, tuple(box(*each) for each in boxes), "m"), [
+            shapely.box(a, c, b, d) for a, b, c, d in boxes
+        ]
     cells = rng.random((20, 20)) < 0.02
-    return bp.Grid(cells, 0.5, "m"), [shapely.box(x / 2, y / 2, x / 2 + 0.5, y / 2 + 0.5) for y, x in np.argwhere(cells)]
+    return bp.Grid(cells, 0.5, "m"), [
+        shapely.box(x / 2, y / 2, x / 2 + 0.5, y / 2 + 0.5) for y, x in np.argwhere(cells)
+    ]
 
 
 @pytest.mark.parametrize("kind", ["circles", "polygons", "grid"])
 def test_verdicts_agree_with_dense_samples(kind):
-    """The certified clearance is at most that of samples, and not less than that by more than the motion between two of them."""
+    """The certified clearance is at most that of samples, and not less than that by more than the
+    motion between two of them.
+    """
     rng = np.random.default_rng([7, len(kind)])
     verdicts = []
     for _ in range(25):
         workspace, shapes = obstacles(rng, kind)
         path = bp.Path("piecewise_cubic", rng.uniform(1.5, 8.5, (6, 2)))
-        shape = footprint(0.4 * shapely.get_coordinates(shapely.MultiPoint(rng.normal(size=(6, 2))).convex_hull)[:-1])
+        shape = footprint(
+            0.4
+            * shapely.get_coordinates(shapely.MultiPoint(rng.normal(size=(6, 2))).convex_hull)[:-1]
+        )
         pieces = curves.bezier_pieces(path)
         found = check_footprint(pieces, region(workspace), shape)
         blocked = shapely.union_all([*shapes, shapely.box(0, 0, 10, 10).exterior])
@@ -162,15 +194,25 @@ def test_verdicts_agree_with_dense_samples(kind):
         t = np.linspace(0, 1, 400)
         least = math.inf
         for number, piece in enumerate(pieces):
-            points, slopes = curves.bernstein(3, t) @ piece, curves.bernstein(2, t) @ np.diff(piece, axis=0)
+            points, slopes = (
+                curves.bernstein(3, t) @ piece,
+                curves.bernstein(2, t) @ np.diff(piece, axis=0),
+            )
             for at, (x, y), slope in zip(t, points, slopes):
                 if number + at > found.collision_at:
                     break
-                turned = affinity.rotate(shapely.Polygon(shape.corners), math.atan2(slope[1], slope[0]), origin=(0, 0), use_radians=True)
+                turned = affinity.rotate(
+                    shapely.Polygon(shape.corners),
+                    math.atan2(slope[1], slope[0]),
+                    origin=(0, 0),
+                    use_radians=True,
+                )
                 least = min(least, affinity.translate(turned, x, y).distance(blocked))
         verdicts.append(found.feasible)
         if found.feasible:
-            assert found.clearance <= least + CLEARANCE_SHARE * shape.circumscribed + 1e-4  # circles are polygons to shapely
+            assert (
+                found.clearance <= least + CLEARANCE_SHARE * shape.circumscribed + 1e-4
+            )  # circles are polygons to shapely
             assert found.clearance >= least - 0.05
         else:
             assert least < 0.05
@@ -183,8 +225,12 @@ def test_a_plan_is_the_first_one_on_which_the_footprint_is_free():
     found = bp.plan(problem, footprint=CAR, turning_radius=0.5, strict=True)
     assert found.feasible
     assert found.robot_radius == pytest.approx(0.1)
-    assert found.planned_radius in [pytest.approx(each) for each in footprints.radii(footprint(CAR))[1:]]
-    assert found.clearance == pytest.approx(bp.check(problem, found.path, footprint=CAR).clearance, abs=1e-9)
+    assert found.planned_radius in [
+        pytest.approx(each) for each in footprints.radii(footprint(CAR))[1:]
+    ]
+    assert found.clearance == pytest.approx(
+        bp.check(problem, found.path, footprint=CAR).clearance, abs=1e-9
+    )
     thin = bp.plan(problem, robot_radius=0.1, turning_radius=0.5)
     assert found.shortest == thin.shortest
     assert not bp.check(problem, thin.path, footprint=CAR).feasible
@@ -234,11 +280,24 @@ def test_what_is_no_convex_polygon_is_refused_in_one_line(capsys, tmp_path, corn
 def test_a_footprint_beside_a_radius_is_refused(capsys, tmp_path):
     map_file = tmp_path / "room.txt"
     map_file.write_text("....\n" * 4)
-    words = ["plan", str(map_file), "--start", "1,1", "--target", "3,3", "--footprint", str([list(each) for each in CAR])]
+    words = [
+        "plan",
+        str(map_file),
+        "--start",
+        "1,1",
+        "--target",
+        "3,3",
+        "--footprint",
+        str([list(each) for each in CAR]),
+    ]
     with pytest.raises(SystemExit) as found:
         main([*words, "--robot-radius", "0.2"])
     assert found.value.code == 2
-    assert capsys.readouterr().err == "--footprint: given beside --robot-radius, which is a footprint of its own; expected one of them\n"
+    assert (
+        capsys.readouterr().err
+        == "--footprint: given beside --robot-radius, which is a footprint of its own; expected "
+        "one of them\n"
+    )
     with pytest.raises(SystemExit) as found:
         main([word.replace("1,1", "0.05,1") for word in words])
     assert found.value.code == 2
@@ -251,8 +310,26 @@ def test_a_footprint_beside_a_radius_is_refused(capsys, tmp_path):
 def test_the_command_tells_for_which_disc_it_planned(capsys, tmp_path):
     map_file = tmp_path / "room.txt"
     map_file.write_text("........\n" * 2 + "...##...\n" * 4 + "........\n" * 2)
-    words = ["plan", str(map_file), "--start", "1,4", "--target", "7,4", "--settings", "{turning_radius: 0.5}"]
-    main([*words, "--footprint", "[[0.6, 0.2], [-0.6, 0.2], [-0.6, -0.2], [0.6, -0.2]]", "--strict", "--out", str(tmp_path / "p.svg")])
+    words = [
+        "plan",
+        str(map_file),
+        "--start",
+        "1,4",
+        "--target",
+        "7,4",
+        "--settings",
+        "{turning_radius: 0.5}",
+    ]
+    main(
+        [
+            *words,
+            "--footprint",
+            "[[0.6, 0.2], [-0.6, 0.2], [-0.6, -0.2], [0.6, -0.2]]",
+            "--strict",
+            "--out",
+            str(tmp_path / "p.svg"),
+        ]
+    )
     told = {row[:16].strip(): row[16:] for row in capsys.readouterr().out.splitlines()}
     assert told["footprint"] == "4 corners, circles of 0.2 cell within and 0.632456 around it"
     assert told["planned for"].startswith("a disc of 0.")

@@ -22,12 +22,21 @@ ROOT = Path(__file__).parents[1]
 
 def steps(**needs):
     """Steps by name, each with the names of those that it waits for."""
-    return [Step(name, frozenset(f"{each}.out" for each in needed), (f"{name}.out",)) for name, needed in needs.items()]
+    return [
+        Step(name, frozenset(f"{each}.out" for each in needed), (f"{name}.out",))
+        for name, needed in needs.items()
+    ]
 
 
 def test_duration_is_that_of_the_cores_and_of_the_longest_chain():
     independent, seconds = steps(a=[], b=[], c=[], d=[]), dict.fromkeys("abcd", 10.0)
-    assert [forecast.duration(independent, seconds, cores) for cores in (1, 2, 3, 4, 99)] == [40, 20, 20, 10, 10]
+    assert [forecast.duration(independent, seconds, cores) for cores in (1, 2, 3, 4, 99)] == [
+        40,
+        20,
+        20,
+        10,
+        10,
+    ]
     chain = steps(c=["b"], b=["a"], a=[], d=[])
     assert [forecast.duration(chain, seconds, cores) for cores in (1, 2, 99)] == [40, 30, 30]
     assert forecast.duration(steps(a=["elsewhere"]), {"a": 5.0}, 1) == 5
@@ -35,8 +44,12 @@ def test_duration_is_that_of_the_cores_and_of_the_longest_chain():
 
 
 def test_job_of_a_log_file():
-    assert records.job_of("results/full/song2016/logs/runs/routes/smooth/3.log") == Job("full", "song2016/runs/routes/smooth", 3)
-    assert records.job_of("results/smoke/song2016/logs/figures/figure4.log") == Job("smoke", "song2016/figures/figure4", None)
+    assert records.job_of("results/full/song2016/logs/runs/routes/smooth/3.log") == Job(
+        "full", "song2016/runs/routes/smooth", 3
+    )
+    assert records.job_of("results/smoke/song2016/logs/figures/figure4.log") == Job(
+        "smoke", "song2016/figures/figure4", None
+    )
     assert records.job_of("results/full/summary.log") == Job("full", "summary", None)
     assert records.job_of("elsewhere.log") is None
 
@@ -54,22 +67,36 @@ def noted(folder, log, output, seconds, times=None):
     file.parent.mkdir(parents=True, exist_ok=True)
     if times:
         cpu, wall = zip(*times)
-        parquet.write_table(pa.table({"id": list(map(str, range(len(cpu)))), "cpu_s": cpu, "wall_s": wall}), file)
+        parquet.write_table(
+            pa.table({"id": list(map(str, range(len(cpu)))), "cpu_s": cpu, "wall_s": wall}), file
+        )
     else:
         file.write_bytes(b"x" * 1_000_000)
     (folder / records.METADATA).mkdir(parents=True, exist_ok=True)
     name = base64.b64encode(output.encode()).decode()
-    (folder / records.METADATA / name).write_text(json.dumps({"log": [log], "starttime": 100.0, "endtime": 100.0 + seconds}))
+    (folder / records.METADATA / name).write_text(
+        json.dumps({"log": [log], "starttime": 100.0, "endtime": 100.0 + seconds})
+    )
 
 
 def test_records_of_a_working_folder(tmp_path):
-    """Runs count by their CPU time, a repeated one once; other jobs by the clock, corrected by the share of a core that runs had."""
+    """Runs count by their CPU time, a repeated one once; other jobs by the clock, corrected by the
+    share of a core that runs had.
+    """
     for chunk, cpu in enumerate((2.0, 4.0)):
         place = f"results/full/s/runs/e/m/{chunk}"
-        noted(tmp_path, f"results/full/s/logs/runs/e/m/{chunk}.log", f"{place}.times.parquet", 99.0, [(cpu, 2 * cpu), (cpu, 2 * cpu)])
+        noted(
+            tmp_path,
+            f"results/full/s/logs/runs/e/m/{chunk}.log",
+            f"{place}.times.parquet",
+            99.0,
+            [(cpu, 2 * cpu), (cpu, 2 * cpu)],
+        )
     noted(tmp_path, "results/full/s/logs/tables/t.log", "results/full/s/tables/t.csv", 10.0)
     (tmp_path / records.METADATA / "broken").write_text("{")
-    (tmp_path / records.METADATA / base64.b64encode(b"other").decode()).write_text(json.dumps({"log": []}))
+    (tmp_path / records.METADATA / base64.b64encode(b"other").decode()).write_text(
+        json.dumps({"log": []})
+    )
     found = records.measured(tmp_path, lambda job: 1 if job.chunk is None else 7)
     assert found.keys() == {("full", "s/runs/e/m"), ("full", "s/tables/t")}
     assert found["full", "s/runs/e/m"][:2] == (7, records.START + 3.0)
@@ -79,7 +106,10 @@ def test_records_of_a_working_folder(tmp_path):
 
 def test_kept_records_are_read_back(tmp_path):
     records.keep({"b": Record(3, 1.5, 0.25), "a": Record(1, 12.0, 0.0)}, tmp_path / "times.csv")
-    assert records.kept(tmp_path / "times.csv") == {"a": Record(1, 12.0, 0.0), "b": Record(3, 1.5, 0.25)}
+    assert records.kept(tmp_path / "times.csv") == {
+        "a": Record(1, 12.0, 0.0),
+        "b": Record(3, 1.5, 0.25),
+    }
 
 
 def test_most_runs_of_tables_are_recorded():
@@ -97,8 +127,14 @@ def test_most_runs_of_tables_are_recorded():
 def test_units_are_runs():
     own = studies()["song2016"].experiments["routes"]
     conditions, size = len(own.problems), own.chunk["full"]
-    assert forecast.units_of(studies(), Job("full", "song2016/runs/routes/smooth", 1)) == conditions * size
-    assert forecast.units_of(studies(), Job("full", "song2016/runs/routes/straight_line", 1)) == conditions
+    assert (
+        forecast.units_of(studies(), Job("full", "song2016/runs/routes/smooth", 1))
+        == conditions * size
+    )
+    assert (
+        forecast.units_of(studies(), Job("full", "song2016/runs/routes/straight_line", 1))
+        == conditions
+    )
     for name, chunk in {
         "song2016/tables/table1": None,
         "gone/runs/a/b": 0,
@@ -111,9 +147,14 @@ def test_units_are_runs():
 def test_targets_by_scale():
     assert forecast.files(studies(), "all", "extended") == ["extended"]
     assert forecast.files(studies(), "alternatives", "full") == ["alternatives"]
-    assert forecast.files(studies(), "song2016_figure4", "extended")[0] == "results/extended/song2016/figures/figure4.svg"
+    assert (
+        forecast.files(studies(), "song2016_figure4", "extended")[0]
+        == "results/extended/song2016/figures/figure4.svg"
+    )
     assert "results/smoke/song2016/claims.csv" in forecast.files(studies(), "song2016", "smoke")
-    assert forecast.files(studies(), "results/full/summary.md", "full") == ["results/full/summary.md"]
+    assert forecast.files(studies(), "results/full/summary.md", "full") == [
+        "results/full/summary.md"
+    ]
     with pytest.raises(Fault, match=r"song206: no target; did you mean song2016\?"):
         forecast.files(studies(), "song206", "full")
 
@@ -141,13 +182,27 @@ def test_forecast_of_a_figure_in_a_clone(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     found = forecast.planned(["results/full/song2016/figures/figure4.svg"], anew=False)
     names = sorted(records.job_of(step.log).name for step in found)
-    runs = [f"song2016/runs/routes/{method}" for method in ("smooth", "smooth_cubic", "smooth_single") for _ in range(2)]
-    assert names == ["song2016/bounds/routes", "song2016/figures/figure4", "song2016/problems/routes", *runs]
+    runs = [
+        f"song2016/runs/routes/{method}"
+        for method in ("smooth", "smooth_cubic", "smooth_single")
+        for _ in range(2)
+    ]
+    assert names == [
+        "song2016/bounds/routes",
+        "song2016/figures/figure4",
+        "song2016/problems/routes",
+        *runs,
+    ]
     estimated = forecast.estimates(studies(), found, tmp_path)
     assert all(estimated.values())
     seconds = {log: record.seconds for log, record in estimated.items()}
     # One after another, as `duration` adds them: sum() has less error from Python 3.12 on.
     alone = functools.reduce(operator.add, seconds.values())
-    assert max(seconds.values()) < forecast.duration(found, seconds, 4) < forecast.duration(found, seconds, 1) == alone
+    assert (
+        max(seconds.values())
+        < forecast.duration(found, seconds, 4)
+        < forecast.duration(found, seconds, 1)
+        == alone
+    )
     with pytest.raises(Fault, match=r"MissingRuleException|No rule to produce"):
         forecast.planned(["results/full/nothing.csv"], anew=False)

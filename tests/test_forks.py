@@ -1,4 +1,6 @@
-"""Scripts of jobs in forks of one process: what a script sees, and how failures and ends are reported."""
+"""Scripts of jobs in forks of one process: what a script sees, and how failures and ends are
+reported.
+"""
 
 import os
 import signal
@@ -14,9 +16,11 @@ from snakemake.script import script
 
 from bezierplan.running.forks import FIRST, LATER, Forks
 
-# Nothing to test elsewhere: a fork of a process that has loaded libraries of macOS may crash, so `Forks.script` makes none there.
+# Nothing to test elsewhere: a fork of a process that has loaded libraries of macOS may crash, so
+# `Forks.script` makes none there.
 pytestmark = pytest.mark.skipif(
-    sys.platform != "linux", reason="jobs are forks on Linux only; elsewhere Snakemake starts an interpreter for each"
+    sys.platform != "linux",
+    reason="jobs are forks on Linux only; elsewhere Snakemake starts an interpreter for each",
 )
 
 
@@ -53,7 +57,9 @@ def test_start_comes_before_the_first_job_and_once(forks, tmp_path):
     forks.start()
     started = forks.process
     forks.start()
-    assert forks.succeeds("parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told))
+    assert forks.succeeds(
+        "parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told)
+    )
     assert int(told.read_text()) == started == forks.process
 
 
@@ -65,14 +71,22 @@ def test_script_runs_in_the_folder_of_its_workflow(started, tmp_path, monkeypatc
 
 def test_script_gets_its_object_and_no_input(started, tmp_path):
     told = tmp_path / "told"
-    source = "import sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, snakemake.params, sys.stdin.read())))"
+    source = (
+        "import sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, "
+        "snakemake.params, sys.stdin.read())))"
+    )
     assert started.succeeds("one.py", source, SimpleNamespace(output=str(told), params={"a": 1}))
     assert told.read_text() == repr(("__main__", "one.py", {"a": 1}, ""))
 
 
-def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_job_waits(forks, tmp_path):
+def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_job_waits(
+    forks, tmp_path
+):
     told = tmp_path / "told"
-    source = "import os, sys\nfile, names = snakemake\nprint(os.getppid(), set(names) <= set(sys.modules), file=open(file, 'a'))"
+    source = (
+        "import os, sys\nfile, names = snakemake\nprint(os.getppid(), set(names) <= "
+        "set(sys.modules), file=open(file, 'a'))"
+    )
     assert forks.succeeds("modules.py", source, (str(told), FIRST))
     assert "True" in told.read_text()
     told.unlink()
@@ -83,7 +97,9 @@ def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_
     parents, imported = zip(*map(str.split, told.read_text().splitlines()), strict=True)
     assert imported[-1] == "True"
     assert len(set(parents)) == 1
-    assert len(os.listdir(f"/proc/{forks.process}/task")) == 1, "a process that is forked must have one thread"
+    assert len(os.listdir(f"/proc/{forks.process}/task")) == 1, (
+        "a process that is forked must have one thread"
+    )
 
 
 def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks, capfd):
@@ -100,10 +116,17 @@ def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks,
 
 
 def test_many_scripts_at_once(started, tmp_path):
-    source = "import time; time.sleep(0.01 * snakemake[0]); open(snakemake[1], 'w').write('done'); assert snakemake[0] % 3"
+    source = (
+        "import time; time.sleep(0.01 * snakemake[0]); open(snakemake[1], "
+        "'w').write('done'); assert snakemake[0] % 3"
+    )
     files = [tmp_path / str(k) for k in range(12)]
     with ThreadPoolExecutor(12) as threads:
-        ends = list(threads.map(lambda k: started.succeeds("many.py", source, (k, str(files[k]))), range(12)))
+        ends = list(
+            threads.map(
+                lambda k: started.succeeds("many.py", source, (k, str(files[k]))), range(12)
+            )
+        )
     assert ends == [k % 3 != 0 for k in range(12)]
     assert all(file.read_text() == "done" for file in files)
 
@@ -125,7 +148,9 @@ def test_next_script_runs_after_the_process_that_is_forked_was_killed(forks, tmp
 
 def test_parent_of_forks_ends_with_them(forks, tmp_path):
     told = tmp_path / "told"
-    assert forks.succeeds("parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told))
+    assert forks.succeeds(
+        "parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told)
+    )
     del forks._control
     assert gone(int(told.read_text()))
 
@@ -139,7 +164,10 @@ end_with_parent()
 open(snakemake, "w").write(str(os.getpid()))
 time.sleep(600)
 """
-    workflow = f"from bezierplan.running.forks import Forks; Forks({sys.executable!r}, print).succeeds('long.py', {job!r}, {str(told)!r})"
+    workflow = (
+        f"from bezierplan.running.forks import Forks; Forks({sys.executable!r}, "
+        f"print).succeeds('long.py', {job!r}, {str(told)!r})"
+    )
     with subprocess.Popen([sys.executable, "-c", workflow]) as process:
         while not (told.exists() and told.read_text()):
             assert process.poll() is None

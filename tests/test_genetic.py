@@ -9,7 +9,9 @@ from scipy import stats
 from bezierplan.planners.parts.genetic import complement_bit, redraw_gene, roulette, swap_tails
 
 BITS = 8
-chromosomes = st.lists(st.integers(0, 255), min_size=6, max_size=6).map(lambda genes: np.array(genes, dtype=np.int64))
+chromosomes = st.lists(st.integers(0, 255), min_size=6, max_size=6).map(
+    lambda genes: np.array(genes, dtype=np.int64)
+)
 
 
 def bits_of(chromosome):
@@ -65,7 +67,11 @@ def test_kernels_agree_with_their_plain_python(operator):
         roulette: lambda: (np.random.default_rng(3), np.array([0.5, 1.5, 0.1]), 20),
         swap_tails: lambda: (np.array([1, 2, 3]), np.array([250, 251, 252]), 11, BITS),
         complement_bit: lambda: (np.array([1, 2, 3]), 17, BITS),
-        redraw_gene: lambda: (np.random.default_rng(4), np.array([1, 2, 3]), np.array([10, 20, 30])),
+        redraw_gene: lambda: (
+            np.random.default_rng(4),
+            np.array([1, 2, 3]),
+            np.array([10, 20, 30]),
+        ),
     }[operator]
     compiled, plain = arguments(), arguments()
     results = operator(*compiled), operator.py_func(*plain)

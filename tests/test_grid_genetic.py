@@ -1,4 +1,6 @@
-"""The genetic algorithm over paths of cells: its paths, its operators against plain references, degenerate cases, settings."""
+"""The genetic algorithm over paths of cells: its paths, its operators against plain references,
+degenerate cases, settings.
+"""
 
 import math
 
@@ -39,7 +41,9 @@ def plan(problem, seed=0, **changes):
 def least(problem):
     grid = problem.workspace
     return (
-        shortest_paths.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
+        shortest_paths.lattice_path(
+            grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free"
+        ).length
         * grid.cell
     )
 
@@ -50,7 +54,11 @@ def test_paths_are_free_and_cost_what_is_said(number):
     found = plan(problem, seed=number)
     grid = problem.workspace
     assert_path_fits(problem, found)
-    assert found.objective == cell_length.length4(found.path, grid) == cell_length.length8(found.path, grid)
+    assert (
+        found.objective
+        == cell_length.length4(found.path, grid)
+        == cell_length.length8(found.path, grid)
+    )
     assert least(problem) <= found.objective <= 1.03 * least(problem)
     assert (np.diff(found.history) <= 0).all()
     assert found.history[-1] == found.objective
@@ -60,7 +68,10 @@ def test_paths_are_free_and_cost_what_is_said(number):
 
 def test_paths_are_next_to_the_cheapest_ones():
     problems = [drawn(number) for number in range(12)]
-    first, final = (np.mean([plan(each, generations=count).objective / least(each) - 1 for each in problems]) for count in (0, 80))
+    first, final = (
+        np.mean([plan(each, generations=count).objective / least(each) - 1 for each in problems])
+        for count in (0, 80)
+    )
     assert final < 0.01
     assert final < 0.5 * first
 
@@ -111,15 +122,24 @@ def test_start_equal_to_target_is_answered_without_a_search():
 
 def test_start_and_target_need_not_be_centres_of_cells():
     found = plan(on_map("....", "....", start=(0.2, 0.9), target=(3.6, 1.1)))
-    assert found.path.points.tolist() == [[0.2, 0.9], [0.5, 0.5], [1.5, 1.5], [3.5, 1.5], [3.6, 1.1]] or (
-        found.path.points[[0, 1, -2, -1]].tolist() == [[0.2, 0.9], [0.5, 0.5], [3.5, 1.5], [3.6, 1.1]]
+    assert found.path.points.tolist() == [
+        [0.2, 0.9],
+        [0.5, 0.5],
+        [1.5, 1.5],
+        [3.5, 1.5],
+        [3.6, 1.1],
+    ] or (
+        found.path.points[[0, 1, -2, -1]].tolist()
+        == [[0.2, 0.9], [0.5, 0.5], [3.5, 1.5], [3.6, 1.1]]
     )
     assert found.objective == 3.5
 
 
 def test_costs_are_in_units():
     grid = drawn(0).workspace
-    problem = Problem("test", Grid(grid.occupied, 0.1, "m", (3.0, -2.0)), (3.05, -1.95), (13.05, 8.05))
+    problem = Problem(
+        "test", Grid(grid.occupied, 0.1, "m", (3.0, -2.0)), (3.05, -1.95), (13.05, 8.05)
+    )
     assert plan(problem).objective == pytest.approx(0.1 * plan(drawn(0)).objective, rel=1e-12)
 
 
@@ -186,7 +206,11 @@ def test_loops_are_cut_from_the_last_visit_on():
 def test_crossover_joins_at_an_inner_cell_of_both():
     rng = np.random.default_rng(0)
     head, tail = np.array([0, 1, 2, 3, 4, 5]), np.array([0, 9, 3, 8, 1, 5])
-    place, common, walk = np.full(10, -1), np.empty(10, dtype=np.int64), np.empty(20, dtype=np.int64)
+    place, common, walk = (
+        np.full(10, -1),
+        np.empty(10, dtype=np.int64),
+        np.empty(20, dtype=np.int64),
+    )
     children = set()
     for _ in range(100):
         count = grid_genetic._join(rng, head, tail, place, common, walk)
@@ -198,7 +222,9 @@ def test_crossover_joins_at_an_inner_cell_of_both():
 
 @pytest.mark.filterwarnings("ignore::numba.NumbaPendingDeprecationWarning")
 def test_parents_are_drawn_in_proportion_to_the_inverse_of_their_cost(monkeypatch):
-    """The search in plain Python: what the wheel is given, beside the costs of the paths that it draws from."""
+    """The search in plain Python: what the wheel is given, beside the costs of the paths that it
+    draws from.
+    """
     given, costs = [], []
     best, wheel = grid_genetic._best, grid_genetic.roulette
 
@@ -211,7 +237,11 @@ def test_parents_are_drawn_in_proportion_to_the_inverse_of_their_cost(monkeypatc
         given.append(weights.copy())
         return wheel(rng, weights, count)
 
-    for name, changed in (("_best", sorted_paths), ("roulette", drawn_parents), ("_search", grid_genetic._search.py_func)):
+    for name, changed in (
+        ("_best", sorted_paths),
+        ("roulette", drawn_parents),
+        ("_search", grid_genetic._search.py_func),
+    ):
         monkeypatch.setattr(grid_genetic, name, changed)
     plan(drawn(3), population=6, generations=4)
     assert len(given) == 4
@@ -226,7 +256,10 @@ def test_mutation_replaces_what_lies_between_two_cells():
     given = walker(grid)
     columns = given.columns
     # Along the left border and then along the upper one.
-    path = np.array([row * columns + 1 for row in range(1, 21)] + [20 * columns + column for column in range(2, 21)])
+    path = np.array(
+        [row * columns + 1 for row in range(1, 21)]
+        + [20 * columns + column for column in range(2, 21)]
+    )
     walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walled), dtype=np.int64)
     shorter = 0
     for _ in range(200):
@@ -234,7 +267,8 @@ def test_mutation_replaces_what_lies_between_two_cells():
         count = grid_genetic._walk_anew(rng, given, walk, len(path), last_visit)
         assert (walk[0], walk[count - 1]) == (path[0], path[-1])
         assert is_path(walk[:count], given.walled, columns)
-        # Head and tail are the path's own, in their places from its two ends; a free field is crossed straight between them.
+        # Head and tail are the path's own, in their places from its two ends; a free field is
+        # crossed straight between them.
         after, both = walk[:count], min(count, len(path))
         head = int((after[:both] == path[:both]).cumprod().sum())
         tail = int((after[-both:] == path[-both:])[::-1].cumprod().sum())
@@ -253,7 +287,9 @@ def test_a_failed_walk_leaves_the_path_as_it_is():
     walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walled), dtype=np.int64)
     walk[:20] = path
     for seed in range(20):
-        assert grid_genetic._walk_anew(np.random.default_rng(seed), given, walk, 20, last_visit) == 20
+        assert (
+            grid_genetic._walk_anew(np.random.default_rng(seed), given, walk, 20, last_visit) == 20
+        )
         assert np.array_equal(walk[:20], path)
 
 
@@ -261,6 +297,18 @@ def test_settings():
     kinds = planner_settings(grid_genetic)
     assert set(kinds) == set(SETTINGS)
     assert not any(setting_fault(kinds[name], value) for name, value in SETTINGS.items())
-    bad = {"population": 1, "generations": -1, "crossover_probability": 1.1, "mutation_probability": -0.1, "diagonal_cost": 0.9}
-    bad |= {"attempts": 0, "longest_walk": 0.5, "least_detour": 0, "detour_share": -1.0, "straight_on": 2.0}
+    bad = {
+        "population": 1,
+        "generations": -1,
+        "crossover_probability": 1.1,
+        "mutation_probability": -0.1,
+        "diagonal_cost": 0.9,
+    }
+    bad |= {
+        "attempts": 0,
+        "longest_walk": 0.5,
+        "least_detour": 0,
+        "detour_share": -1.0,
+        "straight_on": 2.0,
+    }
     assert all(setting_fault(kinds[name], value) for name, value in bad.items())

@@ -1,4 +1,6 @@
-"""The headline: three sentences and a table with a row for each study, the same in README, page and summary."""
+"""The headline: three sentences and a table with a row for each study, the same in README, page and
+summary.
+"""
 
 import math
 
@@ -11,7 +13,13 @@ from bezierplan.analysis import comparison, headline
 def numbers(*rows):
     """rows: study, verdict, published, ours, and further columns."""
     made = [
-        {"study": study, "verdict": verdict, "value_published": printed, "value_ours_scaled": ours, **more}
+        {
+            "study": study,
+            "verdict": verdict,
+            "value_published": printed,
+            "value_ours_scaled": ours,
+            **more,
+        }
         for study, verdict, printed, ours, more in rows
     ]
     usual = {"counted": True, "why": ""}
@@ -19,7 +27,11 @@ def numbers(*rows):
 
 
 def claims(**verdicts):
-    rows = [{"study": study, "id": f"C{n}", "verdict": each} for study, own in verdicts.items() for n, each in enumerate(own)]
+    rows = [
+        {"study": study, "id": f"C{n}", "verdict": each}
+        for study, own in verdicts.items()
+        for n, each in enumerate(own)
+    ]
     return pd.DataFrame(rows).assign(primary=True, finding=False)
 
 
@@ -30,47 +42,82 @@ def measured(*rows):
 
 def test_numbers_claims_and_methods_are_said_in_three_sentences():
     found = headline.headline(
-        numbers(("one", "agrees", 10.0, 11.0, {}), ("one", "disagrees", 10.0, 31.0, {}), ("two", "inconclusive", 10.0, 10.0, {})),
-        claims(one=["supported", "partly", "no effect"], two=["contradicted", "contradicted", "untestable"]),
+        numbers(
+            ("one", "agrees", 10.0, 11.0, {}),
+            ("one", "disagrees", 10.0, 31.0, {}),
+            ("two", "inconclusive", 10.0, 10.0, {}),
+        ),
+        claims(
+            one=["supported", "partly", "no effect"],
+            two=["contradicted", "contradicted", "untestable"],
+        ),
         measured(("one", 0.9, 1.0, 0.5, 3.0), ("one", 1.0, 1.0, 1.0, 0.25)),
         {"one": "One et al. (2000): paths", "two": "Two"},
     )
     assert found.sentences == [
         "Of 3 published numbers, 1 agrees, 1 disagrees and 1 is inconclusive.",
-        "Of 6 claims, 1 is supported, 1 is supported in part of its comparisons, 2 are contradicted, 1 shows no effect and 1 is "
+        "Of 6 claims, 1 is supported, 1 is supported in part of its comparisons, 2 are "
+        "contradicted, 1 shows no effect and 1 is "
         "untestable.",
-        "No method that is feasible as often as the baseline, the exact shortest path with rounded corners, gives a shorter path.",
+        "No method that is feasible as often as the baseline, the exact shortest path with "
+        "rounded corners, gives a shorter path.",
     ]
     assert found.table.loc["one"].to_list() == [
         *("One et al. (2000)", "1 / 1 / 0 of 2", "110 %", "1 / 1 / 1 / 0 of 3", ""),
         *("90 to 100 % (100 %)", "0.5 to 1", "0.25 to 3"),
     ]
-    assert found.table.loc["two"].to_list() == ["Two", "0 / 0 / 1 of 1", "0 %", "0 / 0 / 2 / 1 of 3", "", "", "", ""]
+    assert found.table.loc["two"].to_list() == [
+        "Two",
+        "0 / 0 / 1 of 1",
+        "0 %",
+        "0 / 0 / 2 / 1 of 3",
+        "",
+        "",
+        "",
+        "",
+    ]
     assert len(found.table.columns) + 1 <= 9
 
 
 def test_a_shorter_path_of_a_method_as_reliable_as_the_baseline_is_said():
-    assert headline.beside_baseline(measured(("one", 1.0, 1.0, 0.9, 1.0), ("one", 1.0, 1.0, 1.2, 1.0))).endswith("1 gives a shorter path.")
-    assert headline.beside_baseline(measured(("one", 0.5, 1.0, 0.9, 1.0))).startswith("No method is feasible as often as the baseline")
+    assert headline.beside_baseline(
+        measured(("one", 1.0, 1.0, 0.9, 1.0), ("one", 1.0, 1.0, 1.2, 1.0))
+    ).endswith("1 gives a shorter path.")
+    assert headline.beside_baseline(measured(("one", 0.5, 1.0, 0.9, 1.0))).startswith(
+        "No method is feasible as often as the baseline"
+    )
     assert headline.beside_baseline(measured()) == ""
 
 
 def test_verdicts_that_hold_under_every_interpretation_are_counted():
     judged = claims(one=["supported", "partly"]).assign(interpretations=["3 of 3", "1 of 2"])
-    found = headline.headline(numbers(("one", "agrees", 1.0, 1.0, {})), judged, measured(), {"one": "One"})
+    found = headline.headline(
+        numbers(("one", "agrees", 1.0, 1.0, {})), judged, measured(), {"one": "One"}
+    )
     assert found.table.loc["one", "robust"] == "1 of 2"
 
 
 def test_deviation_is_relative_and_of_quantities_that_the_paper_defines():
     undefined = ("one", "inconclusive", 5.0, 50.0, {"why": comparison.UNDEFINED})
-    assert headline.deviation(numbers(("one", "agrees", 5.0, 6.85, {}), undefined)) == pytest.approx(0.37)
-    assert headline.deviation(numbers(("one", "agrees", 100.0, 90.0, {}), ("one", "agrees", 0.0, 1.0, {}))) == pytest.approx(0.1)
+    assert headline.deviation(
+        numbers(("one", "agrees", 5.0, 6.85, {}), undefined)
+    ) == pytest.approx(0.37)
+    assert headline.deviation(
+        numbers(("one", "agrees", 100.0, 90.0, {}), ("one", "agrees", 0.0, 1.0, {}))
+    ) == pytest.approx(0.1)
     assert math.isnan(headline.deviation(numbers(("one", "agrees", 0.0, 1.0, {}))))
 
 
 def test_markdown_leaves_out_what_no_study_has():
     text = headline.markdown(
-        headline.headline(numbers(("one", "agrees", 1.0, 1.0, {})), claims(one=["supported"]), measured(), {"one": "One"})
+        headline.headline(
+            numbers(("one", "agrees", 1.0, 1.0, {})),
+            claims(one=["supported"]),
+            measured(),
+            {"one": "One"},
+        )
     )
-    assert text.startswith("**Of 1 published number, 1 agrees. Of 1 claim, 1 is supported.**\n\n| study | paper |")
+    assert text.startswith(
+        "**Of 1 published number, 1 agrees. Of 1 claim, 1 is supported.**\n\n| study | paper |"
+    )
     assert "baseline)" not in text.splitlines()[2]

@@ -1,5 +1,6 @@
-"""Hostile input: files that are no YAML, that never end, that lie elsewhere; planners that are none; names and numbers that cannot be
-meant. Each ends in one line that names file and key, before the first job.
+"""Hostile input: files that are no YAML, that never end, that lie elsewhere; planners that are
+none; names and numbers that cannot be meant. Each ends in one line that names file and key, before
+the first job.
 """
 
 import os
@@ -56,17 +57,57 @@ TEXTS = {
     "a word": (E, "hello\n", "experiments.yaml: 'hello': expected a mapping"),
     "NUL": (E, "title: a\0b\n", "experiments.yaml: not YAML"),
     "another control character": (E, "title: a\x07b\n", "experiments.yaml: not YAML"),
-    "bytes that are no text": (E, b"title: \xff\xfe\n", "experiments.yaml: cannot be read (UnicodeDecodeError)"),
-    "deep nesting of lists": (E, "title: " + "[" * 100_000, "experiments.yaml: line 1: nested more than 20 levels deep"),
-    "deep nesting of mappings": (E, "{a: " * 5000, "experiments.yaml: line 1: nested more than 20 levels deep"),
-    "deep nesting by indentation": (E, "".join(" " * n + "a:\n" for n in range(500)), "nested more than 20 levels deep"),
-    "aliases of aliases": (E, bomb(), "more than 200000 values, aliases counted as what they stand for"),
+    "bytes that are no text": (
+        E,
+        b"title: \xff\xfe\n",
+        "experiments.yaml: cannot be read (UnicodeDecodeError)",
+    ),
+    "deep nesting of lists": (
+        E,
+        "title: " + "[" * 100_000,
+        "experiments.yaml: line 1: nested more than 20 levels deep",
+    ),
+    "deep nesting of mappings": (
+        E,
+        "{a: " * 5000,
+        "experiments.yaml: line 1: nested more than 20 levels deep",
+    ),
+    "deep nesting by indentation": (
+        E,
+        "".join(" " * n + "a:\n" for n in range(500)),
+        "nested more than 20 levels deep",
+    ),
+    "aliases of aliases": (
+        E,
+        bomb(),
+        "more than 200000 values, aliases counted as what they stand for",
+    ),
     "aliases of aliases in claims": (C, bomb(), "claims.yaml: line 6: more than 200000 values"),
-    "an alias of itself": (E, "a: &a [*a]\n", "experiments.yaml: line 1: *a: stands for nothing before it, or for itself"),
-    "an alias of nothing": (E, "a: *b\n", "experiments.yaml: line 1: *b: stands for nothing before it"),
-    "a list as key": (E, "? [a, b]\n: c\n", "experiments.yaml: line 1: a key is a list or a mapping; expected a name"),
-    "a mapping as key": (E, "? {a: b}\n: c\n", "experiments.yaml: line 1: a key is a list or a mapping; expected a name"),
-    "a tag of truth": (E, "title: !!bool maybe\n", "experiments.yaml: line 1: tag:yaml.org,2002:bool: tags are not read"),
+    "an alias of itself": (
+        E,
+        "a: &a [*a]\n",
+        "experiments.yaml: line 1: *a: stands for nothing before it, or for itself",
+    ),
+    "an alias of nothing": (
+        E,
+        "a: *b\n",
+        "experiments.yaml: line 1: *b: stands for nothing before it",
+    ),
+    "a list as key": (
+        E,
+        "? [a, b]\n: c\n",
+        "experiments.yaml: line 1: a key is a list or a mapping; expected a name",
+    ),
+    "a mapping as key": (
+        E,
+        "? {a: b}\n: c\n",
+        "experiments.yaml: line 1: a key is a list or a mapping; expected a name",
+    ),
+    "a tag of truth": (
+        E,
+        "title: !!bool maybe\n",
+        "experiments.yaml: line 1: tag:yaml.org,2002:bool: tags are not read",
+    ),
     "a tag of a number": (E, "title: !!int many\n", "tags are not read; write the plain value"),
     "a tag of Python": (
         E,
@@ -77,29 +118,65 @@ TEXTS = {
     "a tag of bytes": (E, "title: !!binary x\n", "tags are not read"),
     "a tag of a set": (E, "title: !!set {a}\n", "tags are not read"),
     "a tag of one's own": (E, "title: !mine a\n", "!mine: tags are not read"),
-    "two documents": (E, "title: a\n---\ntitle: b\n", "experiments.yaml: line 2: but found another document"),
+    "two documents": (
+        E,
+        "title: a\n---\ntitle: b\n",
+        "experiments.yaml: line 2: but found another document",
+    ),
     "a tab": (E, "title: a\n\tmethods: {}\n", "experiments.yaml: line 2: "),
     "an open quote": (E, "title: 'a\n", "experiments.yaml: line 2: "),
     "an open bracket": (E, "title: [a\n", "experiments.yaml: line 2: "),
     "no claims": (C, "claims: []\n", "claims.yaml: claims: []: expected a list of claims"),
     "empty claims": (C, "", "claims.yaml: None: expected a mapping with claims"),
-    "claims that are no list": (C, "claims: 3\n", "claims.yaml: claims: 3: expected a list of claims"),
-    "a claim that is a word": (C, "claims: [C1]\n", "claims.yaml: claims: 0: 'C1': expected a mapping with id"),
+    "claims that are no list": (
+        C,
+        "claims: 3\n",
+        "claims.yaml: claims: 3: expected a list of claims",
+    ),
+    "a claim that is a word": (
+        C,
+        "claims: [C1]\n",
+        "claims.yaml: claims: 0: 'C1': expected a mapping with id",
+    ),
     "empty assumptions": (S, "", "assumptions.yaml: None: expected a mapping with assumptions"),
     "empty artefacts": (A, "", "artefacts.yaml: None: expected a mapping"),
-    "a table that is a word": (A, "tables: {table1: x}\n", "artefacts.yaml: tables: table1: 'x': expected a mapping with kind"),
-    "a table without a kind": (A, "tables: {table1: {}}\n", "artefacts.yaml: tables: table1: kind: missing key; one of comparison"),
-    "a kind that is a list": (A, "tables: {table1: {kind: [pivot]}}\n", "artefacts.yaml: tables: table1: kind: ['pivot']: unknown"),
-    "an empty file of published numbers": (T, "", "table1.csv: line 1: the file is empty; expected a header"),
+    "a table that is a word": (
+        A,
+        "tables: {table1: x}\n",
+        "artefacts.yaml: tables: table1: 'x': expected a mapping with kind",
+    ),
+    "a table without a kind": (
+        A,
+        "tables: {table1: {}}\n",
+        "artefacts.yaml: tables: table1: kind: missing key; one of comparison",
+    ),
+    "a kind that is a list": (
+        A,
+        "tables: {table1: {kind: [pivot]}}\n",
+        "artefacts.yaml: tables: table1: kind: ['pivot']: unknown",
+    ),
+    "an empty file of published numbers": (
+        T,
+        "",
+        "table1.csv: line 1: the file is empty; expected a header",
+    ),
     "published bytes": (T, b"\xff\xff", "table1.csv: cannot be read (UnicodeDecodeError)"),
-    "published NUL": (T, "metric,statistic,n,unit,value\na\0,b,c,d,e\n", "table1.csv: line 2: has the character '\\x00'; expected csv"),
+    "published NUL": (
+        T,
+        "metric,statistic,n,unit,value\na\0,b,c,d,e\n",
+        "table1.csv: line 2: has the character '\\x00'; expected csv",
+    ),
     "a field of a million characters": (
         T,
         "metric,statistic,n,unit,value\n" + "a" * 1_000_000 + ",b,c,d,e\n",
         "table1.csv: line 2: not csv (field larger than field limit",
     ),
     "an empty map": (M, "", "figure2.txt: the map is empty"),
-    "a map of bytes": (M, b"\xff\xff", "workspaces/figure2.txt: cannot be read: byte 0 is not UTF-8"),
+    "a map of bytes": (
+        M,
+        b"\xff\xff",
+        "workspaces/figure2.txt: cannot be read: byte 0 is not UTF-8",
+    ),
     "a map with NUL": (M, "..\0.\n", "figure2.txt: has a NUL character in line 1"),
 }
 
@@ -109,46 +186,166 @@ WORDS = {
     "a title of two lines": (E, 'title: "', 'title: "a\\nb', "experiments.yaml: title: 'a\\nb"),
     "a title with an escape": (E, 'title: "', 'title: "\\e[31m', "experiments.yaml: title: "),
     "a title that turns the line": (E, 'title: "', 'title: "\\u202e', "experiments.yaml: title: "),
-    "a title of nothing": (E, 'title: "', 'title: "" #', "experiments.yaml: title: '': expected one line"),
-    "a title that is a number": (E, 'title: "', "title: 3 #", "experiments.yaml: title: 3: expected one line"),
-    "a title of a figure of two lines": (A, "title: The workspace", 'title: "a\\n.. include:: /etc/passwd"', "figures: figure2: title: "),
-    "a long title": (A, "title: The workspace", f"title: {'a' * 5000}", "figures: figure2: title: 'aaa"),
+    "a title of nothing": (
+        E,
+        'title: "',
+        'title: "" #',
+        "experiments.yaml: title: '': expected one line",
+    ),
+    "a title that is a number": (
+        E,
+        'title: "',
+        "title: 3 #",
+        "experiments.yaml: title: 3: expected one line",
+    ),
+    "a title of a figure of two lines": (
+        A,
+        "title: The workspace",
+        'title: "a\\n.. include:: /etc/passwd"',
+        "figures: figure2: title: ",
+    ),
+    "a long title": (
+        A,
+        "title: The workspace",
+        f"title: {'a' * 5000}",
+        "figures: figure2: title: 'aaa",
+    ),
     "a label of two lines": (
         A,
         "smooth: smooth",
         'smooth: "a\\nb" #',
         "artefacts.yaml: labels: smooth: 'a\\nb': expected one line of text",
     ),
-    "a key of two lines": (E, "  nonsmooth:", '  "a\\nb":', "experiments.yaml: methods: a\\nb: 'a\\nb': expected a name"),
+    "a key of two lines": (
+        E,
+        "  nonsmooth:",
+        '  "a\\nb":',
+        "experiments.yaml: methods: a\\nb: 'a\\nb': expected a name",
+    ),
     "a key that is empty": (E, "  nonsmooth:", '  "":', "experiments.yaml: methods: "),
-    "a name with a slash": (E, "  nonsmooth:", "  a/b:", "experiments.yaml: methods: a/b: 'a/b': expected a name"),
-    "a name with dots": (E, "  routes:", "  ..:", "experiments.yaml: experiments: ..: '..': expected a name"),
-    "a name with brackets": (E, "  figure2:", "  x[1]:", "experiments.yaml: workspaces: x[1]: 'x[1]': expected a name"),
-    "a name with capitals": (A, "  table1:", "  Table1:", "artefacts.yaml: tables: Table1: 'Table1': expected a name"),
+    "a name with a slash": (
+        E,
+        "  nonsmooth:",
+        "  a/b:",
+        "experiments.yaml: methods: a/b: 'a/b': expected a name",
+    ),
+    "a name with dots": (
+        E,
+        "  routes:",
+        "  ..:",
+        "experiments.yaml: experiments: ..: '..': expected a name",
+    ),
+    "a name with brackets": (
+        E,
+        "  figure2:",
+        "  x[1]:",
+        "experiments.yaml: workspaces: x[1]: 'x[1]': expected a name",
+    ),
+    "a name with capitals": (
+        A,
+        "  table1:",
+        "  Table1:",
+        "artefacts.yaml: tables: Table1: 'Table1': expected a name",
+    ),
     "a long name": (A, "  table1:", f"  {'t' * 101}:", "artefacts.yaml: tables: ttt"),
     # Numbers
-    "repeats of 1e9": (E, "full: 100,", "full: 1000000000,", "repeats: full: 1000000000: expected a whole number of at least 1"),
-    "repeats of 0": (E, "full: 100,", "full: 0,", "experiments: routes: repeats: full: 0: expected a whole number of at least 1"),
-    "repeats below 0": (E, "full: 100,", "full: -1,", "experiments: routes: repeats: full: -1: expected"),
-    "repeats that are true": (E, "full: 100,", "full: true,", "experiments: routes: repeats: full: True: expected"),
-    "repeats in words": (E, "full: 100,", "full: many,", "experiments: routes: repeats: full: 'many': expected"),
-    "repeats of nothing": (E, "full: 100,", "full: ,", "experiments: routes: repeats: full: has no value; expected"),
-    "repeats that are a list": (E, "repeats: {", "repeats: [1] #{", "experiments: routes: repeats: [1]: expected a mapping with smoke"),
+    "repeats of 1e9": (
+        E,
+        "full: 100,",
+        "full: 1000000000,",
+        "repeats: full: 1000000000: expected a whole number of at least 1",
+    ),
+    "repeats of 0": (
+        E,
+        "full: 100,",
+        "full: 0,",
+        "experiments: routes: repeats: full: 0: expected a whole number of at least 1",
+    ),
+    "repeats below 0": (
+        E,
+        "full: 100,",
+        "full: -1,",
+        "experiments: routes: repeats: full: -1: expected",
+    ),
+    "repeats that are true": (
+        E,
+        "full: 100,",
+        "full: true,",
+        "experiments: routes: repeats: full: True: expected",
+    ),
+    "repeats in words": (
+        E,
+        "full: 100,",
+        "full: many,",
+        "experiments: routes: repeats: full: 'many': expected",
+    ),
+    "repeats of nothing": (
+        E,
+        "full: 100,",
+        "full: ,",
+        "experiments: routes: repeats: full: has no value; expected",
+    ),
+    "repeats that are a list": (
+        E,
+        "repeats: {",
+        "repeats: [1] #{",
+        "experiments: routes: repeats: [1]: expected a mapping with smoke",
+    ),
     "more chunks than jobs": (
         E,
         "extended: 250}\n    chunk: {smoke: 2, full: 50, extended: 250}",
         "extended: 1000000}\n    chunk: {smoke: 2, full: 50, extended: 1}",
         "experiments: routes: chunk: extended: 1: 1000000 repeats are more than 10000 chunks",
     ),
-    "a cell thinner than the checker's tolerance": (E, "cell: 10,", "cell: 1e-9,", "figure2: cell: 1e-09: expected the side of a cell"),
-    "a cell of 0": (E, "cell: 10,", "cell: 0,", "workspaces: figure2: cell: 0: expected the side of a cell, a number of at least 1e-6"),
-    "a cell that is no number": (E, "cell: 10,", "cell: .nan,", "workspaces: figure2: cell: nan: expected"),
+    "a cell thinner than the checker's tolerance": (
+        E,
+        "cell: 10,",
+        "cell: 1e-9,",
+        "figure2: cell: 1e-09: expected the side of a cell",
+    ),
+    "a cell of 0": (
+        E,
+        "cell: 10,",
+        "cell: 0,",
+        "workspaces: figure2: cell: 0: expected the side of a cell, a number of at least 1e-6",
+    ),
+    "a cell that is no number": (
+        E,
+        "cell: 10,",
+        "cell: .nan,",
+        "workspaces: figure2: cell: nan: expected",
+    ),
     "an infinite cell": (E, "cell: 10,", "cell: .inf,", "workspaces: figure2: cell: inf: expected"),
-    "a cell of many digits": (E, "cell: 10,", f"cell: {'9' * 5000},", "workspaces: figure2: cell: inf: expected"),
-    "a cell that is true": (E, "cell: 10,", "cell: true,", "workspaces: figure2: cell: True: expected"),
-    "a cell number below 0": (E, "start_cell: 0,", "start_cell: -1,", "problems: 0_15: start_cell: -1: expected"),
-    "a cell number of 1e9": (E, "start_cell: 0,", "start_cell: 1000000000,", "problems: 0_15: start_cell: 1000000000: expected"),
-    "half a cell number": (E, "start_cell: 0,", "start_cell: 0.5,", "problems: 0_15: start_cell: 0.5: expected"),
+    "a cell of many digits": (
+        E,
+        "cell: 10,",
+        f"cell: {'9' * 5000},",
+        "workspaces: figure2: cell: inf: expected",
+    ),
+    "a cell that is true": (
+        E,
+        "cell: 10,",
+        "cell: true,",
+        "workspaces: figure2: cell: True: expected",
+    ),
+    "a cell number below 0": (
+        E,
+        "start_cell: 0,",
+        "start_cell: -1,",
+        "problems: 0_15: start_cell: -1: expected",
+    ),
+    "a cell number of 1e9": (
+        E,
+        "start_cell: 0,",
+        "start_cell: 1000000000,",
+        "problems: 0_15: start_cell: 1000000000: expected",
+    ),
+    "half a cell number": (
+        E,
+        "start_cell: 0,",
+        "start_cell: 0.5,",
+        "problems: 0_15: start_cell: 0.5: expected",
+    ),
     "a point of three": (
         E,
         "start_cell: 0, target_cell: 15}",
@@ -167,34 +364,114 @@ WORDS = {
         "start: [.nan, 1], target: [5, 5]}",
         "start: 0: nan: expected a number",
     ),
-    "a point at infinity": (E, "start_cell: 0, target_cell: 15}", "start: [.inf, 1], target: [5, 5]}", "start: 0: inf: expected a number"),
-    "a setting of 1e9": (E, "population: 200", "population: 1000000000", "settings: population: 1000000000: expected"),
-    "a setting that is no number": (E, "penalty: 10.0", "penalty: .nan", "settings: penalty: nan: expected a word, a number"),
-    "a setting that is a list": (E, "penalty: 10.0", "penalty: [10.0]", "settings: penalty: [10.0]: expected a word, a number"),
-    "a setting that is text": (E, "elitism: 1", "elitism: '1'", "elitism: '1'; expected a whole number"),
-    "a setting that is true": (E, "elitism: 1", "elitism: true", "elitism: True; expected a whole number"),
+    "a point at infinity": (
+        E,
+        "start_cell: 0, target_cell: 15}",
+        "start: [.inf, 1], target: [5, 5]}",
+        "start: 0: inf: expected a number",
+    ),
+    "a setting of 1e9": (
+        E,
+        "population: 200",
+        "population: 1000000000",
+        "settings: population: 1000000000: expected",
+    ),
+    "a setting that is no number": (
+        E,
+        "penalty: 10.0",
+        "penalty: .nan",
+        "settings: penalty: nan: expected a word, a number",
+    ),
+    "a setting that is a list": (
+        E,
+        "penalty: 10.0",
+        "penalty: [10.0]",
+        "settings: penalty: [10.0]: expected a word, a number",
+    ),
+    "a setting that is text": (
+        E,
+        "elitism: 1",
+        "elitism: '1'",
+        "elitism: '1'; expected a whole number",
+    ),
+    "a setting that is true": (
+        E,
+        "elitism: 1",
+        "elitism: true",
+        "elitism: True; expected a whole number",
+    ),
     "a reference of 0": (
         E,
         "start_cell: 0, target_cell: 15}",
         "start_cell: 0, target_cell: 15, reference: 0}",
         "reference: 0: expected the length",
     ),
-    "decimals below 0": (A, "decimals: 0", "decimals: -1", "tables: table1: values: 0: decimals: -1: expected how many decimals"),
+    "decimals below 0": (
+        A,
+        "decimals: 0",
+        "decimals: -1",
+        "tables: table1: values: 0: decimals: -1: expected how many decimals",
+    ),
     "1e9 columns of panels": (
         A,
         "columns: 2",
         "columns: 1000000000",
         "figures: figure1: columns: 1000000000: expected panels side by side",
     ),
-    "a threshold that is no number": (C, "threshold: 0.5", "threshold: .nan", "claims: 2: checks: 0: threshold: nan: expected a share"),
-    "a threshold above 1": (C, "threshold: 0.5", "threshold: 1.5", "claims: 2: checks: 0: threshold: 1.5: expected a share"),
-    "a threshold in words": (C, "threshold: 0.5", "threshold: half", "claims: 2: checks: 0: threshold: 'half': expected a share"),
-    "a threshold without a side": (C, "threshold: 0.5, direction: at_least", "threshold: 0.5", "threshold: 0.5: needs a direction"),
-    "a margin that is no number": (C, "margin: 0.1", "margin: .nan", "claims: 0: checks: 0: margin: nan: expected the smallest effect"),
-    "an infinite margin": (C, "margin: 0.1", "margin: .inf", "claims: 0: checks: 0: margin: inf: expected the smallest effect"),
-    "a margin of a misspelt share": (C, "margin: 0.1", "margin: {publised: 0.1}", "margin: publised: unknown key; did you mean published?"),
-    "two events": (C, "event: {at_most: 30}", "event: {at_most: 30, below: 3}", "event: 2 keys; expected one of below"),
-    "an event of nothing": (C, "event: {at_most: 30}", "event: {}", "event: 0 keys; expected one of below"),
+    "a threshold that is no number": (
+        C,
+        "threshold: 0.5",
+        "threshold: .nan",
+        "claims: 2: checks: 0: threshold: nan: expected a share",
+    ),
+    "a threshold above 1": (
+        C,
+        "threshold: 0.5",
+        "threshold: 1.5",
+        "claims: 2: checks: 0: threshold: 1.5: expected a share",
+    ),
+    "a threshold in words": (
+        C,
+        "threshold: 0.5",
+        "threshold: half",
+        "claims: 2: checks: 0: threshold: 'half': expected a share",
+    ),
+    "a threshold without a side": (
+        C,
+        "threshold: 0.5, direction: at_least",
+        "threshold: 0.5",
+        "threshold: 0.5: needs a direction",
+    ),
+    "a margin that is no number": (
+        C,
+        "margin: 0.1",
+        "margin: .nan",
+        "claims: 0: checks: 0: margin: nan: expected the smallest effect",
+    ),
+    "an infinite margin": (
+        C,
+        "margin: 0.1",
+        "margin: .inf",
+        "claims: 0: checks: 0: margin: inf: expected the smallest effect",
+    ),
+    "a margin of a misspelt share": (
+        C,
+        "margin: 0.1",
+        "margin: {publised: 0.1}",
+        "margin: publised: unknown key; did you mean published?",
+    ),
+    "two events": (
+        C,
+        "event: {at_most: 30}",
+        "event: {at_most: 30, below: 3}",
+        "event: 2 keys; expected one of below",
+    ),
+    "an event of nothing": (
+        C,
+        "event: {at_most: 30}",
+        "event: {}",
+        "event: 0 keys; expected one of below",
+    ),
     # Names
     "a planner of a number": (
         E,
@@ -214,7 +491,12 @@ WORDS = {
         "planner: /etc/walk.py",
         "planner: /etc/walk.py: lies outside the study's folder",
     ),
-    "a planner of the package": (E, "planner: binary_genetic", "planner: os", "planner: os: unknown"),
+    "a planner of the package": (
+        E,
+        "planner: binary_genetic",
+        "planner: os",
+        "planner: os: unknown",
+    ),
     "a variant of nothing": (
         E,
         "variant_of: smooth}",
@@ -233,7 +515,12 @@ WORDS = {
         "methods: [shortest_path,",
         "methods: shortest_path: a baseline; it joins by itself",
     ),
-    "worth beside a method": (E, "worth: {baseline: rounded", "worth: {baseline: smooth", "worth: baseline: smooth: unknown"),
+    "worth beside a method": (
+        E,
+        "worth: {baseline: rounded",
+        "worth: {baseline: smooth",
+        "worth: baseline: smooth: unknown",
+    ),
     "worth in an unknown experiment": (
         E,
         "rounded, experiments: [routes]",
@@ -243,7 +530,8 @@ WORDS = {
     "worth beside a baseline that stays out": (
         E,
         "worth: {baseline: rounded, experiments: [routes]}\n\nexperiments:\n  routes:\n",
-        "worth: {baseline: random_search, experiments: [routes]}\n\nexperiments:\n  routes:\n    vary: {population: [10]}\n",
+        "worth: {baseline: random_search, experiments: [routes]}\n\nexperiments:\n  routes:\n    "
+        "vary: {population: [10]}\n",
         "worth: experiments: routes: the baseline random_search does not join it; leave it out",
     ),
     "no methods": (
@@ -252,7 +540,12 @@ WORDS = {
         "methods: []",
         "routes: methods: []: expected a list of methods",
     ),
-    "a method twice": (E, "methods: [nonsmooth,", "methods: [smooth,", "routes: methods: ['smooth', 'smooth'"),
+    "a method twice": (
+        E,
+        "methods: [nonsmooth,",
+        "methods: [smooth,",
+        "routes: methods: ['smooth', 'smooth'",
+    ),
     "no problems": (
         E,
         "problems: [0_15, 15_255, 240_255, 0_240, 0_255, 15_240]",
@@ -277,7 +570,12 @@ WORDS = {
         "    vary: {genes: []}\n    repeats:",
         "routes: vary: genes: []: expected a list of at least 1",
     ),
-    "a setting varied by one value": (E, "    repeats:", "    vary: {genes: 6}\n    repeats:", "routes: vary: genes: 6: expected a list"),
+    "a setting varied by one value": (
+        E,
+        "    repeats:",
+        "    vary: {genes: 6}\n    repeats:",
+        "routes: vary: genes: 6: expected a list",
+    ),
     "a wrong value varied": (
         E,
         "    repeats:",
@@ -320,7 +618,12 @@ WORDS = {
         "  #",
         "settings: elitism, penalty: missing; binary_genetic needs them",
     ),
-    "a map outside the folder": (E, "workspaces/figure2.txt", "../figure2.txt", "workspaces: figure2: file: ../figure2.txt: lies outside"),
+    "a map outside the folder": (
+        E,
+        "workspaces/figure2.txt",
+        "../figure2.txt",
+        "workspaces: figure2: file: ../figure2.txt: lies outside",
+    ),
     "a map of the system": (
         E,
         "workspaces/figure2.txt",
@@ -333,9 +636,24 @@ WORDS = {
         "/dev/zero",
         "workspaces: figure2: file: /dev/zero: lies outside the study's folder",
     ),
-    "a map that is a folder": (E, "workspaces/figure2.txt", "workspaces", "workspaces: figure2: file: workspaces: not a regular file"),
-    "a map with NUL in its name": (E, "workspaces/figure2.txt", '"a\\0b"', "workspaces: figure2: file: "),
-    "a map of a long name": (E, "workspaces/figure2.txt", "a" * 5000, "workspaces: figure2: file: "),
+    "a map that is a folder": (
+        E,
+        "workspaces/figure2.txt",
+        "workspaces",
+        "workspaces: figure2: file: workspaces: not a regular file",
+    ),
+    "a map with NUL in its name": (
+        E,
+        "workspaces/figure2.txt",
+        '"a\\0b"',
+        "workspaces: figure2: file: ",
+    ),
+    "a map of a long name": (
+        E,
+        "workspaces/figure2.txt",
+        "a" * 5000,
+        "workspaces: figure2: file: ",
+    ),
     "layouts of a fixed map": (
         E,
         "start_cell: 0, target_cell: 15}",
@@ -351,13 +669,15 @@ WORDS = {
     "1e9 layouts": (
         E,
         "start_cell: 0, target_cell: 15}",
-        "start_cell: 0, target_cell: 15, layouts: {smoke: 1, full: 1000000000, extended: 1}, obstacles: [1]}",
+        "start_cell: 0, target_cell: 15, layouts: {smoke: 1, full: 1000000000, extended: 1}, "
+        "obstacles: [1]}",
         "layouts: full: 1000000000: expected",
     ),
     "1e9 obstacles": (
         E,
         "start_cell: 0, target_cell: 15}",
-        "start_cell: 0, target_cell: 15, layouts: {smoke: 1, full: 1, extended: 1}, obstacles: [1000000000]}",
+        "start_cell: 0, target_cell: 15, layouts: {smoke: 1, full: 1, extended: 1}, obstacles: "
+        "[1000000000]}",
         "obstacles: 0: 1000000000: expected",
     ),
     "a side of 1e9": (
@@ -502,19 +822,23 @@ WORDS = {
     "a key both in each and beside it": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
-        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {workspace: figure2, numbers: all}]}",
-        "panels: 0: each: 1: numbers: is given beside each as well; expected it in one of the two places",
+        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {workspace: figure2, "
+        "numbers: all}]}",
+        "panels: 0: each: 1: numbers: is given beside each as well; expected it in one of the two "
+        "places",
     ),
     "a column both in each and beside it": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
-        "{kind: boxes, experiment: routes, metric: length, where: {method: smooth}, each: [{title: one}, {where: {method: nonsmooth}}]}",
+        "{kind: boxes, experiment: routes, metric: length, where: {method: smooth}, each: "
+        "[{title: one}, {where: {method: nonsmooth}}]}",
         "panels: 0: each: 1: where: method: is given beside each as well",
     ),
     "each within each": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
-        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {each: [{workspace: figure2}, {workspace: figure2}]}]}",
+        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {each: [{workspace: "
+        "figure2}, {workspace: figure2}]}]}",
         "panels: 0: each: 1: each: is given beside each as well",
     ),
     "each misspelt": (
@@ -589,7 +913,12 @@ WORDS = {
         "panels: []",
         "figures: figure2: panels: []: expected a list of panels",
     ),
-    "a figure of the name of a table": (A, "  figure2:", "  table1:", "artefacts.yaml: figures: table1: a table has this name already"),
+    "a figure of the name of a table": (
+        A,
+        "  figure2:",
+        "  table1:",
+        "artefacts.yaml: figures: table1: a table has this name already",
+    ),
     "a selection of no method": (
         A,
         "where: {problem: 0_255, method: smooth}",
@@ -610,11 +939,17 @@ WORDS = {
     ),
     "a table of no run": (
         A,
-        "where: {problem: [0_15, 15_255, 240_255, 0_240], method: [nonsmooth, smooth, smooth_cubic, smooth_single]}",
+        "where: {problem: [0_15, 15_255, 240_255, 0_240], method: [nonsmooth, smooth, "
+        "smooth_cubic, smooth_single]}",
         "where: {curve: bezier, method: [smooth]}",
         "tables: table1: where: no run of routes",
     ),
-    "an unknown index": (A, "index: [problem]", "index: [problm]", "tables: table1: index: problm: unknown; did you mean problem?"),
+    "an unknown index": (
+        A,
+        "index: [problem]",
+        "index: [problm]",
+        "tables: table1: index: problm: unknown; did you mean problem?",
+    ),
     "a transcribed table of no file": (
         A,
         "figures:\n",
@@ -640,18 +975,48 @@ WORDS = {
         "metrics: lenght: unknown; did you mean length?",
     ),
     # Published numbers
-    "n of 0": (T, "unstated,,generation,26", "unstated,0,generation,26", "table1.csv: line 2: n: '0'; expected how many runs"),
-    "n of 2.5": (T, "unstated,,generation,26", "unstated,2.5,generation,26", "table1.csv: line 2: n: '2.5'; expected how many runs"),
-    "n below 0": (T, "unstated,,generation,26", "unstated,-3,generation,26", "table1.csv: line 2: n: '-3'; expected how many runs"),
-    "n in other digits": (T, "unstated,,generation,26", "unstated,٣,generation,26", "table1.csv: line 2: n: '٣'; expected how many runs"),
+    "n of 0": (
+        T,
+        "unstated,,generation,26",
+        "unstated,0,generation,26",
+        "table1.csv: line 2: n: '0'; expected how many runs",
+    ),
+    "n of 2.5": (
+        T,
+        "unstated,,generation,26",
+        "unstated,2.5,generation,26",
+        "table1.csv: line 2: n: '2.5'; expected how many runs",
+    ),
+    "n below 0": (
+        T,
+        "unstated,,generation,26",
+        "unstated,-3,generation,26",
+        "table1.csv: line 2: n: '-3'; expected how many runs",
+    ),
+    "n in other digits": (
+        T,
+        "unstated,,generation,26",
+        "unstated,٣,generation,26",
+        "table1.csv: line 2: n: '٣'; expected how many runs",
+    ),
     "another unit": (
         T,
         "unstated,,generation,26",
         "unstated,,s,26",
         "table1.csv: line 2: unit: 's'; expected generation, the unit of generation_1pct",
     ),
-    "an infinite number": (T, ",225.4982", ",inf", "table1.csv: line 3: value: 'inf'; expected a number"),
-    "a number too large": (T, ",225.4982", ",1e999", "table1.csv: line 3: value: '1e999'; expected a number"),
+    "an infinite number": (
+        T,
+        ",225.4982",
+        ",inf",
+        "table1.csv: line 3: value: 'inf'; expected a number",
+    ),
+    "a number too large": (
+        T,
+        ",225.4982",
+        ",1e999",
+        "table1.csv: line 3: value: '1e999'; expected a number",
+    ),
     "a statistic that the table lacks": (
         T,
         "unstated,,generation,26",
@@ -670,7 +1035,12 @@ WORDS = {
         "0_15,nonsmooth,generation_1pct,unstated,,generation,7\n0_15,nonsmooth,objective",
         "the same keys, metric and statistic as line 2",
     ),
-    "a column twice": (T, "problem,method,", "problem,problem,", "table1.csv: line 1: column problem is listed twice"),
+    "a column twice": (
+        T,
+        "problem,method,",
+        "problem,problem,",
+        "table1.csv: line 1: column problem is listed twice",
+    ),
     "a row that is too long": (
         T,
         "unstated,,generation,26",
@@ -678,9 +1048,24 @@ WORDS = {
         "table1.csv: line 2: 8 values; expected 7 values",
     ),
     # Claims
-    "a claim twice": (C, "id: C2", "id: C1", "claims.yaml: claims: C1: another one has this id already"),
-    "a claim of another name": (C, "id: C2", "id: two", "claims.yaml: claims: 1: id: 'two': expected C and a number"),
-    "a long statement": (C, "statement: Smooth paths are", f"statement: {'a' * 200} #", "claims.yaml: claims: 0: statement: 'aaa"),
+    "a claim twice": (
+        C,
+        "id: C2",
+        "id: C1",
+        "claims.yaml: claims: C1: another one has this id already",
+    ),
+    "a claim of another name": (
+        C,
+        "id: C2",
+        "id: two",
+        "claims.yaml: claims: 1: id: 'two': expected C and a number",
+    ),
+    "a long statement": (
+        C,
+        "statement: Smooth paths are",
+        f"statement: {'a' * 200} #",
+        "claims.yaml: claims: 0: statement: 'aaa",
+    ),
     "a baseline as a group": (
         C,
         "groups: [smooth], than",
@@ -717,7 +1102,12 @@ WORDS = {
         "where: {method: smooth, curve: polyline}",
         "where: no run of routes has all of",
     ),
-    "an unknown replicate of a claim": (C, "threshold: 0.5,", "threshold: 0.5, replicate: layout,", "replicate: layout: unknown"),
+    "an unknown replicate of a claim": (
+        C,
+        "threshold: 0.5,",
+        "threshold: 0.5, replicate: layout,",
+        "replicate: layout: unknown",
+    ),
     "an unknown metric of a pick": (
         C,
         "threshold: all, pick: {lowest: objective}",
@@ -736,7 +1126,12 @@ WORDS = {
         "metric: [length, objectiv]}",
         "variants: metric: objectiv: unknown; did you mean objective?",
     ),
-    "a report of no": (C, "secondary: true}", "secondary: false}", "secondary: False: expected true: shown, but not counted"),
+    "a report of no": (
+        C,
+        "secondary: true}",
+        "secondary: false}",
+        "secondary: False: expected true: shown, but not counted",
+    ),
     # Assumptions
     "a default that is not in force": (
         S,
@@ -762,7 +1157,12 @@ WORDS = {
         "    default:\n",
         "assumptions.yaml: assumptions: 1: default: has no value; expected the value in force",
     ),
-    "an assumption twice": (S, "id: O2\n", "id: O1\n", "assumptions.yaml: assumptions: O1: another one has this id already"),
+    "an assumption twice": (
+        S,
+        "id: O2\n",
+        "id: O1\n",
+        "assumptions.yaml: assumptions: O1: another one has this id already",
+    ),
     "an assumption of another name": (
         S,
         "id: O2\n",
@@ -798,21 +1198,42 @@ WORDS = {
 # A planner's file, and the line that reports it.
 PLANNERS = {
     "a planner that is not Python": ("def plan(:\n", "walk.py: line 1: SyntaxError: "),
-    "a planner that is empty": ("", "walk.py: no function plan; expected plan(problem, rng, *, <settings>)"),
-    "a planner that imports nothing": ("import nothing_of_this_name\n", "walk.py: line 1: ModuleNotFoundError: No module named"),
-    "a planner that fails": ("x = 1\ny = x / 0\n", "walk.py: line 2: ZeroDivisionError: division by zero"),
+    "a planner that is empty": (
+        "",
+        "walk.py: no function plan; expected plan(problem, rng, *, <settings>)",
+    ),
+    "a planner that imports nothing": (
+        "import nothing_of_this_name\n",
+        "walk.py: line 1: ModuleNotFoundError: No module named",
+    ),
+    "a planner that fails": (
+        "x = 1\ny = x / 0\n",
+        "walk.py: line 2: ZeroDivisionError: division by zero",
+    ),
     "a planner that ends the program": ("raise SystemExit(3)\n", "walk.py: line 1: sys.exit: 3"),
     "a planner that tells lines": ("raise ValueError('a\\nb')\n", "walk.py: line 1: ValueError: a"),
-    "a planner that calls itself": ("def f():\n    f()\nf()\n", "walk.py: line 2: RecursionError: "),
+    "a planner that calls itself": (
+        "def f():\n    f()\nf()\n",
+        "walk.py: line 2: RecursionError: ",
+    ),
     "a planner with NUL": ("\0", "walk.py: "),
     "a plan that is a number": ("plan = 3\n", "walk.py: no function plan"),
-    "a plan of nothing": ("def plan():\n    pass\n", "walk.py: function plan: expected plan(problem, rng, *, <settings>)"),
-    "a plan of one argument": ("def plan(problem):\n    pass\n", "walk.py: function plan: expected plan(problem, rng"),
+    "a plan of nothing": (
+        "def plan():\n    pass\n",
+        "walk.py: function plan: expected plan(problem, rng, *, <settings>)",
+    ),
+    "a plan of one argument": (
+        "def plan(problem):\n    pass\n",
+        "walk.py: function plan: expected plan(problem, rng",
+    ),
     "a plan with settings by position": (
         "def plan(problem, rng, tries: int):\n    pass\n",
         "walk.py: function plan: expected plan(problem, rng",
     ),
-    "a plan of anything": ("def plan(problem, rng, **settings):\n    pass\n", "walk.py: function plan: expected plan(problem, rng"),
+    "a plan of anything": (
+        "def plan(problem, rng, **settings):\n    pass\n",
+        "walk.py: function plan: expected plan(problem, rng",
+    ),
     "a setting without annotation": (
         "def plan(problem, rng, *, tries):\n    pass\n",
         "walk.py: setting tries: has no annotation; expected bool, int",
@@ -839,14 +1260,21 @@ PLANNERS = {
     ),
     "a setting of the name of a column that is joined": (
         "def plan(problem, rng, *, bound: int):\n    pass\n",
-        "walk.py: its setting bound is a column of the runs table, or joined to it; give it another name",
+        "walk.py: its setting bound is a column of the runs table, or joined to it; give it "
+        "another name",
     ),
     "a setting without a value": (
         "def plan(problem, rng, *, tries: int, more: int):\n    pass\n",
         "settings: more: missing; walk.py needs it",
     ),
-    "unknown workspaces": ("workspaces = ('gird',)\n" + PLANNER, "walk.py: workspaces: gird: unknown; did you mean grid?"),
-    "workspaces that are a word": ("workspaces = 'grid'\n" + PLANNER, "walk.py: workspaces: 'grid': expected kinds among grid"),
+    "unknown workspaces": (
+        "workspaces = ('gird',)\n" + PLANNER,
+        "walk.py: workspaces: gird: unknown; did you mean grid?",
+    ),
+    "workspaces that are a word": (
+        "workspaces = 'grid'\n" + PLANNER,
+        "walk.py: workspaces: 'grid': expected kinds among grid",
+    ),
     "other workspaces": (
         "workspaces = ('circles',)\n" + PLANNER,
         "methods: nonsmooth: its planner serves workspaces of kind circles, not grid",
@@ -871,7 +1299,9 @@ PLANNERS = {
 
 
 def write(file: Path, content) -> None:
-    file.write_bytes(content) if isinstance(content, bytes) else file.write_text(content, encoding="utf-8", newline="")
+    file.write_bytes(content) if isinstance(content, bytes) else file.write_text(
+        content, encoding="utf-8", newline=""
+    )
 
 
 @pytest.mark.parametrize("fault", TEXTS)
@@ -919,7 +1349,9 @@ def test_a_planner_that_is_one(folder):
 @pytest.mark.parametrize("name", [E, A, C, S, T, M])
 @pytest.mark.parametrize("kind", ["endless", "pipe", "folder", "huge", "elsewhere"])
 def test_what_is_no_file_of_the_study(kind, name, folder, tmp_path):
-    """A link to /dev/zero, a pipe that nobody writes, a folder, a file of gigabytes, and one of somebody else."""
+    """A link to /dev/zero, a pipe that nobody writes, a folder, a file of gigabytes, and one of
+    somebody else.
+    """
     file = folder / name
     file.unlink()
     match kind:
@@ -962,8 +1394,20 @@ SPOILT = {
 
 
 def started(place, study):
-    """A dry run of a study from a folder: how it ended, and its calls of functions, which are its work on any machine, however busy."""
-    words = ("-s", ROOT / "Snakefile", "--workflow-profile", "none", "-n", "--cores", "1", "--config", f"studies=[{study}]")
+    """A dry run of a study from a folder: how it ended, and its calls of functions, which are its
+    work on any machine, however busy.
+    """
+    words = (
+        "-s",
+        ROOT / "Snakefile",
+        "--workflow-profile",
+        "none",
+        "-n",
+        "--cores",
+        "1",
+        "--config",
+        f"studies=[{study}]",
+    )
     done = starts.snakemake(place, *words, calls=place / "calls")
     return done, pstats.Stats(str(place / "calls")).total_calls
 
@@ -978,7 +1422,9 @@ def sound(tmp_path_factory):
 
 @pytest.mark.parametrize("fault", SPOILT)
 def test_snakemake_ends_in_one_line(fault, folder, sound):
-    """Exit code 2, and of the whole output one line: no traceback, whatever the file holds; after less work than a sound start takes."""
+    """Exit code 2, and of the whole output one line: no traceback, whatever the file holds; after
+    less work than a sound start takes.
+    """
     name, content = SPOILT[fault]
     (folder / name).unlink()
     os.mkfifo(folder / name) if content is None else write(folder / name, content)
@@ -993,5 +1439,7 @@ def test_snakemake_ends_in_one_line(fault, folder, sound):
 
 def test_a_program_that_stops_reading_gets_no_complaint():
     command = f"'{sys.executable}' -m bezierplan list | true"
-    done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run(
+        ["bash", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120
+    )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

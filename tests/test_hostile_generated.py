@@ -1,4 +1,5 @@
-"""Hostile input that nobody thought of: files of a study and maps, cut, doubled and strewn with other characters by a generator.
+"""Hostile input that nobody thought of: files of a study and maps, cut, doubled and strewn with
+other characters by a generator.
 
 Each is read, or ends in one line that names its file; nothing else may happen.
 """
@@ -17,7 +18,12 @@ from bezierplan.study.experiments import ExperimentsFile
 from bezierplan.workspaces import files
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
-MODELS = {"experiments": ExperimentsFile, "artefacts": ArtefactsFile, "claims": ClaimsFile, "assumptions": AssumptionsFile}
+MODELS = {
+    "experiments": ExperimentsFile,
+    "artefacts": ArtefactsFile,
+    "claims": ClaimsFile,
+    "assumptions": AssumptionsFile,
+}
 WORDS = [
     "{",
     "}",
@@ -42,7 +48,24 @@ WORDS = [
     "\u202e",
     "#",
 ]
-JSON_WORDS = ["{", "}", "[", "]", ",", ":", "null", "-1", "1e999", "NaN", '"', '"type"', "0", "[[0,0],[1,1]]", "\0", "\u202e"]
+JSON_WORDS = [
+    "{",
+    "}",
+    "[",
+    "]",
+    ",",
+    ":",
+    "null",
+    "-1",
+    "1e999",
+    "NaN",
+    '"',
+    '"type"',
+    "0",
+    "[[0,0],[1,1]]",
+    "\0",
+    "\u202e",
+]
 
 
 def spoilt(text, words):

@@ -1,4 +1,6 @@
-"""Command lines that cannot be meant: one line without control characters, exit code 2, before any work."""
+"""Command lines that cannot be meant: one line without control characters, exit code 2, before any
+work.
+"""
 
 import pytest
 
@@ -6,18 +8,30 @@ from bezierplan.__main__ import main
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 
-NO_STUDY = "not a name of a study; expected at most 100 letters, digits, _ and -, a letter first, and not the name of a device"
+NO_STUDY = (
+    "not a name of a study; expected at most 100 letters, digits, _ and -, a letter first, "
+    "and not the name of a device"
+)
 WORDS = {
     "results of two lines": (["verify", "x\ny"], "x\\ny: no runs here"),
     "results with an escape": (["digest", "x\x1by"], "x\\x1by: no runs here"),
     "no core": (["verify", ".", "--cores", "0"], "--cores: 0; expected a number of at least 1"),
-    "a core that is no number": (["verify", ".", "--cores", "nan"], "argument --cores: invalid int value: 'nan'"),
+    "a core that is no number": (
+        ["verify", ".", "--cores", "nan"],
+        "argument --cores: invalid int value: 'nan'",
+    ),
     "a study of a device": (["new", "con"], f"con: {NO_STUDY}"),
     "a study of two lines": (["new", "x\n"], f"x\\n: {NO_STUDY}"),
     "a study of a long name": (["new", "x" * 300], NO_STUDY),
     "a study where nothing can be made": (["new", "/proc/x"], "/proc/x: No such file or directory"),
-    "a study in a file": (["new", "a_file/x"], "a_file/x: no folder a_file; expected one that exists"),
-    "a misspelt option of Snakemake": (["run", "x", "--scale", "full"], "unrecognized arguments: --scale"),
+    "a study in a file": (
+        ["new", "a_file/x"],
+        "a_file/x: no folder a_file; expected one that exists",
+    ),
+    "a misspelt option of Snakemake": (
+        ["run", "x", "--scale", "full"],
+        "unrecognized arguments: --scale",
+    ),
     "cores of Snakemake in words": (["run", "x", "--cores", "nan"], "--cores: "),
     "a limit of Snakemake in words": (["run", "x", "--retries", "many"], "--retries"),
 }

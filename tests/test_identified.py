@@ -1,4 +1,6 @@
-"""Printed lengths as those of polylines through cell centres, and the rules by which verdicts follow from more than one comparison."""
+"""Printed lengths as those of polylines through cell centres, and the rules by which verdicts
+follow from more than one comparison.
+"""
 
 import itertools
 import math
@@ -19,17 +21,23 @@ WALL = from_lines([".#.", ".#.", "..."], 10.0, "unit")
 
 
 def found(grid, start, target, value, decimals=4, edges=3):
-    return identified.in_problem(Problem("", grid, grid.centre(start), grid.centre(target)), value, decimals, edges)
+    return identified.in_problem(
+        Problem("", grid, grid.centre(start), grid.centre(target)), value, decimals, edges
+    )
 
 
 def by_force(grid, start, target, edges):
-    """Lengths of all free polylines, in units, from every order of cells; edges as `identified.ways` finds them."""
+    """Lengths of all free polylines, in units, from every order of cells; edges as
+    `identified.ways` finds them.
+    """
     ways = identified.ways(grid)
     places = {int(cell): number for number, cell in enumerate(ways.cells)}
     for count in range(edges):
         for inner in itertools.product(places, repeat=count):
             path = (start, *inner, target)
-            length = sum(ways.lengths[places[one], places[other]] for one, other in itertools.pairwise(path))
+            length = sum(
+                ways.lengths[places[one], places[other]] for one, other in itertools.pairwise(path)
+            )
             if math.isfinite(length):
                 yield path, grid.cell * length
 
@@ -71,12 +79,22 @@ def test_chance_of_as_many():
 
 
 def test_non_smooth_lengths_of_song2016_are_identified():
-    grid = from_lines((FOLDER / "song2016/workspaces/figure2.txt").read_text().split(), 10.0, "unit")
+    grid = from_lines(
+        (FOLDER / "song2016/workspaces/figure2.txt").read_text().split(), 10.0, "unit"
+    )
     published = pd.read_csv(FOLDER / "song2016/published/table1.csv")
     published["printed"] = pd.read_csv(FOLDER / "song2016/published/table1.csv", dtype=str)["value"]
     ends = {name: tuple(map(int, name.split("_"))) for name in published["problem"].unique()}
-    problems = {name: Problem(name, grid, grid.centre(start), grid.centre(target)) for name, (start, target) in ends.items()}
-    entry = {"metric": "objective", "where": {"method": "nonsmooth"}, "edges": 7, "because": "polyline"}
+    problems = {
+        name: Problem(name, grid, grid.centre(start), grid.centre(target))
+        for name, (start, target) in ends.items()
+    }
+    entry = {
+        "metric": "objective",
+        "where": {"method": "nonsmooth"},
+        "edges": 7,
+        "because": "polyline",
+    }
     *rows, together = identified.of_table("table1", published, [entry], problems)
     assert [row["consistent"] for row in rows] == [True] * 4
     assert "240 179 181 235 255;" in rows[2]["arithmetic"]
@@ -109,7 +127,12 @@ def test_an_undecided_verdict_neither_agrees_nor_disagrees():
 def test_signed_curvature_counts_left_turns_alone():
     left = Path("bezier", np.array([[0.0, 0], [4, 0], [4, 4]]))
     right = Path("bezier", np.array([[0.0, 0], [4, 0], [4, -4]]))
-    assert measures.signed_curvature(left) == measures.max_curvature(left) == measures.max_curvature(right) > 0
+    assert (
+        measures.signed_curvature(left)
+        == measures.max_curvature(left)
+        == measures.max_curvature(right)
+        > 0
+    )
     assert measures.signed_curvature(right) < 0
 
 

@@ -9,11 +9,15 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 HADOLINT = shutil.which("hadolint", path=str(Path(sys.executable).parent))
-needs_hadolint = pytest.mark.skipif(HADOLINT is None, reason="hadolint has wheels for Linux on x86-64 alone")
+needs_hadolint = pytest.mark.skipif(
+    HADOLINT is None, reason="hadolint has wheels for Linux on x86-64 alone"
+)
 
 
 def linted(file: Path) -> subprocess.CompletedProcess:
-    return subprocess.run([HADOLINT, str(file)], capture_output=True, text=True, check=False, timeout=60)
+    return subprocess.run(
+        [HADOLINT, str(file)], capture_output=True, text=True, check=False, timeout=60
+    )
 
 
 @needs_hadolint
@@ -26,7 +30,10 @@ def test_a_linter_finds_nothing_in_the_dockerfile():
 def test_the_linter_finds_a_broken_line(tmp_path):
     broken = tmp_path / "Dockerfile"
     broken.write_text(
-        (ROOT / "Dockerfile").read_text(encoding="utf-8").replace("WORKDIR /bezierplan", "WORKDIRR /bezierplan"), encoding="utf-8"
+        (ROOT / "Dockerfile")
+        .read_text(encoding="utf-8")
+        .replace("WORKDIR /bezierplan", "WORKDIRR /bezierplan"),
+        encoding="utf-8",
     )
     assert linted(broken).returncode != 0
 

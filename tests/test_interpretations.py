@@ -1,4 +1,6 @@
-"""The search for an interpretation that explains the published numbers: the grid, one interpretation, the search, and what is reported."""
+"""The search for an interpretation that explains the published numbers: the grid, one
+interpretation, the search, and what is reported.
+"""
 
 import json
 import math
@@ -34,8 +36,22 @@ def studies():
 
 def numbers(in_range: list[bool], table: list[str] | None = None) -> pd.DataFrame:
     values = np.arange(float(len(in_range)))
-    frame = {"method": list("abcdefgh")[: len(in_range)], "metric": "length", "statistic": "mean", "value_published": values}
-    return pd.DataFrame(frame | {"low": values, "high": values, "in_range": in_range, "possible": True, "table": table or "table1"})
+    frame = {
+        "method": list("abcdefgh")[: len(in_range)],
+        "metric": "length",
+        "statistic": "mean",
+        "value_published": values,
+    }
+    return pd.DataFrame(
+        frame
+        | {
+            "low": values,
+            "high": values,
+            "in_range": in_range,
+            "possible": True,
+            "table": table or "table1",
+        }
+    )
 
 
 # The grid.
@@ -55,10 +71,14 @@ def test_grid_has_settings_worlds_and_metrics(studies):
 def test_what_the_paper_does_not_define_has_no_vote(studies):
     job = choices.interpretations_job(studies["tharwat2018"], 1)
     assert "O10" not in {choice["id"] for choice in job["choices"]}
-    assert {value["metric"] for table in job["tables"].values() for value in table["spec"]["values"]} == {"rank", "objective"}
+    assert {
+        value["metric"] for table in job["tables"].values() for value in table["spec"]["values"]
+    } == {"rank", "objective"}
     # Its numbers stand in the same file as the others, and are passed over.
     both = printed(5.0, 6.0)
-    found, likelihood = interpretations.numbers_of(results(5.0), SPEC, pd.concat([both, both.assign(metric="length")]), "study/table")
+    found, likelihood = interpretations.numbers_of(
+        results(5.0), SPEC, pd.concat([both, both.assign(metric="length")]), "study/table"
+    )
     assert found["metric"].to_list() == ["objective"] * 2
     assert likelihood == interpretations.numbers_of(results(5.0), SPEC, both, "study/table")[1]
 
@@ -77,10 +97,16 @@ def test_the_best_interpretation_is_judged_anew_by_a_thousand_runs_that_no_other
 
     def runs(part, table, method):
         chunk = job[part]["tables"][table]["jobs"][method]
-        return {(problem, repeat) for problem in chunk["problems"] for repeat in range(*chunk["repeats"])}
+        return {
+            (problem, repeat)
+            for problem in chunk["problems"]
+            for repeat in range(*chunk["repeats"])
+        }
 
     for name, table in job["confirmed"]["tables"].items():
-        drawn = "layout" in next(iter(table["jobs"][next(iter(table["jobs"]))]["problems"].values()))
+        drawn = "layout" in next(
+            iter(table["jobs"][next(iter(table["jobs"]))]["problems"].values())
+        )
         for method in table["jobs"]:
             fresh, seen = runs("fresh", name, method), runs("confirmed", name, method)
             assert seen >= runs("screened", name, method)
@@ -111,7 +137,8 @@ def test_every_choice_can_be_made_in_every_job(studies, key):
                 for table in job["tables"].values()
                 for chunk in table["jobs"].values()
             ]
-            # A metric and a world change how runs are read, a workspace what they are made in, a setting changes runs.
+            # A metric and a world change how runs are read, a workspace what they are made in, a
+            # setting changes runs.
             assert any(changes) == ("setting" in choice), chosen
 
 
@@ -127,7 +154,10 @@ def test_a_choice_wins_over_the_settings_of_a_problem(studies):
 def test_only_the_world_of_the_interpretation_is_run(studies):
     table = choices.interpretations_job(studies["tharwat2018"], 1)["tables"]["table3"]
     chunk = table["jobs"]["cpso1_gauss"]
-    for chosen, world in (({}, ("equal", "default")), ({"workspace": "public", "profile": "tuned"}, ("public", "tuned"))):
+    for chosen, world in (
+        ({}, ("equal", "default")),
+        ({"workspace": "public", "profile": "tuned"}, ("public", "tuned")),
+    ):
         spec, job = interpretations.in_world(table["spec"], chunk, chosen)
         assert (list(job["problems"]), job["vary"]) == ([world[0]], {"profile": [world[1]]})
         assert (spec["where"]["workspace"], spec["where"]["profile"]) == world
@@ -151,11 +181,22 @@ def results(mean: float, spread: float = 1.0, runs: int = 40) -> Results:
     return Results(pd.DataFrame(rows), PROBLEMS, pd.DataFrame())
 
 
-SPEC = {"where": {"method": ["a", "b"]}, "index": ["method"], "values": [{"metric": "objective", "statistic": "mean"}]}
+SPEC = {
+    "where": {"method": ["a", "b"]},
+    "index": ["method"],
+    "values": [{"metric": "objective", "statistic": "mean"}],
+}
 
 
 def printed(a: float, b: float) -> pd.DataFrame:
-    frame = {"method": ["a", "b"], "metric": "objective", "statistic": "mean", "n": 10, "unit": "m", "value": [a, b]}
+    frame = {
+        "method": ["a", "b"],
+        "metric": "objective",
+        "statistic": "mean",
+        "n": 10,
+        "unit": "m",
+        "value": [a, b],
+    }
     return pd.DataFrame(frame)
 
 
@@ -191,25 +232,35 @@ def test_an_event_that_none_of_our_few_runs_had_may_be_in_print_once_or_twice():
 
 def test_a_number_of_an_unstated_number_of_runs_is_as_likely_by_many_of_ours_as_by_few():
     def likelihood(runs):
-        return interpretations.numbers_of(results(5.0, runs=runs), SPEC, printed(6.0, 7.0).assign(n=math.nan), "study/table")[1]
+        return interpretations.numbers_of(
+            results(5.0, runs=runs), SPEC, printed(6.0, 7.0).assign(n=math.nan), "study/table"
+        )[1]
 
     assert likelihood(4000) == pytest.approx(likelihood(100), abs=3)
 
 
 def test_too_few_runs_explain_nothing():
-    found, likelihood = interpretations.numbers_of(results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table")
+    found, likelihood = interpretations.numbers_of(
+        results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table"
+    )
     assert not found["in_range"].any()
     assert math.isfinite(likelihood)
 
 
 def test_a_metric_takes_the_place_of_the_printed_word():
-    spec, published = interpretations.under_metrics(SPEC, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])
+    spec, published = interpretations.under_metrics(
+        SPEC, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}]
+    )
     assert [value["metric"] for value in spec["values"]] == ["length"]
     assert set(published["metric"]) == {"length"}
     # A table that shows the metric already shows it once.
     both = SPEC | {"values": [*SPEC["values"], {"metric": "length", "statistic": "mean"}]}
     assert (
-        len(interpretations.under_metrics(both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])[0]["values"])
+        len(
+            interpretations.under_metrics(
+                both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}]
+            )[0]["values"]
+        )
         == 1
     )
 
@@ -228,9 +279,16 @@ def test_the_length_that_a_fitness_uses_is_not_the_length_that_is_printed(studie
 def test_a_choice_for_some_problems_leaves_the_others_alone(studies):
     job = choices.interpretations_job(studies["meledje"], 1)
     first, second = (job["tables"][name]["jobs"]["ref12"] for name in ("table2", "table4"))
-    changed = [interpretations.job_under(chunk, {"M15": 50, "M15b": 200}, job["choices"]) for chunk in (first, second)]
+    changed = [
+        interpretations.job_under(chunk, {"M15": 50, "M15b": 200}, job["choices"])
+        for chunk in (first, second)
+    ]
     assert all(chunk["settings"]["generations"] == 50 for chunk in changed)
-    found = {name: place["settings"].get("generations") for chunk in changed for name, place in chunk["problems"].items()}
+    found = {
+        name: place["settings"].get("generations")
+        for chunk in changed
+        for name, place in chunk["problems"].items()
+    }
     assert found["env1_initial"] is None
     assert found["env2_initial"] == found["env2_modified"] == 200
 
@@ -247,17 +305,25 @@ def test_methods_that_no_metric_compares_are_parts(studies):
 @pytest.mark.parametrize("method", ["prm", "abc_ep", "ga"])
 def test_every_rival_has_forty_settings_to_try(studies, method):
     found = {
-        choice["id"]: len(choice["values"]) for choice in choices.choices(studies["elhoseny2017"]) if choice.get("methods") == [method]
+        choice["id"]: len(choice["values"])
+        for choice in choices.choices(studies["elhoseny2017"])
+        if choice.get("methods") == [method]
     }
     assert math.prod(found.values()) >= 40
 
 
 def test_a_share_of_the_runs_screens_interpretations(studies):
     job = choices.search_job(studies["elhoseny2017"])
-    layouts = [{place["layout"] for place in job[name]["worlds"]["fields100"]["problems"].values()} for name in ("screened", "confirmed")]
+    layouts = [
+        {place["layout"] for place in job[name]["worlds"]["fields100"]["problems"].values()}
+        for name in ("screened", "confirmed")
+    ]
     assert list(map(len, layouts)) == [statistics.LEAST_RUNS, 20]
     job = choices.search_job(studies["ma2020"])
-    assert [job[name]["tables"]["table1"]["jobs"]["aco"]["repeats"] for name in ("screened", "confirmed")] == [[0, 25], [0, 100]]
+    assert [
+        job[name]["tables"]["table1"]["jobs"]["aco"]["repeats"]
+        for name in ("screened", "confirmed")
+    ] == [[0, 25], [0, 100]]
 
 
 # The search.
@@ -296,19 +362,38 @@ def test_a_change_is_paid_only_by_the_parts_that_it_concerns():
 
     parts = [Part(["a"], ["O0", "O1", "O2"]), Part(["b"], ["O0", "O3", "O4", "O5"])]
     found = search(CHOICES, parts, evaluate, "study", most=200)
-    assert len({(task.part, explained.name_of(task.interpretation)) for task in asked}) == len(asked) <= 27 + 81
+    assert (
+        len({(task.part, explained.name_of(task.interpretation)) for task in asked})
+        == len(asked)
+        <= 27 + 81
+    )
     assert all(task.interpretation.keys() <= set(parts[task.part].choices) for task in asked)
-    assert max(found.interpretations, key=lambda each: each.rank).interpretation == {"O1": 2, "O5": 1}
+    assert max(found.interpretations, key=lambda each: each.rank).interpretation == {
+        "O1": 2,
+        "O5": 1,
+    }
 
 
 def test_an_interpretation_names_no_choice_that_its_world_makes_itself():
-    """As a bundle of settings beats the single ones, `O1=2, world=other` would be the runs of `world=other` under another name."""
-    world = {"id": "world", "detail": "", "values": [None, "other"], "column": "world", "overrules": {"other": ["O1"]}}
+    """As a bundle of settings beats the single ones, `O1=2, world=other` would be the runs of
+    `world=other` under another name.
+    """
+    world = {
+        "id": "world",
+        "detail": "",
+        "values": [None, "other"],
+        "column": "world",
+        "overrules": {"other": ["O1"]},
+    }
 
     def tried(grid):
         parts = [Part(["a"], [choice["id"] for choice in [*grid, world]])]
         return search(
-            [*grid, world], parts, lambda tasks: [evaluated(task.interpretation, {"O2": 1}) for task in tasks], "study", most=60
+            [*grid, world],
+            parts,
+            lambda tasks: [evaluated(task.interpretation, {"O2": 1}) for task in tasks],
+            "study",
+            most=60,
         ).interpretations
 
     for grid in (CHOICES[:2], CHOICES):
@@ -323,14 +408,19 @@ def test_interpretations_that_exclude_themselves_are_left_out_and_the_budget_is_
 
     def evaluate(tasks):
         asked.extend(explained.name_of(task.interpretation) for task in tasks)
-        return [None if task.interpretation.get("O2") == 1 else evaluated(task.interpretation, {}) for task in tasks]
+        return [
+            None if task.interpretation.get("O2") == 1 else evaluated(task.interpretation, {})
+            for task in tasks
+        ]
 
     found = search(CHOICES, ALONE, evaluate, "study", most=20)
     assert len(asked) == len(set(asked))
     assert 20 <= len(asked) < 20 + 3  # a batch is finished
     assert all(each.interpretation.get("O2") != 1 for each in found.interpretations)
     again = search(CHOICES, ALONE, evaluate, "study", most=20)
-    assert [each.interpretation for each in again.interpretations] == [each.interpretation for each in found.interpretations]
+    assert [each.interpretation for each in again.interpretations] == [
+        each.interpretation for each in found.interpretations
+    ]
 
 
 def test_the_best_are_judged_again():
@@ -347,13 +437,20 @@ PLANTED = [("song2016", 0), ("ma2020", 0), ("meledje", 0), ("meledje", 1), ("ma2
 @pytest.mark.parametrize(("key", "number"), PLANTED)
 def test_a_planted_interpretation_is_found(studies, key, number):
     job = choices.search_job(studies[key])
-    surface = planted.Surface(f"{key}/{number}", job["screened"]["choices"], [Part(**part) for part in job["parts"]])
+    surface = planted.Surface(
+        f"{key}/{number}", job["screened"]["choices"], [Part(**part) for part in job["parts"]]
+    )
     assert planted.found_by(surface, 100) >= -planted.NEAR
 
 
 def test_noise_is_not_explained(studies):
     job = choices.search_job(studies["ma2020"])
-    surface = planted.Surface("ma2020/noise", job["screened"]["choices"], [Part(**part) for part in job["parts"]], noise=True)
+    surface = planted.Surface(
+        "ma2020/noise",
+        job["screened"]["choices"],
+        [Part(**part) for part in job["parts"]],
+        noise=True,
+    )
     found = search(surface.choices, surface.parts, surface.evaluate, "study", most=60)
     best = max(found.interpretations, key=lambda each: each.rank)
     assert best.numbers["in_range"].mean() < 0.5
@@ -372,26 +469,45 @@ def test_by_chance_exchanges_the_printed_numbers():
 def test_tables_of_interpretations_numbers_and_tables_left_out():
     tables = ["table1", "table1", "table2"]
     default = Evaluated({}, numbers([True, False, True], tables), {"table1": -1.0, "table2": -1.0})
-    other = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -5.0})
-    found = explained.interpretations_table("study", [default, other], [default, other], other, CHOICES)
+    other = Evaluated(
+        {"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -5.0}
+    )
+    found = explained.interpretations_table(
+        "study", [default, other], [default, other], other, CHOICES
+    )
     assert found["interpretation"].to_list() == ["default", "O1=2"]
-    assert found[["in_range", "in_range_table1", "in_range_table2"]].to_numpy().tolist() == [[2, 1, 1], [2, 2, 0]]
+    assert found[["in_range", "in_range_table1", "in_range_table2"]].to_numpy().tolist() == [
+        [2, 1, 1],
+        [2, 2, 0],
+    ]
     numbers_found = explained.explained_table("study", [default, other], [[default, other]], set())
     assert numbers_found["interpretations"].to_list() == [1, 1, 2]
     assert numbers_found["default"].to_list() == [False, True, True]
     assert numbers_found["missed_by"].to_list() == [0.0, 0.0, 0.0]
     held_out = explained.held_out_table("study", [default, other], {}).set_index("table")
     # The other one is best on the first table, and is wrong on the second.
-    assert held_out.loc["table2", ["interpretation", "chosen", "default", "most"]].to_list() == ["O1=2", 0, 1, 1]
+    assert held_out.loc["table2", ["interpretation", "chosen", "default", "most"]].to_list() == [
+        "O1=2",
+        0,
+        1,
+        1,
+    ]
 
 
 def test_a_number_that_nothing_explains_has_the_interpretation_that_comes_nearest():
-    far, near = numbers([False]).assign(low=4.0, high=5.0), numbers([False]).assign(low=-3.0, high=-1.5)
+    far, near = (
+        numbers([False]).assign(low=4.0, high=5.0),
+        numbers([False]).assign(low=-3.0, high=-1.5),
+    )
     tried = [Evaluated({}, far, {"table1": -9.0}), Evaluated({"O1": 2}, near, {"table1": -5.0})]
     (row,) = explained.explained_table("study", tried, [tried], set()).to_dict("records")
     assert (row["value_published"], row["missed_by"], row["nearest"]) == (0.0, 1.5, "O1=2")
-    failed = [Evaluated({}, numbers([False]).assign(low=math.nan, high=math.nan), {"table1": -50.0})]
-    assert math.isnan(explained.explained_table("study", failed, [failed], set())["missed_by"].iloc[0])
+    failed = [
+        Evaluated({}, numbers([False]).assign(low=math.nan, high=math.nan), {"table1": -50.0})
+    ]
+    assert math.isnan(
+        explained.explained_table("study", failed, [failed], set())["missed_by"].iloc[0]
+    )
 
 
 def told(*tried, lines=None):
@@ -399,7 +515,10 @@ def told(*tried, lines=None):
     numbers_found = explained.explained_table("one", confirmed, [confirmed], set())
     held_out = explained.held_out_table("one", confirmed, lines or {})
     (*_, text) = explained.section(
-        explained.interpretations_table("one", confirmed, [], confirmed[-1], CHOICES), numbers_found, held_out, {"one": "The first"}
+        explained.interpretations_table("one", confirmed, [], confirmed[-1], CHOICES),
+        numbers_found,
+        held_out,
+        {"one": "The first"},
     )
     return text
 
@@ -419,31 +538,56 @@ def test_a_row_for_each_study_says_which_interpretation_is_most_likely(tmp_path)
         "default in range": "1",
         "likelihood over the default's": "10^4 times",
     }
-    (row,) = explained.brief(explained.interpretations_table("one", [default], [], default, CHOICES)).to_dict("records")
+    (row,) = explained.brief(
+        explained.interpretations_table("one", [default], [], default, CHOICES)
+    ).to_dict("records")
     assert row["most likely interpretation"] == "the default"
 
 
 def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
     tables = ["table1", "table1", "table2", "table2"]
-    default = Evaluated({}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0})
-    better = Evaluated({"O1": 2}, numbers([True, True, True, False], tables), {"table1": 0.0, "table2": -1.0})
+    default = Evaluated(
+        {}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0}
+    )
+    better = Evaluated(
+        {"O1": 2}, numbers([True, True, True, False], tables), {"table1": 0.0, "table2": -1.0}
+    )
     text = told(default, better)
-    assert "are most likely from an experiment in which these choices differ from ours: : 2 (O1=2)" in text
+    assert (
+        "are most likely from an experiment in which these choices differ from ours: : 2 (O1=2)"
+        in text
+    )
     assert "log-likelihood ratio against the default +5.0 (10^2 times as likely)" in text
-    assert "Judged anew by runs with other seeds, it has 3 of 4 in range and a log-likelihood of -1.0 (by the runs" in text
+    assert (
+        "Judged anew by runs with other seeds, it has 3 of 4 in range and a log-likelihood of "
+        "-1.0 (by the runs" in text
+    )
     assert "No interpretation explains 1 of the numbers: 1 of table2 for d." in text
-    assert text.endswith("interpretations bring 3 into range, the default 1: the tables held out agree with a change.")
+    assert text.endswith(
+        "interpretations bring 3 into range, the default 1: the tables held out agree with a "
+        "change."
+    )
     assert "none of 1 interpretations is more likely" in told(default)
     assert "explains their level" not in text
-    # Ranges so wide that each holds every printed number of its kind say nothing about how these differ.
-    wide = Evaluated({"O1": 2}, better.numbers.assign(low=-10.0, high=10.0, in_range=True, method="a"), better.likelihoods)
-    assert "4 of 4 numbers in range (4 if those of one kind in one table were exchanged): it explains their level" in told(default, wide)
+    # Ranges so wide that each holds every printed number of its kind say nothing about how these
+    # differ.
+    wide = Evaluated(
+        {"O1": 2},
+        better.numbers.assign(low=-10.0, high=10.0, in_range=True, method="a"),
+        better.likelihoods,
+    )
+    assert (
+        "4 of 4 numbers in range (4 if those of one kind in one table were exchanged): it "
+        "explains their level" in told(default, wide)
+    )
 
 
 def test_summary_does_not_follow_an_interpretation_that_other_tables_refuse():
     tables = ["table1", "table1", "table2"]
     default = Evaluated({}, numbers([False, False, True], tables), {"table1": -9.0, "table2": -1.0})
-    fitted = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -9.0})
+    fitted = Evaluated(
+        {"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -9.0}
+    )
     text = told(default, fitted)
     assert "Each number is in range under some interpretation." in text
     assert text.endswith("held out, table2 (0 instead of 1) speaks against a change.")
@@ -452,32 +596,58 @@ def test_summary_does_not_follow_an_interpretation_that_other_tables_refuse():
 
 def test_an_interpretation_under_which_a_printed_number_is_impossible_is_ruled_out_whatever_its_score():
     default = Evaluated({}, numbers([True, False]), {"table1": -9.0})
-    likely = Evaluated({"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0})
+    likely = Evaluated(
+        {"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0}
+    )
     assert max([default, likely], key=lambda each: each.rank) is default
     found = explained.interpretations_table("study", [default, likely], [], likely, CHOICES)
-    assert found[["interpretation", "impossible"]].to_numpy().tolist() == [["default", 0], ["O1=2", 1]]
+    assert found[["interpretation", "impossible"]].to_numpy().tolist() == [
+        ["default", 0],
+        ["O1=2", 1],
+    ]
     text = told(default, likely)
-    assert "1 of 2 interpretations is ruled out: under it a printed mean or extreme lies below the exact bound of its map." in text
+    assert (
+        "1 of 2 interpretations is ruled out: under it a printed mean or extreme lies below the "
+        "exact bound of its map." in text
+    )
     assert "none of 2 interpretations is more likely" in text
     # Ruled out, it is no place to climb from either.
-    found = search(CHOICES, ALONE, lambda tasks: [likely if task.interpretation else default for task in tasks], "study", most=30)
+    found = search(
+        CHOICES,
+        ALONE,
+        lambda tasks: [likely if task.interpretation else default for task in tasks],
+        "study",
+        most=30,
+    )
     assert found.interpretations[0].interpretation == {}
 
 
 def test_a_line_that_describes_the_numbers_better_is_told():
     own = Evaluated({}, numbers([True, False]), {"table1": -9.0})
-    assert "below that of the most likely interpretation: so the interpretation describes them better" in told(
-        own, lines={"table1": ("obstacles", -20.0)}
+    assert (
+        "below that of the most likely interpretation: so the interpretation describes them better"
+        in told(own, lines={"table1": ("obstacles", -20.0)})
     )
     text = told(own, lines={"table1": ("obstacles", -2.0)})
     assert "A straight line in the column obstacles" in text
-    assert "has a log-likelihood 7.0 above that of the most likely interpretation: so the interpretation describes them worse" in text
+    assert (
+        "has a log-likelihood 7.0 above that of the most likely interpretation: so the "
+        "interpretation describes them worse" in text
+    )
 
 
 def test_a_line_predicts_numbers_on_it_and_not_others():
-    frame = {"method": "a", "obstacles": [5, 10, 15, 20, 25], "metric": "length", "statistic": "mean", "n": 10, "unit": "m"}
+    frame = {
+        "method": "a",
+        "obstacles": [5, 10, 15, 20, 25],
+        "metric": "length",
+        "statistic": "mean",
+        "n": 10,
+        "unit": "m",
+    }
     near, far = (
-        explained.yardstick(pd.DataFrame(frame | {"value": values}), "obstacles") for values in ([1, 2.1, 2.9, 4, 5], [1, 4, 2, 9, 3])
+        explained.yardstick(pd.DataFrame(frame | {"value": values}), "obstacles")
+        for values in ([1, 2.1, 2.9, 4, 5], [1, 4, 2, 9, 3])
     )
     assert near > far
 
@@ -490,14 +660,19 @@ def test_figure_shows_every_choice_that_some_interpretation_makes():
     assert above.lines[0].get_ydata().tolist() == sorted(table["in_range"])
 
 
-def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(studies, tmp_path, monkeypatch):
+def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(
+    studies, tmp_path, monkeypatch
+):
     study = studies["song2016"]
     job = choices.search_job(study) | {"most": 2}
     for part in ("screened", "confirmed", "fresh"):
         for table in job[part]["tables"].values():
             for chunk in table["jobs"].values():
                 chunk["settings"] = chunk["settings"] | {"generations": 5, "population": 20}
-                chunk["repeats"] = [chunk["repeats"][0], chunk["repeats"][0] + statistics.LEAST_RUNS]
+                chunk["repeats"] = [
+                    chunk["repeats"][0],
+                    chunk["repeats"][0] + statistics.LEAST_RUNS,
+                ]
     monkeypatch.chdir(ROOT)
     files = {"table1": study.published_file("table1")}
 
@@ -506,6 +681,8 @@ def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(
 
     first = found(2)
     assert first["explained"]["tried"].min() >= 2
-    monkeypatch.setattr(interpretations.execution, "run_chunk", lambda *_, **__: pytest.fail("run again"))
+    monkeypatch.setattr(
+        interpretations.execution, "run_chunk", lambda *_, **__: pytest.fail("run again")
+    )
     for name, table in found(1).items():
         pd.testing.assert_frame_equal(table, first[name])

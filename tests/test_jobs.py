@@ -1,4 +1,6 @@
-"""What jobs do, called as functions: they know the files of an experiment by name, wherever these lie."""
+"""What jobs do, called as functions: they know the files of an experiment by name, wherever these
+lie.
+"""
 
 import contextlib
 import shutil
@@ -51,7 +53,9 @@ def moved(study, tmp_path):
 
 
 def test_methods_are_measured_against_the_baseline(study, moved):
-    rows = worth.of_studies(targets.worth_params({"many": study}, "full")["job"], {"many/all": moved})
+    rows = worth.of_studies(
+        targets.worth_params({"many": study}, "full")["job"], {"many/all": moved}
+    )
     assert list(rows.columns) == list(worth.COLUMNS)
     assert set(rows["method"]) == {"pso", "cpso1_singer", "cpso2_singer", "ferguson"}
     assert set(rows["study"]) == {"many"}
@@ -61,7 +65,9 @@ def test_methods_are_measured_against_the_baseline(study, moved):
 def test_claims_are_judged(study, moved, tmp_path):
     job = targets.claims_params({"many": study}, "full", "many")["job"]
     published = inputs.part(targets.claims_inputs({"many": study}, "full", "many"), "published")
-    claims_job.run(job, {"all": moved}, published, str(tmp_path / "claims.csv"), str(tmp_path / "checks.csv"))
+    claims_job.run(
+        job, {"all": moved}, published, str(tmp_path / "claims.csv"), str(tmp_path / "checks.csv")
+    )
     assert pd.read_csv(tmp_path / "claims.csv")["id"].tolist() == ["C1"]
     assert set(pd.read_csv(tmp_path / "checks.csv")["test"]) == {"lower"}
 
@@ -76,7 +82,12 @@ def test_the_papers_numbers_are_audited(study, moved):
 @pytest.mark.parametrize("name", ["spread", "paths"])
 def test_a_figure_is_drawn_wide_and_narrow(study, moved, tmp_path, name):
     job = targets.figure_params({"many": study}, "full", "many", name)["job"]
-    output = SimpleNamespace(**{part: str(tmp_path / f"{part}.{name}") for part in ("svg", "png", "pdf", "data", "caption")})
+    output = SimpleNamespace(
+        **{
+            part: str(tmp_path / f"{part}.{name}")
+            for part in ("svg", "png", "pdf", "data", "caption")
+        }
+    )
     figures_job.draw(job, {"all": moved}, {}, study.folder, output)
     assert "runs" in Path(output.caption).read_text()
     assert pd.read_csv(output.data)["panel"].nunique() == len(job["spec"]["panels"])

@@ -1,4 +1,6 @@
-"""Kernels that several processes need at the same time: one process compiles them, and nothing that happens to it stops the others."""
+"""Kernels that several processes need at the same time: one process compiles them, and nothing that
+happens to it stops the others.
+"""
 
 import fcntl
 import os
@@ -61,14 +63,22 @@ event.register("numba:compile", Report())
 
 @pytest.fixture
 def start(tmp_path):
-    """Starts processes, which run some code once the file `go` is there, in a folder with a module of kernels and without compiled ones."""
+    """Starts processes, which run some code once the file `go` is there, in a folder with a module
+    of kernels and without compiled ones.
+    """
     (tmp_path / "kernels_of_mine.py").write_text(MODULE)
     started = []
 
     def start_one(code):
         environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
         started.append(
-            subprocess.Popen([sys.executable, "-c", START + code], cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True)
+            subprocess.Popen(
+                [sys.executable, "-c", START + code],
+                cwd=tmp_path,
+                env=environment,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
         )
         appear(tmp_path / f"ready-{started[-1].pid}")
         return started[-1]
@@ -114,7 +124,10 @@ def test_a_process_that_is_killed_while_it_compiles_holds_up_nobody(start, tmp_p
 
 
 def test_a_kernel_that_cannot_be_compiled_leaves_no_lock(start, tmp_path):
-    failing = start("try:\n    mine.wrong(1)\nexcept Exception as e:\n    print(type(e).__name__, flush=True)\ntime.sleep(600)")
+    failing = start(
+        "try:\n    mine.wrong(1)\nexcept Exception as e:\n    print(type(e).__name__, "
+        "flush=True)\ntime.sleep(600)"
+    )
     (tmp_path / "go").touch()
     assert failing.stdout.readline() == "TypingError\n"
     assert start(CALL).communicate(timeout=120)[0].split() == ["42", "1", "1"]
@@ -140,7 +153,8 @@ def test_a_file_system_without_locks(tmp_path, monkeypatch):
         assert kernel_cache._held == [tmp_path]
 
 
-# A kernel of another library, which keeps it beside its source; and what the process has of numba's own before and after a plan.
+# A kernel of another library, which keeps it beside its source; and what the process has of numba's
+# own before and after a plan.
 FOREIGN = """
 import numba
 @numba.njit(cache=True)
@@ -165,22 +179,46 @@ print(foreign.twice(21), foreign.twice._cache.cache_path, sum(foreign.twice.stat
 
 
 def test_kernels_of_other_libraries_are_left_alone(tmp_path):
-    """They are kept where numba keeps them, by numba's own methods, and no variable of the environment is set."""
+    """They are kept where numba keeps them, by numba's own methods, and no variable of the
+    environment is set.
+    """
     (tmp_path / "foreign.py").write_text(FOREIGN)
     environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
     for hits in ("0", "1"):
-        done = subprocess.run([sys.executable, "-c", BESIDE], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
-        assert done.stdout.splitlines()[-1].split() == ["42", str(tmp_path / "__pycache__"), hits, "True"]
+        done = subprocess.run(
+            [sys.executable, "-c", BESIDE],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert done.stdout.splitlines()[-1].split() == [
+            "42",
+            str(tmp_path / "__pycache__"),
+            hits,
+            "True",
+        ]
     assert list((tmp_path / "__pycache__").glob("foreign.twice*.nbc"))
 
 
 def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
     (tmp_path / "kernels_of_mine.py").write_text(MODULE)
     (tmp_path / "a file").touch()
-    code = "from pathlib import Path\nfrom bezierplan.running import digest\ndigest.KERNELS = Path('a file')\n"
+    code = (
+        "from pathlib import Path\nfrom bezierplan.running import digest\ndigest.KERNELS = "
+        "Path('a file')\n"
+    )
     code += "import kernels_of_mine\nprint(kernels_of_mine.outer(20))"
     environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert done.stdout == "42\n"
 
 

@@ -15,7 +15,10 @@ from numba.core.errors import NumbaError
 import bezierplan
 from bezierplan import kernels
 
-MODULES = [importlib.import_module(each.name) for each in pkgutil.walk_packages(bezierplan.__path__, "bezierplan.")]
+MODULES = [
+    importlib.import_module(each.name)
+    for each in pkgutil.walk_packages(bezierplan.__path__, "bezierplan.")
+]
 KERNELS = {
     f"{module.__name__}.{name}": each
     for module in MODULES
@@ -26,36 +29,53 @@ FREE = {name: each for name, each in KERNELS.items() if each.targetoptions.get("
 
 
 def called(kernel):
-    """The kernels that a kernel calls by name, but for those that are always part of their caller."""
+    """The kernels that a kernel calls by name, but for those that are always part of their
+    caller.
+    """
     found, known = [], kernel.py_func.__globals__
     for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(kernel.py_func)))):
         if isinstance(node, ast.Name):
             found.append(known.get(node.id))
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             found.append(getattr(known.get(node.value.id), node.attr, None))
-    return [each for each in found if isinstance(each, Dispatcher) and each.targetoptions.get("inline") != "always"]
+    return [
+        each
+        for each in found
+        if isinstance(each, Dispatcher) and each.targetoptions.get("inline") != "always"
+    ]
 
 
 def test_allocation_free_kernels_call_only_their_like():
     """Otherwise it would depend on who compiles a kernel first whether it counts references."""
-    wrong = [(name, each.py_func.__name__) for name, kernel in FREE.items() for each in called(kernel) if each not in FREE.values()]
+    wrong = [
+        (name, each.py_func.__name__)
+        for name, kernel in FREE.items()
+        for each in called(kernel)
+        if each not in FREE.values()
+    ]
     assert len(FREE) > 100
     assert wrong == []
 
 
 def has_array(returned):
     """Whether a type of numba is an array, or holds one."""
-    return isinstance(returned, types.Array) or (isinstance(returned, types.BaseTuple) and any(map(has_array, returned.types)))
+    return isinstance(returned, types.Array) or (
+        isinstance(returned, types.BaseTuple) and any(map(has_array, returned.types))
+    )
 
 
 def test_allocation_free_kernels_return_no_array():
-    """Nobody would count the reference to it. The kernels are those that the smoke subset and other tests have compiled."""
+    """Nobody would count the reference to it. The kernels are those that the smoke subset and other
+    tests have compiled.
+    """
     looked_at = 0
     for name, kernel in FREE.items():
         for signature, *_ in kernel._cache._cache_file._load_index():
             kernel.compile(signature)
         looked_at += len(kernel.overloads) > 0
-        assert not any(has_array(each.signature.return_type) for each in kernel.overloads.values()), name
+        assert not any(
+            has_array(each.signature.return_type) for each in kernel.overloads.values()
+        ), name
     assert looked_at > 0.5 * len(FREE)
 
 

@@ -1,4 +1,6 @@
-"""Tables as LaTeX: every sign as text, heads in two rows, and a caption that needs no other file."""
+"""Tables as LaTeX: every sign as text, heads in two rows, and a caption that needs no other
+file.
+"""
 
 import re
 
@@ -9,7 +11,9 @@ from bezierplan.analysis import latex
 
 
 def written(**columns: list[str]) -> str:
-    return latex.environment(latex.Captioned(pd.DataFrame(columns), "Shares & lengths, 50 % of them", "tab:s-table1"))
+    return latex.environment(
+        latex.Captioned(pd.DataFrame(columns), "Shares & lengths, 50 % of them", "tab:s-table1")
+    )
 
 
 @pytest.mark.parametrize("sign", list("&%$#_{}~^\\<>"))
@@ -46,5 +50,8 @@ def test_a_wide_table_is_scaled_to_the_page():
 
 
 def test_a_document_holds_every_table():
-    tables = [latex.Captioned(pd.DataFrame({"n": ["1"]}), f"Table {number}", f"tab:{number}") for number in (1, 2)]
+    tables = [
+        latex.Captioned(pd.DataFrame({"n": ["1"]}), f"Table {number}", f"tab:{number}")
+        for number in (1, 2)
+    ]
     assert latex.document(tables).count(r"\begin{table}") == 2

@@ -35,8 +35,16 @@ def test_a_step_leads_to_a_free_cell_beside_so_many_occupied_ones(seed, corners)
             there = row + up, column + right
             if (up, right) == (0, 0) or not (0 <= there[0] < rows and 0 <= there[1] < columns):
                 continue
-            beside = int(occupied[row + up, column]) + int(occupied[row, column + right]) if up and right else 0
-            if not occupied[row, column] and not occupied[there] and beside <= {"free": 2, "one": 1, "none": 0}[corners]:
+            beside = (
+                int(occupied[row + up, column]) + int(occupied[row, column + right])
+                if up and right
+                else 0
+            )
+            if (
+                not occupied[row, column]
+                and not occupied[there]
+                and beside <= {"free": 2, "one": 1, "none": 0}[corners]
+            ):
                 allowed.add(there[0] * columns + there[1])
         found = [cell for cell in reached[row, column].tolist() if cell >= 0]
         assert set(found) == allowed
@@ -70,7 +78,10 @@ def test_ends_are_the_ways_from_start_and_to_target_in_cells():
     assert places.ends == pytest.approx(math.sqrt(0.5) + 0.5)
 
 
-@pytest.mark.parametrize(("start", "target", "named"), [((3.0, 1.0), (1.0, 1.0), "start"), ((1.0, 1.0), (11.0, 1.0), "target")])
+@pytest.mark.parametrize(
+    ("start", "target", "named"),
+    [((3.0, 1.0), (1.0, 1.0), "start"), ((1.0, 1.0), (11.0, 1.0), "target")],
+)
 def test_an_end_that_is_in_no_free_cell_is_named(start, target, named):
     grid = from_lines([".....", ".#..."], 2.0, "unit")
     with pytest.raises(ValueError, match=f"{named}: .*expected a point of a free cell"):
@@ -84,7 +95,16 @@ def test_an_unknown_rule_for_corners_is_named():
 
 def test_points_hold_the_centres_of_start_and_target_once():
     assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 1])).tolist() == [[1, 1], [3, 1]]
-    assert points(OPEN, (0.0, 0.0), (3.0, 1.0), np.array([0, 1])).tolist() == [[0, 0], [1, 1], [3, 1]]
+    assert points(OPEN, (0.0, 0.0), (3.0, 1.0), np.array([0, 1])).tolist() == [
+        [0, 0],
+        [1, 1],
+        [3, 1],
+    ]
     assert points(OPEN, (0.5, 1.0), (0.5, 1.0), np.array([0])).tolist() == [[0.5, 1], [0.5, 1]]
     # A path that comes by its start again keeps that.
-    assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 5, 0, 1])).tolist() == [[1, 1], [1, 3], [1, 1], [3, 1]]
+    assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 5, 0, 1])).tolist() == [
+        [1, 1],
+        [1, 3],
+        [1, 1],
+        [3, 1],
+    ]

@@ -27,7 +27,10 @@ def test_one_gene_is_searched_without_crossover():
 
 
 def test_genes_sorted_along_the_way_give_shorter_first_paths():
-    first = {name: np.mean([plan(name, seed=seed, generations=0).objective for seed in range(10)]) for name in ("ga", "ga_sorted")}
+    first = {
+        name: np.mean([plan(name, seed=seed, generations=0).objective for seed in range(10)])
+        for name in ("ga", "ga_sorted")
+    }
     assert first["ga_sorted"] < first["ga"] - 5
 
 
@@ -40,7 +43,9 @@ def test_without_the_best_kept_it_may_be_lost_but_not_forgotten():
 
 def test_what_a_chromosome_without_a_path_counts_matters_to_the_roulette():
     tight = {"longest_join": 65, "generations": 20}
-    one, other = (plan("ga", seed=1, undecodable_length=length, **tight) for length in (36.0, 2000.0))
+    one, other = (
+        plan("ga", seed=1, undecodable_length=length, **tight) for length in (36.0, 2000.0)
+    )
     assert one.history[0] == other.history[0]
     assert not np.array_equal(one.history, other.history)
 
@@ -59,14 +64,23 @@ def test_first_paths_by_rows_are_paths_from_start_to_target():
     paths, sizes = lattice_genetic._first_paths(np.random.default_rng(0), places, rows, 20, 600)
     for path, size in zip(paths, sizes, strict=True):
         assert (path[0], path[size - 1]) == (places.start, places.target)
-        assert all(cell_paths.step_between(places, *pair) >= 0 for pair in itertools.pairwise(path[:size]))
+        assert all(
+            cell_paths.step_between(places, *pair) >= 0 for pair in itertools.pairwise(path[:size])
+        )
         assert set(places.row[path[:size]].tolist()) == set(range(20))
 
 
 def test_rows_are_passed_from_the_start_down_too():
     grid = OPEN.workspace
     places = lattice(grid, (8.0, 8.0), (0.0, 0.0), "one")
-    assert [int(places.row[row[0]]) for row in lattice_genetic._rows_between(places)] == [6, 5, 4, 3, 2, 1]
+    assert [int(places.row[row[0]]) for row in lattice_genetic._rows_between(places)] == [
+        6,
+        5,
+        4,
+        3,
+        2,
+        1,
+    ]
 
 
 def test_a_row_without_a_free_cell_has_no_path():
@@ -85,4 +99,6 @@ def test_the_compiled_search_agrees_with_its_plain_python(monkeypatch):
 
 
 def test_evaluations_are_the_chromosomes_of_all_generations():
-    assert plan("ga", generations=7).evaluations == plan("ga_rows", generations=7).evaluations == 800
+    assert (
+        plan("ga", generations=7).evaluations == plan("ga_rows", generations=7).evaluations == 800
+    )

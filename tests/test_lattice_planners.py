@@ -1,4 +1,6 @@
-"""What holds for all planners over the 8-connected lattice: the rivals of ma2020, with the settings of its environments."""
+"""What holds for all planners over the 8-connected lattice: the rivals of ma2020, with the settings
+of its environments.
+"""
 
 import math
 from pathlib import Path as File
@@ -29,11 +31,24 @@ COLONY = {
     "exploitation": 0.0,
     "local_evaporation": 0.0,
 }
-GENETIC = {"population": 100, "generations": 50, "crossover_probability": 0.9, "mutation_probability": 0.1, "elitism": 1}
+GENETIC = {
+    "population": 100,
+    "generations": 50,
+    "crossover_probability": 0.9,
+    "mutation_probability": 0.1,
+    "elitism": 1,
+}
 SETTINGS = {
     "ant_colony": COLONY,
     "lattice_genetic": GENETIC
-    | {"corners": "one", "coding": "via_cells", "genes": 8, "initial": "uniform", "longest_join": 600, "undecodable_length": 200.0},
+    | {
+        "corners": "one",
+        "coding": "via_cells",
+        "genes": 8,
+        "initial": "uniform",
+        "longest_join": 600,
+        "undecodable_length": 200.0,
+    },
     "ant_colony_genetic": COLONY | GENETIC | {"mutation": "one_cell", "longest_join": 600},
     "fish_swarm_genetic": GENETIC
     | {
@@ -50,10 +65,19 @@ SETTINGS = {
 }
 VARIANTS = {
     "aco": ("ant_colony", {}),
-    "aco_strong": ("ant_colony", {"ants": 50, "heuristic_weight": 7.0, "evaporation": 0.3, "initial_trail": 8.0}),
+    "aco_strong": (
+        "ant_colony",
+        {"ants": 50, "heuristic_weight": 7.0, "evaporation": 0.3, "initial_trail": 8.0},
+    ),
     "acs": (
         "ant_colony",
-        {"ants": 10, "trail_update": "ant_colony_system", "exploitation": 0.9, "local_evaporation": 0.1, "initial_trail": 1e-4},
+        {
+            "ants": 10,
+            "trail_update": "ant_colony_system",
+            "exploitation": 0.9,
+            "local_evaporation": 0.1,
+            "initial_trail": 1e-4,
+        },
     ),
     "ga": ("lattice_genetic", {}),
     "ga_sorted": ("lattice_genetic", {"initial": "sorted"}),
@@ -79,8 +103,14 @@ def environment(number):
 
 def plan(name, problem=None, seed=0, **changes):
     planner, variant = VARIANTS[name]
-    settings = SETTINGS[planner] | variant | {key: value for key, value in changes.items() if key in SETTINGS[planner]}
-    return planner_module(planner).plan(problem or environment(1), np.random.default_rng(seed), **settings)
+    settings = (
+        SETTINGS[planner]
+        | variant
+        | {key: value for key, value in changes.items() if key in SETTINGS[planner]}
+    )
+    return planner_module(planner).plan(
+        problem or environment(1), np.random.default_rng(seed), **settings
+    )
 
 
 @each_variant
@@ -97,12 +127,17 @@ def test_a_path_is_a_lattice_path_of_its_own_length_and_free(name, corners, numb
     assert found.claimed_feasible
     assert checker.check(curves.bezier_pieces(found.path), region(problem.workspace)).feasible
     assert found.objective == pytest.approx(curves.length(found.path), rel=1e-13)
-    least = shortest_paths.lattice_path(problem.workspace.occupied, (0, 0), (19, 19), math.sqrt(2), corners).length + math.sqrt(2)
+    least = shortest_paths.lattice_path(
+        problem.workspace.occupied, (0, 0), (19, 19), math.sqrt(2), corners
+    ).length + math.sqrt(2)
     assert found.objective >= least - 1e-9
     if corners == "none":
         column, row = points[1:-1].astype(int).T
         diagonal = steps.all(axis=1)
-        beside = problem.workspace.occupied[row[1:], column[:-1]] | problem.workspace.occupied[row[:-1], column[1:]]
+        beside = (
+            problem.workspace.occupied[row[1:], column[:-1]]
+            | problem.workspace.occupied[row[:-1], column[1:]]
+        )
         assert not beside[diagonal].any()
 
 
@@ -126,7 +161,14 @@ MEANS = {
 @pytest.mark.parametrize("number", [1, 2])
 def test_mean_lengths_are_those_of_an_independent_program(name, corners, number):
     lengths = [
-        plan(name, environment(number), seed, corners=corners, iterations=50 * number, generations=50 * number).objective
+        plan(
+            name,
+            environment(number),
+            seed,
+            corners=corners,
+            iterations=50 * number,
+            generations=50 * number,
+        ).objective
         for seed in range(30)
     ]
     # Both means have the error of 30 runs; the other one is rounded.
@@ -176,7 +218,9 @@ def test_start_and_target_in_one_cell_are_joined_by_its_centre(name):
 
 @each_variant
 def test_an_empty_map_has_the_diagonal_as_bound(name):
-    found = plan(name, Problem("test", from_lines(["." * 20] * 20, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0)))
+    found = plan(
+        name, Problem("test", from_lines(["." * 20] * 20, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0))
+    )
     assert found.objective >= 20 * math.sqrt(2) - 1e-9
 
 
@@ -199,7 +243,12 @@ def test_no_generation_leaves_the_best_of_the_first(name):
 def test_lengths_are_in_units(name):
     problem = environment(1)
     grid = problem.workspace
-    large = Problem("test", from_lines((MAPS / "environment1.txt").read_text().splitlines(), 10.0, "m"), (0.0, 0.0), (200.0, 200.0))
+    large = Problem(
+        "test",
+        from_lines((MAPS / "environment1.txt").read_text().splitlines(), 10.0, "m"),
+        (0.0, 0.0),
+        (200.0, 200.0),
+    )
     assert grid.cell == 1.0
     scaled = plan(name, large, undecodable_length=2000.0)
     assert scaled.history == pytest.approx(10 * plan(name, problem).history)
@@ -214,5 +263,8 @@ def test_an_odd_population_is_named(planner):
 @each_variant
 def test_a_start_in_an_occupied_cell_is_named(name):
     grid = from_lines(["....", ".#..", "...."], 1.0, "unit")
-    with pytest.raises(ValueError, match=r"start: .*occupied cell of row 1, column 1; expected a point of a free cell"):
+    with pytest.raises(
+        ValueError,
+        match=r"start: .*occupied cell of row 1, column 1; expected a point of a free cell",
+    ):
         plan(name, Problem("test", grid, (1.0, 1.0), (4.0, 3.0)))

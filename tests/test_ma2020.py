@@ -1,4 +1,6 @@
-"""ma2020: its maps, printed numbers, drawings, audit, and the claim about curvature; that its settings are the paper's."""
+"""ma2020: its maps, printed numbers, drawings, audit, and the claim about curvature; that its
+settings are the paper's.
+"""
 
 import math
 from pathlib import Path as File
@@ -28,11 +30,14 @@ PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glo
 
 def problem(name):
     described = STUDY["problems"][name]
-    return problems.build(name, described, files.load(STUDY["workspaces"][described["workspace"]], FOLDER))
+    return problems.build(
+        name, described, files.load(STUDY["workspaces"][described["workspace"]], FOLDER)
+    )
 
 
 MAPS = {
-    # occupied cells; shortest path of 8 neighbours, half diagonals at the ends included, by both rules for corners; exact shortest path
+    # occupied cells; shortest path of 8 neighbours, half diagonals at the ends included, by both
+    # rules for corners; exact shortest path
     "environment1": (60, 10 + 15 * math.sqrt(2), 33.5563492, 29.2080963),
     "environment2": (83, 14 + 13 * math.sqrt(2), 32.9705627, 30.0618849),
 }
@@ -45,22 +50,55 @@ def test_maps(name):
     assert grid.occupied.shape == (20, 20)
     assert grid.occupied.sum() == occupied
     parameters = PUBLISHED["parameters"].set_index(["workspace", "parameter"])["value"]
-    assert occupied == parameters[name, "occupied_cells"] == pytest.approx(4 * parameters[name, "obstacle_coverage"])
+    assert (
+        occupied
+        == parameters[name, "occupied_cells"]
+        == pytest.approx(4 * parameters[name, "obstacle_coverage"])
+    )
     for rule, length in (("one", one_side), ("none", strict)):
         found = shortest_paths.lattice_path(grid.occupied, (0, 0), (19, 19), math.sqrt(2), rule)
         assert found.length + math.sqrt(2) == pytest.approx(length, abs=1e-7)
     assert shortest_paths.shortest_path(problem(name)).length == pytest.approx(shortest, abs=1e-7)
-    # No two blocks touch, not even at a corner: then any two diagonal neighbours share a block's row or column.
-    diagonal = grid.occupied[1:, 1:] & grid.occupied[:-1, :-1] & ~grid.occupied[1:, :-1] & ~grid.occupied[:-1, 1:]
-    other = grid.occupied[1:, :-1] & grid.occupied[:-1, 1:] & ~grid.occupied[1:, 1:] & ~grid.occupied[:-1, :-1]
+    # No two blocks touch, not even at a corner: then any two diagonal neighbours share a block's
+    # row or column.
+    diagonal = (
+        grid.occupied[1:, 1:]
+        & grid.occupied[:-1, :-1]
+        & ~grid.occupied[1:, :-1]
+        & ~grid.occupied[:-1, 1:]
+    )
+    other = (
+        grid.occupied[1:, :-1]
+        & grid.occupied[:-1, 1:]
+        & ~grid.occupied[1:, 1:]
+        & ~grid.occupied[:-1, :-1]
+    )
     assert not diagonal.any()
     assert not other.any()
 
 
 # Free control points of the shortest curves found.
 BEST_KNOWN = {
-    "environment1": [(9.5, 14.5), (1.5, 3.5), (9.5, 6.5), (10.5, 7.5), (8.5, 19.5), (1.5, 5.5), (15.5, 19.5), (18.5, 19.5)],
-    "environment2": [(7.5, 12.5), (3.5, 10.5), (4.5, 0.5), (7.5, 16.5), (3.5, 9.5), (13.5, 19.5), (13.5, 19.5), (1.5, 13.5)],
+    "environment1": [
+        (9.5, 14.5),
+        (1.5, 3.5),
+        (9.5, 6.5),
+        (10.5, 7.5),
+        (8.5, 19.5),
+        (1.5, 5.5),
+        (15.5, 19.5),
+        (18.5, 19.5),
+    ],
+    "environment2": [
+        (7.5, 12.5),
+        (3.5, 10.5),
+        (4.5, 0.5),
+        (7.5, 16.5),
+        (3.5, 9.5),
+        (13.5, 19.5),
+        (13.5, 19.5),
+        (1.5, 13.5),
+    ],
 }
 
 
@@ -76,7 +114,9 @@ def test_reference_is_the_length_of_a_path_that_can_be(name):
     assert checker.check(curves.bezier_pieces(path), region(grid)).feasible
 
 
-@pytest.mark.parametrize(("workspace", "name"), [("environment1", "environment1"), ("environment2", "environment2")])
+@pytest.mark.parametrize(
+    ("workspace", "name"), [("environment1", "environment1"), ("environment2", "environment2")]
+)
 def test_settings_are_those_of_section_4(workspace, name):
     parameters = PUBLISHED["parameters"].set_index(["workspace", "parameter"])["value"][workspace]
     settings = STUDY["settings"] | STUDY["problems"][name].get("settings", {})
@@ -89,14 +129,19 @@ def test_settings_are_those_of_section_4(workspace, name):
         "safety_weight": "weight_safety",
         "safety_distance": "safety_distance",
     }
-    assert {setting: settings[setting] for setting in printed} == {setting: parameters[key] for setting, key in printed.items()}
+    assert {setting: settings[setting] for setting in printed} == {
+        setting: parameters[key] for setting, key in printed.items()
+    }
     assert STUDY["experiments"]["environments"]["repeats"]["full"] == parameters["runs"]
     assert settings["iterations"] == settings["generations"]
 
 
 def test_long_runs_have_twenty_times_the_generations():
     for name in MAPS:
-        short, long = (STUDY["settings"] | STUDY["problems"][f"{name}{end}"].get("settings", {}) for end in ("", "_long"))
+        short, long = (
+            STUDY["settings"] | STUDY["problems"][f"{name}{end}"].get("settings", {})
+            for end in ("", "_long")
+        )
         assert long["generations"] == 20 * short["generations"]
         assert long["length_weight"] == short["length_weight"]
 
@@ -111,8 +156,13 @@ def test_variants_differ_from_the_method_that_they_vary():
         if "variant_of" in method:
             other = STUDY["methods"][method["variant_of"]]
             assert method["planner"] == other["planner"], name
-            assert (STUDY["settings"] | method.get("settings", {})) != (STUDY["settings"] | other.get("settings", {})), name
-            assert set(method["settings"]) <= planner_settings(planner_module(method["planner"])).keys(), name
+            assert (STUDY["settings"] | method.get("settings", {})) != (
+                STUDY["settings"] | other.get("settings", {})
+            ), name
+            assert (
+                set(method["settings"])
+                <= planner_settings(planner_module(method["planner"])).keys()
+            ), name
 
 
 @pytest.mark.parametrize(("table", "rows"), [("table1", 34), ("table2", 34)])
@@ -120,7 +170,9 @@ def test_printed_numbers(table, rows):
     """The longest and mean time of ASFA-GA are dashes in both tables."""
     printed = PUBLISHED[table]
     assert len(printed) == rows == 6 * 6 - 2
-    assert printed[(printed["method"] == "asfa_ga") & (printed["metric"] == "cpu_s")]["statistic"].to_list() == ["min"]
+    assert printed[(printed["method"] == "asfa_ga") & (printed["metric"] == "cpu_s")][
+        "statistic"
+    ].to_list() == ["min"]
     assert set(printed["method"]) <= STUDY["methods"].keys()
     for _, group in printed.groupby(["method", "metric"]):
         values = group.set_index("statistic")["value"]
@@ -130,7 +182,14 @@ def test_printed_numbers(table, rows):
 
 @pytest.mark.parametrize(
     ("length", "moves"),
-    [(34.6248, (12, 16)), (32.8663, (6, 19)), (31.7964, (12, 14)), (31.2144, (10, 15)), (35.4526, (10, 18)), (33.7963, (14, 14))],
+    [
+        (34.6248, (12, 16)),
+        (32.8663, (6, 19)),
+        (31.7964, (12, 14)),
+        (31.2144, (10, 15)),
+        (35.4526, (10, 18)),
+        (33.7963, (14, 14)),
+    ],
 )
 def test_printed_minima_are_lattice_lengths(length, moves):
     assert ma2020.nearest_lattice_length(length, SIDE) == moves
@@ -143,7 +202,10 @@ def test_nearest_lattice_length_is_one_of_a_path_from_corner_to_corner():
         assert straight % 2 == 0
         assert straight + 2 * diagonal >= 40
         assert diagonal >= 1
-    assert ma2020.nearest_lattice_length(35.4147, SIDE) != (34, 1)  # near, but no path from corner to corner
+    assert ma2020.nearest_lattice_length(35.4147, SIDE) != (
+        34,
+        1,
+    )  # near, but no path from corner to corner
 
 
 def test_lattice_lengths():
@@ -163,17 +225,27 @@ def test_chance_of_lattice_lengths():
     """Against lengths drawn at random; the eight printed minima are no chance."""
     chance = ma2020.chance_of_lattice(31, 36, ma2020.LATTICE_TOLERANCE, SIDE)
     drawn = np.random.default_rng(0).uniform(31, 36, 4000)
-    near = [straight + diagonal * math.sqrt(2) for straight, diagonal in (ma2020.nearest_lattice_length(length, SIDE) for length in drawn)]
-    assert np.mean(np.abs(near - drawn) <= ma2020.LATTICE_TOLERANCE) == pytest.approx(chance, abs=0.012)
+    near = [
+        straight + diagonal * math.sqrt(2)
+        for straight, diagonal in (ma2020.nearest_lattice_length(length, SIDE) for length in drawn)
+    ]
+    assert np.mean(np.abs(near - drawn) <= ma2020.LATTICE_TOLERANCE) == pytest.approx(
+        chance, abs=0.012
+    )
     assert chance == pytest.approx(0.068, abs=0.002)
     assert chance**8 < 1e-9
     assert ma2020.chance_of_lattice(31, 36, 1.0, SIDE) == pytest.approx(1)
 
 
 def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
-    """The lengths of curves with eight free control points, of which claim C21 asks how near they come."""
+    """The lengths of curves with eight free control points, of which claim C21 asks how near they
+    come.
+    """
     numbers = pd.read_csv(FOLDER.parents[2] / "docs" / "outcome" / "numbers.csv")
-    own = numbers.query("study == 'ma2020' and metric == 'length' and statistic == 'min' and method in ('bca', 'bca_q')")
+    own = numbers.query(
+        "study == 'ma2020' and metric == 'length' and statistic == 'min' and method in ('bca', "
+        "'bca_q')"
+    )
     for table, name in (("table1", "environment1"), ("table2", "environment2")):
         lengths = own.loc[own["table"] == table, "value_ours"]
         assert len(lengths) == 2
@@ -185,7 +257,10 @@ def test_audit():
     wrong = rows[~rows["consistent"].astype(bool)]
     lattice = rows[rows["rule"].str.startswith("a path of 8")]
     assert len(lattice) == 16
-    assert lattice.groupby(lattice["place"].str[-3:])["consistent"].sum().to_dict() == {"max": 0, "min": 8}
+    assert lattice.groupby(lattice["place"].str[-3:])["consistent"].sum().to_dict() == {
+        "max": 0,
+        "min": 8,
+    }
     means = wrong[wrong["rule"].str.contains("mean length")]
     assert means["printed"].to_list() == [32.9973]  # of BCA-Q, above that of ASFA-GA
     slow = wrong[wrong["rule"].str.contains("slightly")]
@@ -198,12 +273,18 @@ def test_audit():
 
 @pytest.mark.parametrize(
     ("row", "value"),
-    [({"method": "aco", "metric": "length", "statistic": "min"}, 34.7), ({"method": "bca", "metric": "length", "statistic": "min"}, 28.0)],
+    [
+        ({"method": "aco", "metric": "length", "statistic": "min"}, 34.7),
+        ({"method": "bca", "metric": "length", "statistic": "min"}, 28.0),
+    ],
 )
 def test_audit_sees_a_changed_number(row, value):
     table = PUBLISHED["table1"].copy()
     table.loc[(table[list(row)] == pd.Series(row)).all(axis=1), "value"] = value
-    before, after = (sum(not each["consistent"] for each in ma2020.audit(given)) for given in (PUBLISHED, PUBLISHED | {"table1": table}))
+    before, after = (
+        sum(not each["consistent"] for each in ma2020.audit(given))
+        for given in (PUBLISHED, PUBLISHED | {"table1": table})
+    )
     assert after == before + 1
 
 
@@ -226,8 +307,13 @@ def test_figure_1():
 def test_figure_2_swaps_the_genes_behind_the_cut():
     marks = ma2020.crossover(**arguments("ma2020", "crossover"))
     texts = marks[marks["mark"] == "text"]
-    rows = {key: [int(text) for text in own.sort_values("x")["text"]] for key, own in texts.groupby(["drawn", "y"], sort=False)}
-    before, after = ([rows[panel, height] for height in (1.3, 0.0)] for panel in ("before", "after"))
+    rows = {
+        key: [int(text) for text in own.sort_values("x")["text"]]
+        for key, own in texts.groupby(["drawn", "y"], sort=False)
+    }
+    before, after = (
+        [rows[panel, height] for height in (1.3, 0.0)] for panel in ("before", "after")
+    )
     # Equation (10) counts cells from 1.
     assert np.array_equal(before, 1 + np.array(arguments("ma2020", "crossover")["parents"]))
     for own, other, child in zip(before, before[::-1], after):
@@ -239,7 +325,15 @@ def test_figure_2_swaps_the_genes_behind_the_cut():
 
 
 def results(points, feasible=True):
-    runs = [{"method": "bca", "feasible": feasible, "path_curve": "bezier", "path_points": np.ravel(way).astype(float)} for way in points]
+    runs = [
+        {
+            "method": "bca",
+            "feasible": feasible,
+            "path_curve": "bezier",
+            "path_points": np.ravel(way).astype(float),
+        }
+        for way in points
+    ]
     return {"environments": Results(pd.DataFrame(runs), {}, pd.DataFrame())}
 
 
@@ -252,10 +346,21 @@ CUSP = [(0, 0), (1, 1), (0, 1), (1, 0)]
 
 @pytest.mark.parametrize(
     ("points", "feasible", "mark", "count"),
-    [([SMOOTH], True, "+", 1), ([SMOOTH, STILL], True, "-", 2), ([CUSP], True, "-", 1), ([SMOOTH], False, "?", 0)],
+    [
+        ([SMOOTH], True, "+", 1),
+        ([SMOOTH, STILL], True, "-", 2),
+        ([CUSP], True, "-", 1),
+        ([SMOOTH], False, "?", 0),
+    ],
 )
 def test_continuous_curvature(points, feasible, mark, count):
-    check = function.Options(test="function", name="continuous_curvature", effect="share", effect_unit="-", experiment="environments")
+    check = function.Options(
+        test="function",
+        name="continuous_curvature",
+        effect="share",
+        effect_unit="-",
+        experiment="environments",
+    )
     found = ma2020.continuous_curvature(check, results(points, feasible), {})
     assert (found[0], found[2], found[3]) == (mark, None, count)
     assert count == 0 or found[1] == 0

@@ -14,11 +14,17 @@ from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems
 from bezierplan.workspaces import files
 
-YAML = "image: room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+YAML = (
+    "image: room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: "
+    "0.65\nfree_thresh: 0.196\n"
+)
 # Grey values, the top row first: free, unknown and occupied.
 PIXELS = np.array([[254, 254, 254, 254], [254, 205, 0, 254], [254, 254, 254, 254]], dtype=np.uint8)
 MAP = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@@W.\n.TO..\nGS...\n"
-SCEN = "version 1\n0\troom.map\t5\t4\t0\t0\t4\t3\t7.00000000\n0\troom.map\t5\t4\t0\t3\t3\t2\t4.00000000\n"
+SCEN = (
+    "version "
+    "1\n0\troom.map\t5\t4\t0\t0\t4\t3\t7.00000000\n0\troom.map\t5\t4\t0\t3\t3\t2\t4.00000000\n"
+)
 
 
 def ros_map(folder, yaml=YAML, pixels=PIXELS, image="room.png", **options):
@@ -56,41 +62,61 @@ def test_colours_transparency_and_sixteen_bits_are_read(tmp_path):
     coloured = np.stack([PIXELS] * 3 + [np.where(PIXELS == 205, 0, 255)], axis=2).astype(np.uint8)
     coloured[1, 1, :3] = 254  # transparent, so unknown
     assert np.array_equal(ros_map(tmp_path, pixels=coloured).occupied, ros_map(tmp_path).occupied)
-    assert np.array_equal(ros_map(tmp_path, pixels=coloured[..., :3]).occupied[1], [False, False, True, False])
-    assert np.array_equal(ros_map(tmp_path, pixels=PIXELS.astype(np.uint16) * 257).occupied, ros_map(tmp_path).occupied)
+    assert np.array_equal(
+        ros_map(tmp_path, pixels=coloured[..., :3]).occupied[1], [False, False, True, False]
+    )
+    assert np.array_equal(
+        ros_map(tmp_path, pixels=PIXELS.astype(np.uint16) * 257).occupied,
+        ros_map(tmp_path).occupied,
+    )
 
 
 def test_a_map_that_was_saved_on_another_machine(tmp_path):
-    """Like TurtleBot3's: the image's path is that of its author, its header has a comment, all but a few pixels are unknown."""
+    """Like TurtleBot3's: the image's path is that of its author, its header has a comment, all but
+    a few pixels are unknown.
+    """
     rows, columns = 12, 16
     pixels = np.full((rows, columns), 205, dtype=np.uint8)
     pixels[3:9, 2:13] = 0
     pixels[4:8, 3:12] = 254
-    (tmp_path / "map.pgm").write_bytes(b"P5\n# CREATOR: map_saver.cpp 0.050 m/pix\n%d %d\n255\n" % (columns, rows) + pixels.tobytes())
+    (tmp_path / "map.pgm").write_bytes(
+        b"P5\n# CREATOR: map_saver.cpp 0.050 m/pix\n%d %d\n255\n" % (columns, rows)
+        + pixels.tobytes()
+    )
     (tmp_path / "map.yaml").write_text(
-        "image: /home/somebody/map.pgm\nresolution: 0.050000\norigin: [-10.000000, -10.000000, 0.000000]\nnegate: 0\n"
+        "image: /home/somebody/map.pgm\nresolution: 0.050000\norigin: [-10.000000, -10.000000, "
+        "0.000000]\nnegate: 0\n"
         "occupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
     )
     grid = files.load({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)
     assert np.array_equal(~grid.occupied, (pixels == 254)[::-1])
     assert grid.bounds == pytest.approx((-10.0, -9.2, -10.0, -9.4))
-    assert files.sources({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)[1] == tmp_path / "map.pgm"
+    assert (
+        files.sources({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)[1]
+        == tmp_path / "map.pgm"
+    )
     (tmp_path / "map.pgm").unlink()
     with pytest.raises(ValueError, match=r"image: /home/somebody/map\.pgm: no such file"):
         files.load({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)
 
 
 def test_negated_colours(tmp_path):
-    assert np.array_equal(ros_map(tmp_path, YAML.replace("negate: 0", "negate: 1"), 255 - PIXELS).occupied, ros_map(tmp_path).occupied)
+    assert np.array_equal(
+        ros_map(tmp_path, YAML.replace("negate: 0", "negate: 1"), 255 - PIXELS).occupied,
+        ros_map(tmp_path).occupied,
+    )
 
 
 def test_a_robots_radius_makes_obstacles_grow(tmp_path):
     wide = np.full((9, 9), 254, dtype=np.uint8)
     wide[4, 4] = 0
     grown = ros_map(tmp_path, pixels=wide, robot_radius=0.6).occupied
-    # Of cells of 0.5 m, those with less than 0.6 m between their square and that of the obstacle, or the border.
+    # Of cells of 0.5 m, those with less than 0.6 m between their square and that of the obstacle,
+    # or the border.
     row, column = np.indices(grown.shape)
-    apart = np.hypot(np.maximum(np.abs(row - 4) - 1, 0), np.maximum(np.abs(column - 4) - 1, 0)) * 0.5
+    apart = (
+        np.hypot(np.maximum(np.abs(row - 4) - 1, 0), np.maximum(np.abs(column - 4) - 1, 0)) * 0.5
+    )
     inside = np.minimum(np.minimum(row, 8 - row), np.minimum(column, 8 - column)) * 0.5
     assert np.array_equal(grown, (apart < 0.6) | (inside < 0.6))
 
@@ -110,7 +136,9 @@ GREY = np.array([[0, 60, 100, 101], [128, 205, 254, 255]], dtype=np.uint8)
     ],
 )
 def test_modes_and_unknown_pixels(tmp_path, mode, unknown, free):
-    """Of map_server's modes: in `raw` a pixel is its occupancy in percent; above 100 it is unknown, and so is a grey one in `trinary`."""
+    """Of map_server's modes: in `raw` a pixel is its occupancy in percent; above 100 it is unknown,
+    and so is a grey one in `trinary`.
+    """
     grid = ros_map(tmp_path, f"{YAML}mode: {mode}\n", GREY, unknown=unknown)
     assert "".join(".#"[int(cell)] for cell in ~grid.occupied[::-1].ravel()) == free
 
@@ -120,7 +148,10 @@ def test_a_yaw_that_is_none(tmp_path, yaw, caplog):
     grid = ros_map(tmp_path, YAML.replace("2.0, 0.0]", f"2.0, {yaw}]"))
     assert grid.bounds == (-1.0, 1.0, 2.0, 3.5)
     assert len(caplog.messages) == ("nan" in yaw)
-    assert all(re.fullmatch(r"room\.yaml: origin: yaw -?nan counts as 0; .*", told) for told in caplog.messages)
+    assert all(
+        re.fullmatch(r"room\.yaml: origin: yaw -?nan counts as 0; .*", told)
+        for told in caplog.messages
+    )
 
 
 def test_an_image_without_a_yaml_file(tmp_path):
@@ -129,21 +160,30 @@ def test_an_image_without_a_yaml_file(tmp_path):
     assert grid.occupied.tolist() == [[False] * 4, [False, True, True, False], [False] * 4]
     assert grid.bounds == (0.0, 2.0, 0.0, 1.5)
     assert bp.read_map(tmp_path / "room.PNG", resolution=0.5, unknown="free").occupied.sum() == 1
-    with pytest.raises(ValueError, match=r"resolution: missing; expected the length of a pixel's side, or the YAML file of .*room\.PNG"):
+    with pytest.raises(
+        ValueError,
+        match=r"resolution: missing; expected the length of a pixel's side, or the YAML file of "
+        r".*room\.PNG",
+    ):
         bp.read_map(tmp_path / "room.PNG")
     with pytest.raises(ValueError, match=r"nowhere\.png: cannot be read"):
         bp.read_map(tmp_path / "nowhere.png", resolution=1.0)
 
 
 def courtyard(x, y, role=True):
-    """Two walls in a room of 20 x 10 m, with its lower left corner at a place; as GeoJSON, with a border or without roles."""
+    """Two walls in a room of 20 x 10 m, with its lower left corner at a place; as GeoJSON, with a
+    border or without roles.
+    """
     rings = [[(8, 0), (9, 0), (9, 7), (8, 7)], [(14, 3), (15, 3), (15, 10), (14, 10)]]
     border = [[(0, 0), (20, 0), (20, 10), (0, 10)]] if role else []
     features = [
         {
             "type": "Feature",
             "properties": {"role": "border"} if ring in border else None,
-            "geometry": {"type": "Polygon", "coordinates": [[[x + a, y + b] for a, b in (*ring, ring[0])]]},
+            "geometry": {
+                "type": "Polygon",
+                "coordinates": [[[x + a, y + b] for a, b in (*ring, ring[0])]],
+            },
         }
         for ring in border + rings
     ]
@@ -169,9 +209,14 @@ def test_projected_coordinates_keep_their_digits(tmp_path, radius):
         answer.to_csv(tmp_path / "path.csv", step=0.1)
         points = np.loadtxt(tmp_path / "path.csv", delimiter=",", skiprows=1)[:, 1:3]
         obstacles = shapely.union_all(
-            [shapely.box(place[0] + a, place[1] + b, place[0] + a + 1, place[1] + b + 7) for a, b in ((8, 0), (14, 3))]
+            [
+                shapely.box(place[0] + a, place[1] + b, place[0] + a + 1, place[1] + b + 7)
+                for a, b in ((8, 0), (14, 3))
+            ]
         )
-        assert shapely.LineString(points).distance(obstacles) >= radius - 2e-8 - (0.1**2 / 8 / 0.7 if not radius else 0.01)
+        assert shapely.LineString(points).distance(obstacles) >= radius - 2e-8 - (
+            0.1**2 / 8 / 0.7 if not radius else 0.01
+        )
         assert points[0].tolist() == list(ends[0])
         found.append((answer, points - place))
     near, far = found
@@ -181,15 +226,28 @@ def test_projected_coordinates_keep_their_digits(tmp_path, radius):
 
 
 def test_far_maps_of_every_kind(tmp_path):
-    with pytest.raises(ValueError, match=r"is not a coordinate; expected finite numbers of at most 100000 in size"):  # in a study
+    with pytest.raises(
+        ValueError, match=r"is not a coordinate; expected finite numbers of at most 100000 in size"
+    ):  # in a study
         ros_map(tmp_path, YAML.replace("[-1.0, 2.0, 0.0]", f"[{UTM[0]}, {UTM[1]}, 0.0]"))
     room = bp.read_map(tmp_path / "room.yaml")
-    problem = bp.Problem("far", room, (UTM[0] + 0.25, UTM[1] + 0.75), (UTM[0] + 1.75, UTM[1] + 0.75))
-    assert bp.plan(problem, turning_radius=0.1).length == pytest.approx(1 + 2 * math.hypot(0.25, 0.25), abs=0.05)
-    with pytest.raises(ValueError, match=r"start: \(0.0, 0.0\): outside the workspace; expected x from 391000.25 to 391002.25 and y"):
+    problem = bp.Problem(
+        "far", room, (UTM[0] + 0.25, UTM[1] + 0.75), (UTM[0] + 1.75, UTM[1] + 0.75)
+    )
+    assert bp.plan(problem, turning_radius=0.1).length == pytest.approx(
+        1 + 2 * math.hypot(0.25, 0.25), abs=0.05
+    )
+    with pytest.raises(
+        ValueError,
+        match=r"start: \(0.0, 0.0\): outside the workspace; expected x from 391000.25 to "
+        r"391002.25 and y",
+    ):
         bp.plan(problem._replace(start=(0.0, 0.0)))
     (tmp_path / "wide.geojson").write_text(courtyard(0, 0).replace("20", "391000"))
-    with pytest.raises(ValueError, match=r"wide\.geojson: the border: 391000 x 10 units; expected at most 100000 on a side"):
+    with pytest.raises(
+        ValueError,
+        match=r"wide\.geojson: the border: 391000 x 10 units; expected at most 100000 on a side",
+    ):
         bp.read_map(tmp_path / "wide.geojson")
 
 
@@ -199,7 +257,11 @@ def test_a_margin_is_for_files_without_a_border(tmp_path):
     assert bp.read_map(tmp_path / "court.geojson", margin=2, cell=0.5).bounds[0] == 5.75
     (tmp_path / "room.geojson").write_text(courtyard(0, 0))
     for file, options, told in (
-        ("court.geojson", {}, "court.geojson: no border; expected a polygon with role border, a bbox, or a margin"),
+        (
+            "court.geojson",
+            {},
+            "court.geojson: no border; expected a polygon with role border, a bbox, or a margin",
+        ),
         ("room.geojson", {"margin": 2}, "^margin: 2: the file has a border of its own"),
         ("court.geojson", {"margin": -1}, "^margin: -1; expected a number of at least 0"),
         ("court.geojson", {"margin": math.inf}, "^margin: inf; expected a number of at least 0"),
@@ -211,16 +273,40 @@ def test_a_margin_is_for_files_without_a_border(tmp_path):
 
 
 ROS_FAULTS = {
-    "resolution of 0": (("resolution: 0.5", "resolution: 0"), "room.yaml: resolution: 0; expected a number above 0"),
-    "resolution in words": (("resolution: 0.5", "resolution: fine"), "room.yaml: resolution: fine; expected a number"),
-    "no image": (("image: room.png", "image: hall.png"), "room.yaml: image: hall.png: no such file"),
-    "no key image": (("image: room.png\n", ""), "room.yaml: image: missing; expected the keys image, resolution"),
-    "no resolution": (("resolution: 0.5\n", ""), "room.yaml: resolution: missing; expected a number"),
+    "resolution of 0": (
+        ("resolution: 0.5", "resolution: 0"),
+        "room.yaml: resolution: 0; expected a number above 0",
+    ),
+    "resolution in words": (
+        ("resolution: 0.5", "resolution: fine"),
+        "room.yaml: resolution: fine; expected a number",
+    ),
+    "no image": (
+        ("image: room.png", "image: hall.png"),
+        "room.yaml: image: hall.png: no such file",
+    ),
+    "no key image": (
+        ("image: room.png\n", ""),
+        "room.yaml: image: missing; expected the keys image, resolution",
+    ),
+    "no resolution": (
+        ("resolution: 0.5\n", ""),
+        "room.yaml: resolution: missing; expected a number",
+    ),
     "turned": (("2.0, 0.0]", "2.0, 0.3]"), "room.yaml: origin: .*; expected a yaw of 0"),
     "origin": (("[-1.0, 2.0, 0.0]", "here"), r"room.yaml: origin: here; expected \[x, y, yaw\]"),
-    "thresholds": (("free_thresh: 0.196", "free_thresh: 0.9"), "room.yaml: free_thresh: 0.9; expected a number from 0 to occupied_thresh"),
-    "mode": (("negate: 0", "negate: 0\nmode: Raw"), "room.yaml: mode: Raw; expected one of trinary, scale, raw"),
-    "far away": (("[-1.0, 2.0, 0.0]", "[1e9, 0, 0]"), "room.yaml: origin, resolution: the border: 1e.09 is not a coordinate"),
+    "thresholds": (
+        ("free_thresh: 0.196", "free_thresh: 0.9"),
+        "room.yaml: free_thresh: 0.9; expected a number from 0 to occupied_thresh",
+    ),
+    "mode": (
+        ("negate: 0", "negate: 0\nmode: Raw"),
+        "room.yaml: mode: Raw; expected one of trinary, scale, raw",
+    ),
+    "far away": (
+        ("[-1.0, 2.0, 0.0]", "[1e9, 0, 0]"),
+        "room.yaml: origin, resolution: the border: 1e.09 is not a coordinate",
+    ),
     "no mapping": ((YAML, "just a word\n"), "room.yaml: image: missing"),
 }
 
@@ -238,7 +324,11 @@ def test_a_huge_image_is_refused_before_it_is_read(tmp_path):
     header = b"P5\n100000 100000\n255\n"
     (tmp_path / "huge.pgm").write_bytes(header)
     (tmp_path / "room.yaml").write_text(YAML.replace("room.png", "huge.pgm"))
-    with pytest.raises(ValueError, match=r"image: 100,000 x 100,000 pixels; expected at most 16,000,000; most_pixels raises the limit"):
+    with pytest.raises(
+        ValueError,
+        match=r"image: 100,000 x 100,000 pixels; expected at most 16,000,000; most_pixels raises "
+        r"the limit",
+    ):
         files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
     with pytest.raises(ValueError, match=r"4 x 3 pixels; expected at most 11"):
         ros_map(tmp_path, most_pixels=11)
@@ -261,7 +351,11 @@ def test_a_moving_ai_map_and_its_scenarios(tmp_path):
     ]
     one = files.scenario(described(), 1, grid, tmp_path)
     assert (one.start, one.target) == ((0.5, 3.5), (4.5, 0.5))
-    job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 2}}}
+    job = {
+        "study": "s",
+        "workspaces": {"w": described()},
+        "problems": {"p": {"workspace": "w", "scenario": 2}},
+    }
     problem = problems.build_all(job, tmp_path)[0]["p"]
     assert (problem.start, problem.target) == ((0.5, 0.5), (3.5, 1.5))
     length = shortest_paths.lattice_path(grid.occupied, (0, 0), (1, 3), math.sqrt(2), "none").length
@@ -270,13 +364,19 @@ def test_a_moving_ai_map_and_its_scenarios(tmp_path):
 
 MAP_FAULTS = {
     "type": (("type octile", "type tile"), "line 1: type tile; expected type octile"),
-    "height": (("height 4", "height four"), "line 2: 'height four'; expected height and a whole number"),
+    "height": (
+        ("height 4", "height four"),
+        "line 2: 'height four'; expected height and a whole number",
+    ),
     "no width": (("width 5\n", ""), "line 3: 'map'; expected width"),
     "word": (("map\n", "cells\n"), "line 4: expected the word map"),
     "rows": (("GS...\n", ""), "height: 4; but 3 lines of cells follow"),
     "ragged": (("GS...", "GS.."), "line 8 has 4 cells; expected 5"),
     "character": (("GS...", "GX..."), "line 8: unknown character 'X'"),
-    "size": (("height 4\nwidth 5", "height 99999\nwidth 99999"), "line 2: 99999 x 99999 cells; expected at most"),
+    "size": (
+        ("height 4\nwidth 5", "height 99999\nwidth 99999"),
+        "line 2: 99999 x 99999 cells; expected at most",
+    ),
     "empty": ((MAP, ""), "line 1: 'the file ends'; expected type"),
 }
 
@@ -291,9 +391,18 @@ def test_map_fault_is_one_line(tmp_path, fault):
 
 
 SCEN_FAULTS = {
-    "another map": (("room.map", "hall.map"), "line 2: map hall.map; expected a scenario of room.map"),
-    "another size": (("5\t4\t0\t0", "6\t4\t0\t0"), "line 2: a map of 6 x 4 cells; room.map has 5 x 4"),
-    "start in an obstacle": (("5\t4\t0\t0", "5\t4\t1\t1"), "line 2: start 1 1: expected a free cell"),
+    "another map": (
+        ("room.map", "hall.map"),
+        "line 2: map hall.map; expected a scenario of room.map",
+    ),
+    "another size": (
+        ("5\t4\t0\t0", "6\t4\t0\t0"),
+        "line 2: a map of 6 x 4 cells; room.map has 5 x 4",
+    ),
+    "start in an obstacle": (
+        ("5\t4\t0\t0", "5\t4\t1\t1"),
+        "line 2: start 1 1: expected a free cell",
+    ),
     "target outside": (("4\t3\t7.0", "5\t3\t7.0"), "line 2: target 5 3: expected a free cell"),
     "words": (("7.00000000", "long"), "line 2: expected bucket, map"),
     "version": (("version 1", "scenarios"), "line 1: expected version 1"),
@@ -317,8 +426,14 @@ def test_a_scenario_that_is_not_there(tmp_path):
 
 def test_an_optimal_length_of_another_map_is_told(tmp_path):
     moving_ai(tmp_path, scen=SCEN.replace("7.00000000", "9.5"))
-    job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 1}}}
-    with pytest.raises(ValueError, match=r"room\.map\.scen: line 2: optimal length 9\.5; on room\.map it is 7"):
+    job = {
+        "study": "s",
+        "workspaces": {"w": described()},
+        "problems": {"p": {"workspace": "w", "scenario": 1}},
+    }
+    with pytest.raises(
+        ValueError, match=r"room\.map\.scen: line 2: optimal length 9\.5; on room\.map it is 7"
+    ):
         problems.build_all(job, tmp_path)
 
 
@@ -330,14 +445,23 @@ def test_a_scenario_with_another_optimal_length_is_told(tmp_path, off):
     words = row.split()
     words[-1] = str(float(words[-1]) + off)
     file.write_text("\n".join([*before, "\t".join(words)]) + "\n")
-    job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 1}}}
-    with pytest.raises(ValueError, match=r"room.map.scen: line 2: optimal length .*; on room.map it is"):
+    job = {
+        "study": "s",
+        "workspaces": {"w": described()},
+        "problems": {"p": {"workspace": "w", "scenario": 1}},
+    }
+    with pytest.raises(
+        ValueError, match=r"room.map.scen: line 2: optimal length .*; on room.map it is"
+    ):
         problems.build_all(job, tmp_path)
 
 
 def test_a_robots_radius_leaves_cells_free_that_are_as_far(tmp_path):
     wide = np.full((11, 11), 254, dtype=np.uint8)
     wide[5, 5] = 0
-    # The eight cells around an occupied one touch it; those beyond are 0.5 m away from it, as are those beside the border from that.
+    # The eight cells around an occupied one touch it; those beyond are 0.5 m away from it, as are
+    # those beside the border from that.
     assert ros_map(tmp_path, pixels=wide, robot_radius=0.5).occupied.sum() == 9 + 40
-    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5 + 1e-6).occupied.sum() == 9 + 12 + 40 + 32
+    assert (
+        ros_map(tmp_path, pixels=wide, robot_radius=0.5 + 1e-6).occupied.sum() == 9 + 12 + 40 + 32
+    )

@@ -1,4 +1,6 @@
-"""The study meledje: its drawings, audit, maps and settings; ground that is not flat; a reader's own map by configuration alone."""
+"""The study meledje: its drawings, audit, maps and settings; ground that is not flat; a reader's
+own map by configuration alone.
+"""
 
 import itertools
 import math
@@ -24,7 +26,14 @@ from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
 from bezierplan.workspaces import files, grid
-from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, least_energy, obstacles_met
+from bezierplan.workspaces.ground import (
+    centres,
+    cheapest,
+    edge_energy,
+    ground_of,
+    least_energy,
+    obstacles_met,
+)
 from bezierplan.workspaces.problem import Path, Problem
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
@@ -37,7 +46,9 @@ def workspace(name):
 
 
 def problem(name):
-    return problems.build(name, STUDY.problems[name].plain(), workspace(STUDY.problems[name].workspace))
+    return problems.build(
+        name, STUDY.problems[name].plain(), workspace(STUDY.problems[name].workspace)
+    )
 
 
 # The study's files
@@ -59,7 +70,10 @@ def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_recon
     """That of a panel is drawn; a panel without one stands beside others that say so."""
     for each in (STUDY.tables | STUDY.figures).values():
         artefact = each.plain()
-        shown = {artefact.get("experiment"), *(panel.get("experiment") for panel in artefact.get("panels", []))}
+        shown = {
+            artefact.get("experiment"),
+            *(panel.get("experiment") for panel in artefact.get("panels", [])),
+        }
         if shown & {"operators", "from_current", "harder_map", "first_populations"}:
             assert "reconstruct" in artefact["title"]
         for panel in artefact.get("panels", []):
@@ -67,7 +81,10 @@ def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_recon
                 assert "reconstructed" in panel.get("title", ""), (artefact["title"], panel)
 
 
-@pytest.mark.parametrize("name", ["env1_initial", "env1_modified", "env2_initial", "env2_modified", "env2_modified_counts"])
+@pytest.mark.parametrize(
+    "name",
+    ["env1_initial", "env1_modified", "env2_initial", "env2_modified", "env2_modified_counts"],
+)
 def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
     where = problem(name)
     energy, path = cheapest(ground_of(where.workspace, 1.0), 0, 255)
@@ -78,7 +95,9 @@ def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
 
 
 def test_maps_change_as_the_paper_says():
-    """Both environments change somewhere, and the optimum of the initial map is blocked in the modified one."""
+    """Both environments change somewhere, and the optimum of the initial map is blocked in the
+    modified one.
+    """
     for environment in ("env1", "env2"):
         before, after = (workspace(f"{environment}_{state}") for state in ("initial", "modified"))
         assert before.occupied.shape == after.occupied.shape == (16, 16)
@@ -87,8 +106,8 @@ def test_maps_change_as_the_paper_says():
         assert sum(obstacles_met(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
 
 
-# Share of the way, of the exact optimum, after which the map changes -> cell (column, row), what remains, and that with what was gone;
-# by a program of its own.
+# Share of the way, of the exact optimum, after which the map changes -> cell (column, row), what
+# remains, and that with what was gone; by a program of its own.
 DRIVEN = {
     ("env1", 10): ((2, 1), 26.7527, 29.380),
     ("env1", 25): ((6, 2), 22.6296, 29.197),
@@ -102,7 +121,15 @@ DRIVEN = {
 def cell_path(problem, state):
     """The shortest path over centres of free cells, as a planner."""
     found = shortest_paths.centre_path(problem)
-    return Plan(Path("polyline", found.points), found.length, math.isfinite(found.length), 1, np.array([found.length]), "exact", {}), state
+    return Plan(
+        Path("polyline", found.points),
+        found.length,
+        math.isfinite(found.length),
+        1,
+        np.array([found.length]),
+        "exact",
+        {},
+    ), state
 
 
 @pytest.mark.parametrize(("environment", "percent"), DRIVEN)
@@ -112,12 +139,16 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
     described = {"study": "meledje", "problems": {name: STUDY.problems[name].plain()}}
     described["workspaces"] = {name: STUDY.workspaces[name].plain()}
     made, _, moving = worlds.build_all(described, FOLDER)
-    ride = drive(moving[name], made[name], Policy(**STUDY.policies["replans"].model_dump()), cell_path)
+    ride = drive(
+        moving[name], made[name], Policy(**STUDY.policies["replans"].model_dump()), cell_path
+    )
     moment = moving[name].moments[0]
     assert moment == pytest.approx(percent / 100 * ride.plans[0].length)
     here = between(ride.motion, 0.0, moment).points[-1]
     assert made[name].workspace.cell_of(*here) == (row, column)
-    rest = shortest_paths.centre_path(Problem(name, moving[name].maps[1], (column + 0.5, row + 0.5), made[name].target)).length
+    rest = shortest_paths.centre_path(
+        Problem(name, moving[name].maps[1], (column + 0.5, row + 0.5), made[name].target)
+    ).length
     assert rest == pytest.approx(remaining, abs=1e-4)
     assert moment + rest == pytest.approx(total, abs=1e-3)
     if len(ride.plans) > 1:  # the change blocks its way
@@ -133,8 +164,12 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
 
 
 def test_chromosome_shows_the_numbers_of_the_paper():
-    marks = drawing.data(meledje.chromosome(**arguments("meledje", "chromosome")), options_of(drawing))
-    genes = marks[(marks["part"] == "genes") & (marks["mark"] == "text") & marks["text"].str.isdigit()]
+    marks = drawing.data(
+        meledje.chromosome(**arguments("meledje", "chromosome")), options_of(drawing)
+    )
+    genes = marks[
+        (marks["part"] == "genes") & (marks["mark"] == "text") & marks["text"].str.isdigit()
+    ]
     assert genes["text"].astype(int).to_list() == [1, 41, 65, 35, 38, 60, 100]
     line = marks[marks["mark"] == "line"]
     numbers = 10 * (line["y"] - 1) + line["x"]
@@ -142,9 +177,14 @@ def test_chromosome_shows_the_numbers_of_the_paper():
 
 
 def test_children_of_the_drawn_crossover_exchange_their_tails():
-    marks = drawing.data(meledje.crossover(**arguments("meledje", "crossover")), options_of(drawing))
+    marks = drawing.data(
+        meledje.crossover(**arguments("meledje", "crossover")), options_of(drawing)
+    )
     texts = marks[marks["mark"] == "text"]
-    rows = {part: [own["text"].astype(int).to_list() for _, own in of.groupby("y", sort=False)] for part, of in texts.groupby("part")}
+    rows = {
+        part: [own["text"].astype(int).to_list() for _, own in of.groupby("y", sort=False)]
+        for part, of in texts.groupby("part")
+    }
     one, other = rows["parents"]
     assert rows["children"] == [one[:3] + other[3:], other[:3] + one[3:]]
 
@@ -155,17 +195,24 @@ def test_drawn_mutations_have_the_settings_in_force():
     assert given["beside_obstacle"] == (settings["obstacle_node"] == "neighbour")
     assert given["same_signs"] == (settings["direction"] == "same_signs")
     assert given["whole_path"] == (settings["ref21_test"] == "path")
-    assert (given["keep_better"], given["penalty"]) == (settings["keep_better"], settings["penalty"])
+    assert (given["keep_better"], given["penalty"]) == (
+        settings["keep_better"],
+        settings["penalty"],
+    )
 
 
 def test_drawn_mutations_show_what_is_said_of_them():
     home = workspace("operators")
     ground = ground_of(home, 1.0)
-    marks = drawing.data(meledje.mutations(home, **arguments("meledje", "mutations")), options_of(drawing))
+    marks = drawing.data(
+        meledje.mutations(home, **arguments("meledje", "mutations")), options_of(drawing)
+    )
     met = {}
     for (operator, label), line in marks[marks["mark"] == "line"].groupby(["operator", "group"]):
         cells = (np.floor(line["y"]) * 10 + np.floor(line["x"])).astype(int).tolist()
-        met[operator, label] = sum(obstacles_met(ground, *edge) for edge in itertools.pairwise(cells))
+        met[operator, label] = sum(
+            obstacles_met(ground, *edge) for edge in itertools.pairwise(cells)
+        )
     assert met["random", "before"] == 0 < met["random", "after"]
     assert met["ref12", "before"] > 0
     assert met["ref12", "after"] > 0
@@ -182,21 +229,30 @@ def test_audit_of_the_published_tables():
     assert wrong["rule"].str.contains("near-optimal solutions \\(").sum() == 4
     assert wrong.loc[wrong["rule"].str.contains("fitness"), "item"].to_list() == ["table5"]
     fisher = rows[rows["rule"].str.contains("Fisher")].set_index(["item", "place"])["printed"]
-    assert fisher["table2", "metric=optimal, proposed and ref12"] == pytest.approx(3 * 0.1524, rel=1e-3)
+    assert fisher["table2", "metric=optimal, proposed and ref12"] == pytest.approx(
+        3 * 0.1524, rel=1e-3
+    )
     ranked = wrong[wrong["rule"].str.startswith("pairs")]
     assert ranked["item"].to_list() == ["table3"]
     # The word dynamic stands in the title, and no table has drives.
-    assert wrong[wrong["item"] == "text"][["place", "printed", "limit"]].values.tolist() == [["title", 0.0, 1.0]]
+    assert wrong[wrong["item"] == "text"][["place", "printed", "limit"]].values.tolist() == [
+        ["title", 0.0, 1.0]
+    ]
 
 
 @pytest.mark.parametrize(
-    ("table", "metric", "value"), [("table2", "optimal", 40), ("table4", "objective", 30.0), ("table5", "infeasible", 99)]
+    ("table", "metric", "value"),
+    [("table2", "optimal", 40), ("table4", "objective", 30.0), ("table5", "infeasible", 99)],
 )
 def test_audit_sees_a_changed_number(table, metric, value):
     changed = PUBLISHED[table].copy()
     changed.loc[(changed["metric"] == metric) & (changed["method"] == "ref12"), "value"] = value
     faults = [
-        {(row["item"], row["place"], row["rule"]) for row in meledje.audit(tables) if not row["consistent"]}
+        {
+            (row["item"], row["place"], row["rule"])
+            for row in meledje.audit(tables)
+            if not row["consistent"]
+        }
         for tables in (PUBLISHED, PUBLISHED | {table: changed})
     ]
     assert faults[1] - faults[0]
@@ -206,7 +262,9 @@ def test_audit_sees_a_changed_number(table, metric, value):
 
 
 def climbed(path, heights):
-    """Climbs along the cells of a path, by 10,001 points of each edge that are no corners of cells."""
+    """Climbs along the cells of a path, by 10,001 points of each edge that are no corners of
+    cells.
+    """
     total = 0.0
     for one, other in itertools.pairwise(path):
         points = np.array(one) + (np.arange(10_001) / 10_000)[:, None] * (np.array(other) - one)
@@ -220,8 +278,14 @@ def test_the_cheapest_path_is_not_the_shortest():
     start, target = 52, 64
     _, shortest = cheapest(ground_of(flat.workspace, 1.0), start, target)
     energy, best = cheapest(ground_of(hill.workspace, 1.0), start, target)
-    lengths = [np.hypot(*np.diff(centres(hill.workspace, path), axis=0).T).sum() for path in (shortest, best)]
-    climbs = [climbed(centres(hill.workspace, path).tolist(), hill.workspace.heights) for path in (shortest, best)]
+    lengths = [
+        np.hypot(*np.diff(centres(hill.workspace, path), axis=0).T).sum()
+        for path in (shortest, best)
+    ]
+    climbs = [
+        climbed(centres(hill.workspace, path).tolist(), hill.workspace.heights)
+        for path in (shortest, best)
+    ]
     assert lengths[0] < lengths[1]
     assert energy == pytest.approx(lengths[1] + climbs[1])
     assert energy < lengths[0] + climbs[0]
@@ -229,9 +293,14 @@ def test_the_cheapest_path_is_not_the_shortest():
 
 def test_the_search_finds_the_cheapest_path_over_the_hill():
     settings = STUDY.resolved("proposed")
-    found = [node_genetic.plan(problem("hill"), np.random.default_rng(seed), **settings) for seed in range(10)]
+    found = [
+        node_genetic.plan(problem("hill"), np.random.default_rng(seed), **settings)
+        for seed in range(10)
+    ]
     assert any(each.extra["optimal"] for each in found)
-    assert all(each.objective >= each.extra["optimum"] - 1e-9 for each in found if each.claimed_feasible)
+    assert all(
+        each.objective >= each.extra["optimum"] - 1e-9 for each in found if each.claimed_feasible
+    )
 
 
 @pytest.mark.parametrize("cell", [1.0, 10.0])
@@ -268,7 +337,13 @@ def test_faults_of_heights_are_told(fault, tmp_path):
     text, told = HEIGHT_FAULTS[fault]
     (tmp_path / "map.txt").write_text("...\n...")
     (tmp_path / "heights.txt").write_text(text)
-    description = {"kind": "grid", "file": "map.txt", "heights": "heights.txt", "cell": 1, "unit": "m"}
+    description = {
+        "kind": "grid",
+        "file": "map.txt",
+        "heights": "heights.txt",
+        "cell": 1,
+        "unit": "m",
+    }
     with pytest.raises(ValueError, match=f"heights.txt: {told}"):
         files.load(description, tmp_path)
     with pytest.raises(ValueError, match=r"heights: none.txt: cannot be read"):
@@ -322,19 +397,31 @@ def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
 
 FAULTS = {
     "start occupied": (("start_cell: 0", "start_cell: 100"), "start_cell: 100: in an obstacle"),
-    "target outside": (("target_cell: 246", "target_cell: 247"), "target_cell: cell 247 is not on the grid"),
+    "target outside": (
+        ("target_cell: 246", "target_cell: 247"),
+        "target_cell: cell 247 is not on the grid",
+    ),
     "between centres": (
         ("start_cell: 0, target_cell: 246", "start: [0.3, 0.25], target: [9.25, 6.25]"),
         "problem across: start: .*centre of",
     ),
-    "odd population": (("population: 20", "population: 21"), "population: 21; parents are crossed in pairs"),
+    "odd population": (
+        ("population: 20", "population: 21"),
+        "population: 21; parents are crossed in pairs",
+    ),
     "probability above 1": (
         ("mutation_probability: 0.3", "mutation_probability: 1.3"),
         "mutation_probability: 1.3; expected a number from 0 to 1",
     ),
-    "negative penalty": (("penalty: 15.0", "penalty: -1.0"), "penalty: -1.0; expected a number at least 0"),
+    "negative penalty": (
+        ("penalty: 15.0", "penalty: -1.0"),
+        "penalty: -1.0; expected a number at least 0",
+    ),
     "no friction": (("friction: 1.0", "friction: 0"), "friction: 0; climbing"),
-    "unknown operator": (("mutation: proposed", "mutation: proposal"), "mutation: 'proposal'; expected one of random"),
+    "unknown operator": (
+        ("mutation: proposed", "mutation: proposal"),
+        "mutation: 'proposal'; expected one of random",
+    ),
 }
 
 
@@ -348,7 +435,12 @@ def test_bad_input_is_told_before_any_run(fault, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("yard", "told"), [(YARD[:-1], "line 13 has 18 cells"), (YARD.replace("#", "x", 1), "unknown character 'x'"), ("", "empty")]
+    ("yard", "told"),
+    [
+        (YARD[:-1], "line 13 has 18 cells"),
+        (YARD.replace("#", "x", 1), "unknown character 'x'"),
+        ("", "empty"),
+    ],
 )
 def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
     with pytest.raises(Fault, match=f"yard.txt: .*{told}"):
@@ -356,14 +448,22 @@ def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
 
 
 def test_schemas_know_heights():
-    assert checked.read(FOLDER / "experiments.yaml")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"
+    assert (
+        checked.read(FOLDER / "experiments.yaml")["workspaces"]["hill"]["heights"]
+        == "workspaces/hill_heights.txt"
+    )
 
 
 def test_closed_corners_contradict_five_printed_means_on_the_reconstructed_maps():
     """Assumption M19 prints the optima."""
     reason = next(each.reason for each in STUDY.assumptions if each.id == "M19")
     below = 0
-    for table, name in (("table2", "env1_initial"), ("table3", "env1_modified"), ("table4", "env2_initial"), ("table5", "env2_modified")):
+    for table, name in (
+        ("table2", "env1_initial"),
+        ("table3", "env1_modified"),
+        ("table4", "env2_initial"),
+        ("table5", "env2_modified"),
+    ):
         made = workspace(name)
         least = least_energy(made, 1.0, True, 0, made.occupied.size - 1)
         assert f"{least:.4f}" in reason

@@ -59,14 +59,25 @@ def test_a_curve_has_no_corners_to_leave_out():
 
 
 def test_deviation_of_the_work_is_from_the_median_of_the_condition():
-    table = runs(experiment=["e"] * 4, condition=["a", "a", "a", "b"], method=["m"] * 4, evaluations=[90, 100, 120, 50])
-    assert metrics.values(table, "work_deviation", PROBLEMS).to_list() == pytest.approx([0.1, 0.0, 0.2, 0.0])
+    table = runs(
+        experiment=["e"] * 4,
+        condition=["a", "a", "a", "b"],
+        method=["m"] * 4,
+        evaluations=[90, 100, 120, 50],
+    )
+    assert metrics.values(table, "work_deviation", PROBLEMS).to_list() == pytest.approx(
+        [0.1, 0.0, 0.2, 0.0]
+    )
 
 
 def test_infeasible_run_has_no_length_but_an_objective():
     table = runs(objective=[3.0, 9.0], length=[3.0, 2.0], bound=[2.0, 2.0], feasible=[True, False])
-    assert metrics.values(table, "length", PROBLEMS).to_list() == pytest.approx([3.0, math.nan], nan_ok=True)
-    assert metrics.values(table, "gap", PROBLEMS).to_list() == pytest.approx([0.5, math.nan], nan_ok=True)
+    assert metrics.values(table, "length", PROBLEMS).to_list() == pytest.approx(
+        [3.0, math.nan], nan_ok=True
+    )
+    assert metrics.values(table, "gap", PROBLEMS).to_list() == pytest.approx(
+        [0.5, math.nan], nan_ok=True
+    )
     assert metrics.values(table, "objective", PROBLEMS).to_list() == [3.0, 9.0]
     assert metrics.values(table, "feasible", PROBLEMS).to_list() == [1.0, 0.0]
 
@@ -79,7 +90,9 @@ def test_gap_best_is_against_the_best_feasible_run_of_the_same_method_and_condit
         length=[4.0, 5.0, 1.0, 7.0, 9.0],
         feasible=[True, True, False, True, True],
     )
-    assert metrics.values(table, "gap_best", PROBLEMS).to_list() == pytest.approx([0.0, 0.25, math.nan, 0.0, 0.0], nan_ok=True)
+    assert metrics.values(table, "gap_best", PROBLEMS).to_list() == pytest.approx(
+        [0.0, 0.25, math.nan, 0.0, 0.0], nan_ok=True
+    )
 
 
 def test_generations_of_an_early_stop_are_held():
@@ -106,7 +119,9 @@ def test_improvement_by_generation_30_counts_that_generation_and_none_after_it(l
 @given(histories)
 def test_generations_agree_with_their_definition(drawn):
     history = [np.minimum.accumulate(values) for values in drawn]
-    expected = [next(g for g, best in enumerate(values) if best <= values[-1] * 1.05) for values in history]
+    expected = [
+        next(g for g, best in enumerate(values) if best <= values[-1] * 1.05) for values in history
+    ]
     assert history_values("generation_5pct", *history) == expected
 
 
@@ -134,13 +149,20 @@ def test_distinct_control_points():
 
 
 def test_occupied_control_points():
-    # On the lower and left side of the occupied cell, inside, and on its upper and right side, which belong to the next cells.
-    assert value("occupied_points", "bezier", [[15, 10], [10, 15], [15, 15], [15, 20], [20, 15]]) == 3
+    # On the lower and left side of the occupied cell, inside, and on its upper and right side,
+    # which belong to the next cells.
+    assert (
+        value("occupied_points", "bezier", [[15, 10], [10, 15], [15, 15], [15, 20], [20, 15]]) == 3
+    )
 
 
 def test_a_cell_is_its_column_and_its_row():
     """The third cell from the left in the lowest row, and not the first one in the third row."""
-    grid = {"across": PROBLEMS["across"]._replace(workspace=from_lines(["....", "....", "....", "..#."], 10.0, "unit"))}
+    grid = {
+        "across": PROBLEMS["across"]._replace(
+            workspace=from_lines(["....", "....", "....", "..#."], 10.0, "unit")
+        )
+    }
     table = runs([("bezier", [[25, 5], [5, 25], [5, 5]]), ("bezier", [[5, 25], [5, 25], [5, 5]])])
     assert metrics.values(table, "occupied_points", grid).to_list() == [1, 0]
     assert metrics.values(table, "fine_bad", grid).gt(0).to_list() == [True, False]
@@ -153,7 +175,9 @@ def test_fine_samples_of_a_line_through_the_occupied_cell():
     assert value("fine_bad", "polyline", [[5, 20], [35, 20]]) == 0
 
 
-@pytest.mark.parametrize("name", ["distinct_points", "occupied_points", "fine_bad", "max_curvature"])
+@pytest.mark.parametrize(
+    "name", ["distinct_points", "occupied_points", "fine_bad", "max_curvature"]
+)
 def test_run_without_a_path_has_no_value(name):
     values = metrics.values(runs([("", []), ("bezier", [[5, 5], [5, 35]])]), name, PROBLEMS)
     assert values.isna().to_list() == [True, False]
@@ -165,7 +189,9 @@ def test_no_runs_have_no_values(name):
 
 
 def test_index_of_the_runs_is_kept():
-    table = runs(history=[[2.0, 1.0], [1.0], [3.0, 2.0, 1.0]], feasible=[True, False, True]).iloc[[2, 0, 1]]
+    table = runs(history=[[2.0, 1.0], [1.0], [3.0, 2.0, 1.0]], feasible=[True, False, True]).iloc[
+        [2, 0, 1]
+    ]
     assert metrics.values(table, "generation_improved", PROBLEMS).to_dict() == {2: 2, 0: 1, 1: 0}
 
 
@@ -188,18 +214,25 @@ CORNERED = [(0, 0), (5, 5), (15, 5), (15, 5), (25, 15), (35, 25)]
     ],
 )
 def test_headings(name, of_polyline, of_curve):
-    """A curve turns from its first to its last leg, here without an inflection; it has no corner, and is shorter than its polygon."""
+    """A curve turns from its first to its last leg, here without an inflection; it has no corner,
+    and is shorter than its polygon.
+    """
     assert value(name, "polyline", CORNERED) == pytest.approx(of_polyline)
     quarter = [(5, 5), (5, 35), (35, 35)]
     if of_curve is not None:
         assert value(name, "bezier", quarter) == pytest.approx(of_curve, abs=2e-3)
     else:
-        assert value(name, "bezier", quarter) < {"heading_max": 0.01, "length_over_polygon": 0.9}[name]
+        assert (
+            value(name, "bezier", quarter) < {"heading_max": 0.01, "length_over_polygon": 0.9}[name]
+        )
 
 
 def test_a_point_and_a_line_do_not_turn():
     for points in ([(5, 5), (5, 5)], [(5, 5), (15, 15), (35, 35)]):
-        found = [value(name, "polyline", points) for name in ("heading_max", "turning", "corners", "length_over_polygon")]
+        found = [
+            value(name, "polyline", points)
+            for name in ("heading_max", "turning", "corners", "length_over_polygon")
+        ]
         assert found == pytest.approx([0, 0, 0, 1])
 
 
@@ -225,27 +258,48 @@ def test_clearance_to_occupied_cells_does_not_count_the_border(points, clearance
 
 
 def test_clearance_in_an_empty_grid_is_infinite():
-    empty = {"across": PROBLEMS["across"]._replace(workspace=from_lines(["..", ".."], 20.0, "unit"))}
-    assert metrics.values(runs([("polyline", [(0, 0), (40, 40)])]), "obstacle_clearance", empty)[0] == math.inf
+    empty = {
+        "across": PROBLEMS["across"]._replace(workspace=from_lines(["..", ".."], 20.0, "unit"))
+    }
+    assert (
+        metrics.values(runs([("polyline", [(0, 0), (40, 40)])]), "obstacle_clearance", empty)[0]
+        == math.inf
+    )
 
 
 def test_excess_over_the_reference():
     table = runs(length=[31.0, 30.5], reference=[30.25, np.nan])
-    assert metrics.values(table, "excess_reference", PROBLEMS).to_list() == pytest.approx([0.75, math.nan], nan_ok=True)
+    assert metrics.values(table, "excess_reference", PROBLEMS).to_list() == pytest.approx(
+        [0.75, math.nan], nan_ok=True
+    )
 
 
 def test_equal_objectives_share_the_mean_of_their_ranks():
-    """Two methods that tie for the first rank get rank 1.5 each (tharwat2018, Section 5.1), in every repeat for itself."""
-    table = runs(objective=[4.0, 1.0, 1.0, 2.0, 5.0, 5.0, 5.0, 1.0], repeat=[0] * 4 + [1] * 4, feasible=[True, False] * 4)
+    """Two methods that tie for the first rank get rank 1.5 each (tharwat2018, Section 5.1), in
+    every repeat for itself.
+    """
+    table = runs(
+        objective=[4.0, 1.0, 1.0, 2.0, 5.0, 5.0, 5.0, 1.0],
+        repeat=[0] * 4 + [1] * 4,
+        feasible=[True, False] * 4,
+    )
     assert metrics.values(table, "rank", PROBLEMS).to_list() == [4, 1.5, 1.5, 3, 3, 3, 3, 1]
 
 
 @pytest.mark.parametrize("end", ["low", "high"])
 @pytest.mark.parametrize(("beyond", "outlier"), [(0.0, 0.0), (0.01, 1.0)])
 def test_an_outlier_lies_more_than_one_and_a_half_ranges_beyond_a_quartile(end, beyond, outlier):
-    """Of nine values with 1 to 7 in the middle the quartiles are 2 and 6, so the fences stand at -4 and 12."""
-    values = [-4.0 - beyond if end == "low" else 0.0, *map(float, range(1, 8)), 12.0 + beyond if end == "high" else 8.0]
-    table = runs(objective=values + [1000.0] * 9, condition=["a"] * 18, method=["m"] * 9 + ["other"] * 9)
+    """Of nine values with 1 to 7 in the middle the quartiles are 2 and 6, so the fences stand at -4
+    and 12.
+    """
+    values = [
+        -4.0 - beyond if end == "low" else 0.0,
+        *map(float, range(1, 8)),
+        12.0 + beyond if end == "high" else 8.0,
+    ]
+    table = runs(
+        objective=values + [1000.0] * 9, condition=["a"] * 18, method=["m"] * 9 + ["other"] * 9
+    )
     expected = [0.0] * 18
     expected[0 if end == "low" else 8] = outlier
     assert metrics.values(table, "outlier", PROBLEMS).to_list() == expected
@@ -260,10 +314,14 @@ def rounded_corner(radius):
 
 
 @pytest.mark.parametrize("radius", [1.0, 2.0, 4.0])
-def test_bending_of_an_arc_is_its_angle_over_its_radius_and_its_largest_turn_that_of_one_part(radius):
+def test_bending_of_an_arc_is_its_angle_over_its_radius_and_its_largest_turn_that_of_one_part(
+    radius,
+):
     path = rounded_corner(radius)
     assert measures.bending(path) == pytest.approx(math.pi / 2 / radius, rel=0.05)
-    assert measures.max_turn(path) == pytest.approx(math.degrees(measures.BENDING_PART / radius), rel=0.05)
+    assert measures.max_turn(path) == pytest.approx(
+        math.degrees(measures.BENDING_PART / radius), rel=0.05
+    )
 
 
 def test_a_corner_bends_by_its_squared_angle_over_the_length_of_a_part():
@@ -273,7 +331,10 @@ def test_a_corner_bends_by_its_squared_angle_over_the_length_of_a_part():
 
 
 def test_what_is_straight_does_not_bend():
-    for path in (Path("polyline", np.array([[0.0, 0], [1, 1], [4, 4]])), Path("bezier", np.array([[0.0, 0], [1, 2], [4, 8]]))):
+    for path in (
+        Path("polyline", np.array([[0.0, 0], [1, 1], [4, 4]])),
+        Path("bezier", np.array([[0.0, 0], [1, 2], [4, 8]])),
+    ):
         assert measures.bending(path) == pytest.approx(0, abs=1e-12)
         assert measures.max_turn(path) == pytest.approx(0, abs=1e-5)
     assert measures.bending(Path("polyline", np.zeros((2, 2)))) == 0

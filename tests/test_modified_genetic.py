@@ -1,4 +1,6 @@
-"""The modified genetic algorithm: its encoding, validation, operators and rules for diversity, by hand and by properties."""
+"""The modified genetic algorithm: its encoding, validation, operators and rules for diversity, by
+hand and by properties.
+"""
 
 import itertools
 import math
@@ -56,17 +58,34 @@ FEW = {"population": 20, "iterations": 10}
 
 def problem(number=0, side=100, radius=0.06, obstacles=15, route=1):
     start, target = ((0, 0), (side, side)) if route == 1 else ((side, 0), (0, side))
-    description = {"side": side, "start": start, "target": target, "obstacles": obstacles, "layout": number}
-    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, description, "test")
+    description = {
+        "side": side,
+        "start": start,
+        "target": target,
+        "obstacles": obstacles,
+        "layout": number,
+    }
+    grid = random_field.field(
+        {"radius": radius, "clear_ends": 2.0, "unit": "cell"}, description, "test"
+    )
     return Problem("field", grid, tuple(map(float, start)), tuple(map(float, target)))
 
 
 BARE = problem(side=10, obstacles=0)
 
 
-def field(side=100, *circles, ends=None, gene_lattice="coarse", gene_order="columns", point_order="projection"):
+def field(
+    side=100,
+    *circles,
+    ends=None,
+    gene_lattice="coarse",
+    gene_order="columns",
+    point_order="projection",
+):
     table = np.array(circles, dtype=float).reshape(-1, 3)
-    grid = random_field.from_circles(Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell"))
+    grid = random_field.from_circles(
+        Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell")
+    )
     ends = np.array(((0, 0), (side, side)) if ends is None else ends, dtype=float)
     return planner.field_of(grid, grid.in_cells(ends), gene_lattice, gene_order, point_order)
 
@@ -76,13 +95,25 @@ def rules(**changed):
     """The settings as `plan` hands them to the search."""
     seen = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(planner, "search", lambda rng, field, rules, *_: seen.append(rules) or nothing_found())
+        patch.setattr(
+            planner, "search", lambda rng, field, rules, *_: seen.append(rules) or nothing_found()
+        )
         planner.plan(BARE, np.random.default_rng(0), **(SETTINGS | changed))
     return seen[0]
 
 
 def nothing_found():
-    return planner.Found(np.empty(0, dtype=np.int64), np.inf, np.zeros(1), np.zeros(1), np.zeros(1), np.zeros(1), 0, 1, 1.0)
+    return planner.Found(
+        np.empty(0, dtype=np.int64),
+        np.inf,
+        np.zeros(1),
+        np.zeros(1),
+        np.zeros(1),
+        np.zeros(1),
+        0,
+        1,
+        1.0,
+    )
 
 
 def run(task, seed=0, **changed):
@@ -118,11 +149,16 @@ def test_the_lattice_of_any_side_ends_in_the_corners(side):
 
 
 def test_genes_are_numbered_by_columns_or_by_rows():
-    by_columns, by_rows = (field(100, (50, 50, 6), gene_order=order) for order in ("columns", "rows"))
+    by_columns, by_rows = (
+        field(100, (50, 50, 6), gene_order=order) for order in ("columns", "rows")
+    )
     np.testing.assert_array_equal(by_columns.points[21 * 3 + 16] - 0.5, (15, 80))
     np.testing.assert_array_equal(by_rows.points[21 * 3 + 16] - 0.5, (80, 15))
     # Points are joined in one order, however they are numbered.
-    places = [{tuple(found.points[gene]): found.rank[gene] for gene in range(441)} for found in (by_columns, by_rows)]
+    places = [
+        {tuple(found.points[gene]): found.rank[gene] for gene in range(441)}
+        for found in (by_columns, by_rows)
+    ]
     assert places[0] == places[1]
 
 
@@ -144,7 +180,9 @@ def test_a_field_without_a_free_gene_is_told():
     occupied[[0, -1], [0, -1]] = False
     grid = Grid(occupied, 1.0, "cell", (-0.5, -0.5))
     with pytest.raises(ValueError, match="no free gene"):
-        planner.field_of(grid, np.array([[0.5, 0.5], [20.5, 20.5]]), "coarse", "columns", "projection")
+        planner.field_of(
+            grid, np.array([[0.5, 0.5], [20.5, 20.5]]), "coarse", "columns", "projection"
+        )
 
 
 # Decoding.
@@ -165,7 +203,9 @@ def test_points_can_be_joined_in_the_order_of_the_genes():
     found = field(100, point_order="index")
     ones = np.array([gene(10, 90), gene(20, 5), gene(20, 50)])
     ones.sort()
-    np.testing.assert_array_equal(planner.polygon(ones, found)[1:-1] - 0.5, [(10, 90), (20, 5), (20, 50)])
+    np.testing.assert_array_equal(
+        planner.polygon(ones, found)[1:-1] - 0.5, [(10, 90), (20, 5), (20, 50)]
+    )
 
 
 # Validation.
@@ -195,11 +235,21 @@ def test_constraints_in_their_order():
 def test_the_longest_curve_has_room(curve):
     """59 control points that alternate between opposite corners of a field."""
     found = field(20, gene_lattice="cell")
-    corners = [20 * x + y for k in range(30) for x, y in ((k % 5, k // 5), (19 - k % 5, 19 - k // 5))][:59]
+    corners = [
+        20 * x + y for k in range(30) for x, y in ((k % 5, k // 5), (19 - k % 5, 19 - k // 5))
+    ][:59]
     rank = np.zeros(len(found.points), dtype=np.int64)
     rank[corners] = np.arange(59)
-    scratch = gene_curves.scratch_for(found)._replace(x=np.full(len(gene_curves.scratch_for(found).x), -1.0))
-    assert gene_curves.validate(np.sort(corners), found._replace(rank=rank), rules(curve=curve, least_distance=0.0), np.inf, scratch)[1]
+    scratch = gene_curves.scratch_for(found)._replace(
+        x=np.full(len(gene_curves.scratch_for(found).x), -1.0)
+    )
+    assert gene_curves.validate(
+        np.sort(corners),
+        found._replace(rank=rank),
+        rules(curve=curve, least_distance=0.0),
+        np.inf,
+        scratch,
+    )[1]
     assert 0.5 * len(scratch.x) < np.count_nonzero(scratch.x != -1.0) < len(scratch.x)
 
 
@@ -214,14 +264,18 @@ def test_more_than_59_points_are_too_many():
 def test_the_free_diagonal_costs_its_length():
     found = field(100)
     for name, length in (("length", 100 * np.sqrt(2)), ("cells4", 150.0), ("cells8", 150.0)):
-        assert validated(np.array([gene(50, 50)]), found, rules(fitness_length=name))[0] == pytest.approx(length, rel=1e-12)
+        assert validated(np.array([gene(50, 50)]), found, rules(fitness_length=name))[
+            0
+        ] == pytest.approx(length, rel=1e-12)
 
 
 def test_a_colliding_curve_may_be_punished_for_each_cell():
     found = field(100, (50, 50, 3))
     ones = np.array([gene(50, 45)])
     cost, free = validated(ones, found, rules(invalid="penalty"))
-    x, y = cell_length.sample(planner.polygon(ones, found), cell_length.parts(planner.polygon(ones, found)))
+    x, y = cell_length.sample(
+        planner.polygon(ones, found), cell_length.parts(planner.polygon(ones, found))
+    )
     bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
     assert bad > 0
     assert not free
@@ -229,13 +283,18 @@ def test_a_colliding_curve_may_be_punished_for_each_cell():
 
 
 def walked(ones, found, composite):
-    """x and y of all samples of a curve, and the number of occupied cells that a walk over all its cells finds."""
+    """x and y of all samples of a curve, and the number of occupied cells that a walk over all its
+    cells finds.
+    """
     points = planner.polygon(ones, found)
     pieces = [points]
     if composite:
         halves = np.concatenate([points[:1], 0.5 * (points[1:-2] + points[2:-1]), points[-1:]])
         pieces = np.stack([halves[:-1], points[1:-1], halves[1:]], axis=1)
-    x, y = map(np.concatenate, zip(*(cell_length.sample(piece, cell_length.parts(piece)) for piece in pieces)))
+    x, y = map(
+        np.concatenate,
+        zip(*(cell_length.sample(piece, cell_length.parts(piece)) for piece in pieces)),
+    )
     return x, y, cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
 
 
@@ -243,7 +302,9 @@ def walked(ones, found, composite):
 @pytest.mark.parametrize("lattice", ["coarse", "cell"])
 @pytest.mark.parametrize("radius", [0.02, 0.06])
 def test_first_sights_never_change_a_verdict(radius, lattice, curve):
-    """Curves that the walk over all cells calls free or colliding are called the same by the shortcuts before it."""
+    """Curves that the walk over all cells calls free or colliding are called the same by the
+    shortcuts before it.
+    """
     rng = np.random.default_rng(3)
     free = colliding = 0
     for number in range(20):
@@ -265,7 +326,9 @@ def test_first_sights_never_change_a_verdict(radius, lattice, curve):
 
 
 def test_first_sights_among_single_cells_never_change_a_verdict():
-    """Where most curves pass within a cell of occupied ones, cut their corners, and have samples on their sides."""
+    """Where most curves pass within a cell of occupied ones, cut their corners, and have samples on
+    their sides.
+    """
     rng = np.random.default_rng(4)
     seen = np.zeros(3, dtype=int)
     for number in range(40):
@@ -279,13 +342,18 @@ def test_first_sights_among_single_cells_never_change_a_verdict():
             ones = np.sort(rng.choice(found.choices, rng.integers(1, 5), replace=False))
             composite = rng.random() < 0.5
             *_, bad = walked(ones, found, composite)
-            sight, _ = gene_curves._at_first_sight(planner.polygon(ones, found), composite, found.room, scratch)
+            sight, _ = gene_curves._at_first_sight(
+                planner.polygon(ones, found), composite, found.room, scratch
+            )
             assert sight == gene_curves._UNKNOWN or (sight == gene_curves._OCCUPIED) == (bad > 0)
             seen[sight] += 1
     assert seen.min() > 100
 
 
-@given(numpy.arrays(float, st.tuples(st.integers(3, 12), st.just(2)), elements=st.floats(0, 100)), st.integers(1, 40))
+@given(
+    numpy.arrays(float, st.tuples(st.integers(3, 12), st.just(2)), elements=st.floats(0, 100)),
+    st.integers(1, 40),
+)
 def test_a_curve_keeps_close_to_the_chords_of_its_parts(points, count):
     x, y = cell_length.sample(points, 16 * count)
     share = np.tile(np.arange(16) / 16, count)
@@ -301,22 +369,35 @@ def test_a_parabola_gets_as_far_from_its_chord_as_the_bound_says():
     assert gene_curves._from_chords(points, 2) == 1.0
 
 
-@pytest.mark.parametrize(("reach", "away", "free"), [((4, 4), 0.0, True), ((4, 3), 0.0, False), ((4, 4), 0.1, False), ((6, 4), 1.0, True)])
-def test_a_part_is_free_if_the_room_around_its_ends_holds_its_chord_how_far_it_bends_and_a_step(reach, away, free):
+@pytest.mark.parametrize(
+    ("reach", "away", "free"),
+    [((4, 4), 0.0, True), ((4, 3), 0.0, False), ((4, 4), 0.1, False), ((6, 4), 1.0, True)],
+)
+def test_a_part_is_free_if_the_room_around_its_ends_holds_its_chord_how_far_it_bends_and_a_step(
+    reach, away, free
+):
     x, y = np.array([10.0, 15.0]), np.array([10.0, 7.0])
     assert gene_curves._is_free_part(x, y, np.array(reach), 0, away) == free
 
 
 @pytest.mark.parametrize("curve", ["single", "composite"])
 def test_a_length_above_the_limit_need_not_be_exact(curve):
-    """It is above the limit all the same; and verdicts, and lengths that do not exceed it, are those without a limit."""
+    """It is above the limit all the same; and verdicts, and lengths that do not exceed it, are
+    those without a limit.
+    """
     rng = np.random.default_rng(5)
     found, above = field(100, (50, 50, 3), (20, 70, 8)), 0
     for _ in range(300):
         ones = np.sort(rng.choice(found.choices, rng.integers(1, 6), replace=False))
         length, free = validated(ones, found, rules(curve=curve, least_distance=0.0))
         for limit in (0.9 * length, length, 1.1 * length):
-            cost, verdict = gene_curves.validate(ones, found, rules(curve=curve, least_distance=0.0), limit, gene_curves.scratch_for(found))
+            cost, verdict = gene_curves.validate(
+                ones,
+                found,
+                rules(curve=curve, least_distance=0.0),
+                limit,
+                gene_curves.scratch_for(found),
+            )
             assert verdict == free
             assert cost == length or limit < cost < length
             above += cost != length
@@ -325,12 +406,23 @@ def test_a_length_above_the_limit_need_not_be_exact(curve):
 
 @pytest.mark.parametrize("diversity_rule", ["none", "more_offspring", "relaxing", "unique"])
 @pytest.mark.parametrize("survival", ["best_of_all", "generational"])
-def test_no_search_depends_on_by_how_much_a_child_costs_more_than_its_parents(diversity_rule, survival, monkeypatch):
+def test_no_search_depends_on_by_how_much_a_child_costs_more_than_its_parents(
+    diversity_rule, survival, monkeypatch
+):
     task = problem(3)
     found = planner.field_of(
-        task.workspace, task.workspace.in_cells(np.array([task.start, task.target])), "coarse", "columns", "projection"
+        task.workspace,
+        task.workspace.in_cells(np.array([task.start, task.target])),
+        "coarse",
+        "columns",
+        "projection",
     )
-    given = found, rules(diversity=diversity_rule, survival=survival), np.zeros((0, 119), dtype=np.int64), np.zeros(0, dtype=np.int64)
+    given = (
+        found,
+        rules(diversity=diversity_rule, survival=survival),
+        np.zeros((0, 119), dtype=np.int64),
+        np.zeros(0, dtype=np.int64),
+    )
     pruned = planner.search(np.random.default_rng(1), *given, gene_curves.scratch_for(found))
     monkeypatch.setattr(planner, "_highest_cost_that_counts", lambda *_: np.inf)
     exact = planner.search.py_func(np.random.default_rng(1), *given, gene_curves.scratch_for(found))
@@ -340,7 +432,9 @@ def test_no_search_depends_on_by_how_much_a_child_costs_more_than_its_parents(di
 
 
 def test_a_target_on_the_border_is_looked_at_within_the_grid():
-    """Where no cell lies beyond, the first sight reads none: uncompiled it raises IndexError if it does."""
+    """Where no cell lies beyond, the first sight reads none: uncompiled it raises IndexError if it
+    does.
+    """
     room = np.full((20, 20), 3)
     for x, y in ((20.0, 20.0), (20.0, 10.5), (10.5, 20.0)):
         # A sample on the border is left to the walk over the cells.
@@ -351,10 +445,14 @@ def test_a_target_on_the_border_is_looked_at_within_the_grid():
     assert gene_curves._reach(10.3, 10.5, np.zeros((20, 20), dtype=np.int64)) == 0
 
 
-@pytest.mark.parametrize("ends", list(itertools.permutations([(0.5, 0.5), (20.0, 20.0), (20.0, 9.3), (9.3, 20.0)], 2)))
+@pytest.mark.parametrize(
+    "ends", list(itertools.permutations([(0.5, 0.5), (20.0, 20.0), (20.0, 9.3), (9.3, 20.0)], 2))
+)
 def test_ends_on_the_border_are_joined(ends):
     occupied = np.zeros((20, 20), dtype=bool)
-    occupied[[17, 7, 18], [18, 18, 7]] = True  # near the ends, so that the walk over the cells decides
+    occupied[[17, 7, 18], [18, 18, 7]] = (
+        True  # near the ends, so that the walk over the cells decides
+    )
     found = run(Problem("border", Grid(occupied, 1.0, "cell", (0.0, 0.0)), *ends), **FEW)
     assert found.claimed_feasible
     assert np.array_equal(found.path.points[[0, -1]], ends)
@@ -366,7 +464,14 @@ def test_ends_on_the_border_are_joined(ends):
 
 @pytest.mark.parametrize("diversity_rule", ["none", "more_offspring", "relaxing", "unique"])
 @pytest.mark.parametrize(
-    "changed", [{}, {"curve": "composite"}, {"invalid": "penalty"}, {"survival": "generational"}, {"mutation": "one_flip"}]
+    "changed",
+    [
+        {},
+        {"curve": "composite"},
+        {"invalid": "penalty"},
+        {"survival": "generational"},
+        {"mutation": "one_flip"},
+    ],
 )
 def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
     for number in range(3):
@@ -377,10 +482,19 @@ def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
         cells = cell_length.touched_cells(*cell_length.samples(found.path, task.workspace))
         assert cell_length.occupied_cells(*cells, task.workspace.occupied) == 0
         least = shortest_paths.lattice_path(
-            task.workspace.occupied, *(task.workspace.cell_of(*end) for end in (task.start, task.target)), 1.5, "free"
+            task.workspace.occupied,
+            *(task.workspace.cell_of(*end) for end in (task.start, task.target)),
+            1.5,
+            "free",
         )
-        assert cell_length.length4(found.path, task.workspace) >= cell_length.length8(found.path, task.workspace) >= least.length
-        assert found.objective == pytest.approx(cell_length.polyline_length(*cell_length.samples(found.path, task.workspace)), rel=1e-12)
+        assert (
+            cell_length.length4(found.path, task.workspace)
+            >= cell_length.length8(found.path, task.workspace)
+            >= least.length
+        )
+        assert found.objective == pytest.approx(
+            cell_length.polyline_length(*cell_length.samples(found.path, task.workspace)), rel=1e-12
+        )
         assert len(found.history) == 11
         assert np.all(np.diff(found.history[np.isfinite(found.history)]) <= 0)
         assert found.history[-1] == found.objective
@@ -440,14 +554,19 @@ def test_more_batches_are_made_as_long_as_q_is_above_the_threshold():
 
 
 def test_unique_lets_no_two_children_be_alike():
-    plain, unique = (run(problem(), 5, diversity=rule, first_draws=1) for rule in ("none", "unique"))
+    plain, unique = (
+        run(problem(), 5, diversity=rule, first_draws=1) for rule in ("none", "unique")
+    )
     assert unique.extra["distinct_chromosomes"] > plain.extra["distinct_chromosomes"]
     # Only random chromosomes of the first population can be equal by chance.
     assert unique.extra["distinct_chromosomes"] > 59
 
 
 def test_relaxing_with_a_threshold_of_two_refuses_nothing():
-    plain, relaxed = run(problem(), 6, diversity="none"), run(problem(), 6, diversity="relaxing", eta=0.0, eta_decay=1.0)
+    plain, relaxed = (
+        run(problem(), 6, diversity="none"),
+        run(problem(), 6, diversity="relaxing", eta=0.0, eta_decay=1.0),
+    )
     assert np.array_equal(plain.history, relaxed.history)
     strict = run(problem(), 6, diversity="relaxing", eta=1.0, eta_decay=1.0)
     assert not np.array_equal(plain.history, strict.history)
@@ -461,7 +580,9 @@ def test_no_crossover_and_no_mutation_never_change_the_best_of_the_first_populat
 
 
 def test_children_that_are_not_crossed_mutate_as_well():
-    """Without crossover a child that does not mutate is a copy, so that nothing could be found that the first population does not have."""
+    """Without crossover a child that does not mutate is a copy, so that nothing could be found that
+    the first population does not have.
+    """
     found = run(problem(), 7, crossover_probability=0.0, mutation="one_flip", replacements=0)
     assert found.objective < found.history[0]
     assert found.extra["valid_share"] < 1.0
@@ -481,7 +602,9 @@ def test_mutation_changes_each_gene_with_its_probability(rate):
         counted[child[:count]] += 1
         flips.append(count)
     expected = rate * len(found.choices)
-    assert np.mean(flips) == pytest.approx(expected, abs=4 * np.sqrt(expected * (1 - rate) / 2000) + 1e-12)
+    assert np.mean(flips) == pytest.approx(
+        expected, abs=4 * np.sqrt(expected * (1 - rate) / 2000) + 1e-12
+    )
     share = counted[found.settable] / 2000
     assert np.abs(share - rate).max() <= 5 * np.sqrt(rate * (1 - rate) / 2000) + 1e-12
 
@@ -493,7 +616,9 @@ def test_other_interpretations_of_the_mutation_rate_change_one_gene():
         counts = set()
         for _ in range(200):
             child = np.full(120, gene(50, 50), dtype=np.int64)
-            counts.add(planner._mutate(rng, child, 1, found, rules(mutation=name, mutation_rate=rate)))
+            counts.add(
+                planner._mutate(rng, child, 1, found, rules(mutation=name, mutation_rate=rate))
+            )
         assert counts <= ({1} if rate == 0.0 else {0, 1, 2})
         assert (2 in counts) == (rate > 0.0)
 
@@ -503,7 +628,14 @@ def test_crossover_cuts_between_genes():
     gene_lists.put(np.array([3, 50, 300]), 3, 1.0, True, pool, 0)
     gene_lists.put(np.array([50, 60]), 2, 1.0, True, pool, 1)
     child = np.empty(120, dtype=np.int64)
-    for cut, expected in ((50, [3, 50, 60]), (51, [3, 50, 60]), (61, [3, 50]), (3, [50, 60]), (4, [3, 50, 60]), (301, [3, 50, 300])):
+    for cut, expected in (
+        (50, [3, 50, 60]),
+        (51, [3, 50, 60]),
+        (61, [3, 50]),
+        (3, [50, 60]),
+        (4, [3, 50, 60]),
+        (301, [3, 50, 300]),
+    ):
         assert list(child[: gene_lists.cross(pool, 0, 1, cut, child)]) == expected
     assert list(child[: gene_lists.cross(pool, 1, 0, 60, child)]) == [50, 300]
 
@@ -515,7 +647,9 @@ def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
     assert np.all(pairs[:, 0] != pairs[:, 1])
     np.testing.assert_allclose(np.bincount(pairs[:, 0]) / 20_000, [1 / 8, 2 / 8, 5 / 8], atol=0.015)
     second = pairs[pairs[:, 0] == 2, 1]
-    np.testing.assert_allclose(np.bincount(second, minlength=3)[:2] / len(second), [1 / 3, 2 / 3], atol=0.02)
+    np.testing.assert_allclose(
+        np.bincount(second, minlength=3)[:2] / len(second), [1 / 3, 2 / 3], atol=0.02
+    )
     # Nearly all fitness in one chromosome: the other parent is found at once all the same.
     wheel = np.cumsum([1e-9, 1e-2, 1e-9])
     assert {planner._parents(rng, wheel) for _ in range(100)} <= {(1, 0), (1, 2)}
@@ -525,37 +659,80 @@ def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
 
 
 def batch(seed, pool, field_, **changed):
-    """The chromosomes, as lists of genes, that a batch of offspring of a pool's two chromosomes adds."""
+    """The chromosomes, as lists of genes, that a batch of offspring of a pool's two chromosomes
+    adds.
+    """
     filled_pool = gene_lists.empty_pool(200, planner._ROOM)
     for place, ones in enumerate(pool):
         gene_lists.put(np.array(ones), len(ones), 100.0, True, filled_pool, place)
     child, memory = np.empty(planner._ROOM, dtype=np.int64), gene_lists.empty_memory(planner._ROOM)
     wheel, scratch = np.cumsum(np.ones(len(pool))), gene_curves.scratch_for(field_)
-    arguments = (filled_pool, len(pool), wheel, 0.8, np.inf, child, memory, field_, rules(population=20, **changed), scratch)
+    arguments = (
+        filled_pool,
+        len(pool),
+        wheel,
+        0.8,
+        np.inf,
+        child,
+        memory,
+        field_,
+        rules(population=20, **changed),
+        scratch,
+    )
     filled, tried, invalid = planner._add_offspring(np.random.default_rng(seed), *arguments)
-    return [filled_pool.ones[place, : filled_pool.count[place]].tolist() for place in range(len(pool), filled)], tried, invalid
+    return (
+        [
+            filled_pool.ones[place, : filled_pool.count[place]].tolist()
+            for place in range(len(pool), filled)
+        ],
+        tried,
+        invalid,
+    )
 
 
 def test_children_and_mutants_join_the_pool_or_mutants_alone():
-    """Algorithm 2, lines 6 and 7: a crossover's children are added, and so is each of them mutated."""
+    """Algorithm 2, lines 6 and 7: a crossover's children are added, and so is each of them
+    mutated.
+    """
     found = field(100)
     parents = [[gene(20, 40), gene(40, 60)], [gene(30, 20), gene(60, 30)]]
-    # By a crossover of two parents of two genes each a child has 0 to 4 genes, all of them the parents'; a mutant may have others.
+    # By a crossover of two parents of two genes each a child has 0 to 4 genes, all of them the
+    # parents'; a mutant may have others.
     inherited = set(parents[0]) | set(parents[1])
-    both, tried, _ = batch(1, parents, found, offspring="both", mutation="one_flip", crossover_probability=1.0, replacements=0)
-    alone, tried_alone, _ = batch(1, parents, found, offspring="mutated", mutation="one_flip", crossover_probability=1.0, replacements=0)
+    both, tried, _ = batch(
+        1,
+        parents,
+        found,
+        offspring="both",
+        mutation="one_flip",
+        crossover_probability=1.0,
+        replacements=0,
+    )
+    alone, tried_alone, _ = batch(
+        1,
+        parents,
+        found,
+        offspring="mutated",
+        mutation="one_flip",
+        crossover_probability=1.0,
+        replacements=0,
+    )
     assert (tried, tried_alone) == (40, 20)
     assert len(alone) <= 20 < len(both)
     assert sum(set(child) <= inherited for child in both) >= 15
     assert sum(set(child) <= inherited for child in alone) <= 3
     # Without crossover and mutation all are copies of the parents.
-    both, *_ = batch(2, parents, found, offspring="both", mutation_rate=0.0, crossover_probability=0.0)
+    both, *_ = batch(
+        2, parents, found, offspring="both", mutation_rate=0.0, crossover_probability=0.0
+    )
     assert len(both) == 40
     assert {tuple(child) for child in both} == {tuple(parent) for parent in parents}
 
 
 def test_children_in_the_pool_make_the_population_alike():
-    """What the paper's measure of diversity is there to notice: the same run with mutants alone stays diverse."""
+    """What the paper's measure of diversity is there to notice: the same run with mutants alone
+    stays diverse.
+    """
     task = problem()
     both, alone = (run(task, 3, offspring=offspring) for offspring in ("both", "mutated"))
     assert both.extra["distinct_chromosomes"] < 0.5 * alone.extra["distinct_chromosomes"]
@@ -568,7 +745,10 @@ def test_children_in_the_pool_make_the_population_alike():
 @pytest.mark.parametrize("diversity", ["none", "more_offspring"])
 def test_the_survivors_are_more_alike_than_the_pool_whatever_the_rule_for_diversity(diversity):
     """Without changes all chromosomes soon are one, which has a Q of 1 with itself."""
-    changing, still = (run(problem(), 3, diversity=diversity, **changes) for changes in ({}, {"mutation_rate": 0.0}))
+    changing, still = (
+        run(problem(), 3, diversity=diversity, **changes)
+        for changes in ({}, {"mutation_rate": 0.0})
+    )
     assert changing.extra["population_q"] < still.extra["population_q"] <= 1.0
     assert still.extra["population_q"] > 0.9
     if diversity == "more_offspring":
@@ -578,7 +758,10 @@ def test_the_survivors_are_more_alike_than_the_pool_whatever_the_rule_for_divers
 def test_twice_as_many_children():
     parents, found = [[gene(20, 40)], [gene(30, 20)]], field(100)
     assert batch(0, parents, found, offspring="mutated", replacements=0)[1] == 20
-    assert batch(0, parents, found, offspring="mutated", replacements=0, children_per_parent=2)[1] == 40
+    assert (
+        batch(0, parents, found, offspring="mutated", replacements=0, children_per_parent=2)[1]
+        == 40
+    )
 
 
 @given(numpy.arrays(float, st.integers(0, 30), elements=st.integers(0, 5).map(float)))
@@ -623,7 +806,9 @@ def test_q_statistic():
     assert diversity.q_of_rows([1, 1, 1, 1], [1, 1, 1, 1]) == 1.0
     assert diversity.q_of_rows([1, 1, 1, 1], [1, 1, 1, 0]) == 0.0
     # The example of elhoseny2017, Section 3.3.1.
-    one, two, three = ([int(bit) for bit in text] for text in ("1100110010", "1010101011", "1111000000"))
+    one, two, three = (
+        [int(bit) for bit in text] for text in ("1100110010", "1010101011", "1111000000")
+    )
     assert diversity.q_of_rows(one, two) == diversity.q_of_rows(one, three) == 0.0
     assert diversity.q_of_rows(two, three) == pytest.approx(-1 / 3, rel=1e-15)
 
@@ -644,11 +829,15 @@ WALLED[3, :7] = WALLED[6, 2:] = True  # back and forth
 
 def maze():
     grid = Grid(WALLED, 1.0, "cell")
-    return grid, planner.field_of(grid, np.array([[0.5, 0.5], [8.5, 8.5]]), "cell", "columns", "geodesic")
+    return grid, planner.field_of(
+        grid, np.array([[0.5, 0.5], [8.5, 8.5]]), "cell", "columns", "geodesic"
+    )
 
 
 def test_points_are_joined_by_their_distance_over_free_cells():
-    """Along the maze's corridors, although the projection on the line from start to target has them in another order."""
+    """Along the maze's corridors, although the projection on the line from start to target has them
+    in another order.
+    """
     _, maze_field = maze()
     way = [(4, 0), (8, 2), (8, 4), (3, 4), (0, 6), (1, 8), (6, 8)]
     genes = np.sort(np.array([9 * x + y for x, y in way]))
@@ -710,8 +899,13 @@ def test_the_last_point_is_never_removed():
 def test_a_warm_start_is_never_worse_than_the_path_that_it_starts_from():
     where = problem(3)
     first, last = planner.resume(where, np.random.default_rng(1), None, **(SETTINGS | FEW))
-    assert first.objective == planner.plan(where, np.random.default_rng(1), **(SETTINGS | FEW)).objective
-    again, _ = planner.resume(where, np.random.default_rng(2), last, **(SETTINGS | FEW | {"iterations": 1}))
+    assert (
+        first.objective
+        == planner.plan(where, np.random.default_rng(1), **(SETTINGS | FEW)).objective
+    )
+    again, _ = planner.resume(
+        where, np.random.default_rng(2), last, **(SETTINGS | FEW | {"iterations": 1})
+    )
     cold = planner.plan(where, np.random.default_rng(2), **(SETTINGS | FEW | {"iterations": 1}))
     assert again.history[0] <= first.objective < cold.history[0]
 

@@ -1,4 +1,6 @@
-"""The workflow as a module of another one, which has its results elsewhere, and words of a study that a browser would run."""
+"""The workflow as a module of another one, which has its results elsewhere, and words of a study
+that a browser would run.
+"""
 
 import re
 from pathlib import Path
@@ -53,7 +55,9 @@ use rule * from paths as paths_*
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A workflow that uses this one as a module, after it has made the study's results at two scales, and its report."""
+    """A workflow that uses this one as a module, after it has made the study's results at two
+    scales, and its report.
+    """
     folder = tmp_path_factory.mktemp("module")
     (folder / "walk" / "published").mkdir(parents=True)
     for name, text in {
@@ -75,7 +79,13 @@ def test_a_module_with_a_prefix_makes_everything(folder):
     for scale in ("smoke", "full"):
         assert (folder / "far/away/results" / scale / "index.html").stat().st_size > 10_000
     made = folder / "far/away/results/full"
-    for name in ("worth.csv", "summary.md", "walk/claims.csv", "walk/figures/ways.svg", "walk/tables/lengths.comparison.csv"):
+    for name in (
+        "worth.csv",
+        "summary.md",
+        "walk/claims.csv",
+        "walk/figures/ways.svg",
+        "walk/tables/lengths.comparison.csv",
+    ):
         assert (made / name).is_file(), name
     assert not (folder / "results").exists()
     done = starts.snakemake(folder, "paths_all", "-n", "--cores", "1", "--workflow-profile", "none")

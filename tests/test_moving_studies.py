@@ -1,4 +1,6 @@
-"""Experiments in worlds that move: a study of a reader's own, equal runs from equal seeds, faults in one line, and replaying a drive."""
+"""Experiments in worlds that move: a study of a reader's own, equal runs from equal seeds, faults
+in one line, and replaying a drive.
+"""
 
 import math
 
@@ -91,7 +93,9 @@ def chunk(study):
 def test_a_reader_s_planner_drives_by_one_line_of_config(tmp_path):
     study = reading.load([written(tmp_path)])["mystudy"]
     runs, times, traces = (table.to_pylist() for table in chunk(study))
-    assert [run["id"] for run in runs] == [f"mystudy/drives/across/mine/{repeat}" for repeat in range(3)]
+    assert [run["id"] for run in runs] == [
+        f"mystudy/drives/across/mine/{repeat}" for repeat in range(3)
+    ]
     assert len(times) == len(traces) == 3
     for run in runs:
         # The gate in its straight way closes at step 2.5, so it plans again.
@@ -120,7 +124,9 @@ def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path
     replay.animate(replay.replay("mystudy/drives/across/mine/0", {"mystudy": study}), file)
     assert file.stat().st_size < 500_000
     with Image.open(file) as found:
-        frames = [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(found)]
+        frames = [
+            np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(found)
+        ]
         # Frames in which nothing moves are one, shown longer.
         shown = sum(frame.info["duration"] for frame in ImageSequence.Iterator(found))
     assert shown == (animation.FRAMES - 1) * animation.EACH + animation.LAST
@@ -145,16 +151,40 @@ def test_files_of_problems_keep_the_world(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("policy: replans", "policy: replan", "methods: mine: policy: replan: unknown; did you mean replans"),
+        (
+            "policy: replans",
+            "policy: replan",
+            "methods: mine: policy: replan: unknown; did you mean replans",
+        ),
         ("policy: replans, ", "", "methods: mine: has no policy, which a world that moves needs"),
-        ("methods: [still]", "methods: [mine]", "methods: mine: has a policy, but nothing moves here"),
-        ("problems: [across]", "problems: [across, there]", "problems: there: its workspace does not move"),
-        ("replan: when_blocked", "replan: sometimes", "policies: replans: replan: sometimes: unknown"),
-        ("start: centre", "warm: true", "policy: replans: warm, but planner walk.py has no function resume"),
+        (
+            "methods: [still]",
+            "methods: [mine]",
+            "methods: mine: has a policy, but nothing moves here",
+        ),
+        (
+            "problems: [across]",
+            "problems: [across, there]",
+            "problems: there: its workspace does not move",
+        ),
+        (
+            "replan: when_blocked",
+            "replan: sometimes",
+            "policies: replans: replan: sometimes: unknown",
+        ),
+        (
+            "start: centre",
+            "warm: true",
+            "policy: replans: warm, but planner walk.py has no function resume",
+        ),
         ("second.txt, at", "third.txt, at", "changes: 0: file: third.txt"),
         (", at: 2.5", "", "changes: 0: expected either after or at"),
         ("at: 2.5", "at: -1", "changes: 0: at: -1: expected"),
-        ("pace: 1", "pace: 0", "pace: 0: expected how far a robot drives in a step, in units, a number above 0"),
+        (
+            "pace: 1",
+            "pace: 0",
+            "pace: 0: expected how far a robot drives in a step, in units, a number above 0",
+        ),
     ],
 )
 def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
@@ -178,16 +208,26 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_pat
 
 
 @pytest.mark.parametrize(
-    ("clearance", "least", "steps"), [([0.2, 0.0, -1e-10], 0.0, 0), ([0.2, -0.3, -0.1], 0.0, 2), ([0.2, 0.1, 0.4], 0.1, 0)]
+    ("clearance", "least", "steps"),
+    [([0.2, 0.0, -1e-10], 0.0, 0), ([0.2, -0.3, -0.1], 0.0, 2), ([0.2, 0.1, 0.4], 0.1, 0)],
 )
-def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(tmp_path, monkeypatch, clearance, least, steps):
+def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
+    tmp_path, monkeypatch, clearance, least, steps
+):
     study = reading.load([written(tmp_path)])["mystudy"]
     made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     points = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)])
     ride = Ride(Motion(points, np.arange(4.0)), True, 0.0, [Planned(0.0, None, 10.0, 0.0, 0.0, 1)])
     verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
-    row, _ = rides.row(job(study, "drives", "mine", "smoke", 0), Condition("across", {}), 0, ride, made["across"], found["across"])
+    row, _ = rides.row(
+        job(study, "drives", "mine", "smoke", 0),
+        Condition("across", {}),
+        0,
+        ride,
+        made["across"],
+        found["across"],
+    )
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
 
 
@@ -195,9 +235,16 @@ def a_row(tmp_path, points, times, arrived=True):
     """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
     study = reading.load([written(tmp_path)])["mystudy"]
     made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
-    ride = Ride(Motion(np.array(points), np.array(times)), arrived, 0.0, [Planned(0.0, None, 6.0, 0.0, 0.0, 1)])
+    ride = Ride(
+        Motion(np.array(points), np.array(times)),
+        arrived,
+        0.0,
+        [Planned(0.0, None, 6.0, 0.0, 0.0, 1)],
+    )
     described = job(study, "drives", "mine", "smoke", 0)
-    return rides.row(described, Condition("across", {}), 0, ride, made["across"], found["across"])[0]
+    return rides.row(described, Condition("across", {}), 0, ride, made["across"], found["across"])[
+        0
+    ]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.
@@ -223,15 +270,26 @@ def test_a_robot_that_is_hit_was_standing_or_driving_before(points, times, stand
 
 
 def test_the_least_last_plan_is_that_of_the_map_and_the_place_of_the_last_plan(tmp_path):
-    assert a_row(tmp_path, [(0.5, 2.5), (6.5, 2.5)], [0.0, 6.0])["last_optimum"] == pytest.approx(6.0)
+    assert a_row(tmp_path, [(0.5, 2.5), (6.5, 2.5)], [0.0, 6.0])["last_optimum"] == pytest.approx(
+        6.0
+    )
 
 
 def drives_of(*rows):
     """Runs (method, repeat, arrival) in one world, infeasible without an arrival."""
     table = pd.DataFrame(rows, columns=["method", "repeat", "arrival"])
     feasible = table["arrival"].notna()
-    same = {"experiment": "drives", "condition": "across", "problem": "across", "length": table["arrival"], "claimed_feasible": feasible}
-    ids = [f"mystudy/drives/across/{method}/{repeat}" for method, repeat in zip(table["method"], table["repeat"])]
+    same = {
+        "experiment": "drives",
+        "condition": "across",
+        "problem": "across",
+        "length": table["arrival"],
+        "claimed_feasible": feasible,
+    }
+    ids = [
+        f"mystudy/drives/across/{method}/{repeat}"
+        for method, repeat in zip(table["method"], table["repeat"])
+    ]
     return table.assign(id=ids, feasible=feasible, **same)
 
 
@@ -246,21 +304,38 @@ def test_no_drive_arrives_before_any_robot_can(arrival, refused):
     if not refused:
         assert len(results.joined(runs, {}, bounds).runs) == 1
         return
-    with pytest.raises(ValueError, match=r"across/mine/0 is said to be feasible, but its arrival 2\.9999 lies below the bound 3"):
+    with pytest.raises(
+        ValueError,
+        match=r"across/mine/0 is said to be feasible, but its arrival 2\.9999 lies below the "
+        r"bound 3",
+    ):
         results.joined(runs, {}, bounds)
 
 
 def paired_runs():
     """Two robots that both arrive in repeat 0 alone, and one that never does."""
-    runs = drives_of(("one", 0, 6.6), ("one", 1, 9.0), ("other", 0, 7.2), ("other", 1, np.nan), ("blind", 0, np.nan), ("blind", 1, np.nan))
-    return results.joined(runs, {}, bounds_table(least_arrival=6.0, best_arrival=6.6, octile_bound=np.nan))
+    runs = drives_of(
+        ("one", 0, 6.6),
+        ("one", 1, 9.0),
+        ("other", 0, 7.2),
+        ("other", 1, np.nan),
+        ("blind", 0, np.nan),
+        ("blind", 1, np.nan),
+    )
+    return results.joined(
+        runs, {}, bounds_table(least_arrival=6.0, best_arrival=6.6, octile_bound=np.nan)
+    )
 
 
 def test_delays_are_paired_over_the_worlds_that_all_methods_finish():
     found = paired_runs()
     both = results.select(found.runs, {"method": ["one", "other"]})
-    assert metrics.values(both, "paired_gap_arrival", {}).tolist() == pytest.approx([0.0, np.nan, 7.2 / 6.6 - 1, np.nan], nan_ok=True)
-    assert metrics.values(both, "paired_gap_least_arrival", {}).tolist() == pytest.approx([0.1, np.nan, 0.2, np.nan], nan_ok=True)
+    assert metrics.values(both, "paired_gap_arrival", {}).tolist() == pytest.approx(
+        [0.0, np.nan, 7.2 / 6.6 - 1, np.nan], nan_ok=True
+    )
+    assert metrics.values(both, "paired_gap_least_arrival", {}).tolist() == pytest.approx(
+        [0.1, np.nan, 0.2, np.nan], nan_ok=True
+    )
     assert metrics.values(found.runs, "paired_gap_arrival", {}).isna().all()
 
 
@@ -275,16 +350,28 @@ def test_an_entry_of_a_table_pairs_the_methods_that_it_names():
             "where": {"method": ["one", "other"]},
         },
     ]
-    table = tables.pivot(paired_runs(), {"index": ["method"], "columns": ["value"], "values": values}, {})
+    table = tables.pivot(
+        paired_runs(), {"index": ["method"], "columns": ["value"], "values": values}, {}
+    )
     assert table["delay"].to_dict() == {"blind": "", "one": "0.100", "other": "0.200"}
     assert table["share"].to_dict() == {"blind": "0.00", "one": "1.00", "other": "0.50"}
-    assert table["runs counted: delay"].to_dict() == {"blind": "", "one": "1 of 2", "other": "1 of 2"}
+    assert table["runs counted: delay"].to_dict() == {
+        "blind": "",
+        "one": "1 of 2",
+        "other": "1 of 2",
+    }
 
 
 def test_the_caption_says_how_many_runs_a_point_has():
     found = paired_runs()
     runs = found.runs.assign(obstacles=5).pipe(results.select, {"method": ["one", "other"]})
-    panel = {"experiment": "drives", "x": "obstacles", "metric": "paired_gap_arrival", "statistic": "median", "hue": "method"}
+    panel = {
+        "experiment": "drives",
+        "x": "obstacles",
+        "metric": "paired_gap_arrival",
+        "statistic": "median",
+        "hue": "method",
+    }
     options = options_of(lines, **panel)
     frame = lines.data(found._replace(runs=runs), options)
     note = lines.draw(Figure().subplots(), frame, sheet.Scene({}, {}, {}, "m"), options)

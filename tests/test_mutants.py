@@ -1,4 +1,6 @@
-"""The planted faults of tests/mutants: each can still be planted, and the test that must catch it exists. `make mutants` runs them."""
+"""The planted faults of tests/mutants: each can still be planted, and the test that must catch it
+exists. `make mutants` runs them.
+"""
 
 import ast
 
@@ -14,7 +16,11 @@ def test_a_fault_can_be_planted(mutant):
     if mutant.file.endswith(".py"):
         ast.parse(run.planted(mutant))
     file, _, name = mutant.test.partition("::")
-    tests = {node.name for node in ast.parse((run.ROOT / file).read_text(encoding="utf-8")).body if isinstance(node, ast.FunctionDef)}
+    tests = {
+        node.name
+        for node in ast.parse((run.ROOT / file).read_text(encoding="utf-8")).body
+        if isinstance(node, ast.FunctionDef)
+    }
     assert name.partition("[")[0] in tests
 
 

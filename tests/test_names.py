@@ -26,7 +26,9 @@ def names(scope: ast.AST) -> Iterator[tuple[str, int]]:
 def long_lived(text: str) -> list[str]:
     """Words of `ANYTHING` that live longer than a few lines in some function of a module's text."""
     said = []
-    for function in (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)):
+    for function in (
+        node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)
+    ):
         for word in ANYTHING:
             lines = [line for name, line in names(function) if name == word]
             if lines and max(lines) - min(lines) > MOST_LINES:
@@ -35,11 +37,16 @@ def long_lived(text: str) -> list[str]:
 
 
 def test_words_that_could_hold_anything_live_in_short_scopes():
-    modules = {file.relative_to(SOURCE).as_posix(): file.read_text(encoding="utf-8") for file in sorted(SOURCE.rglob("*.py"))}
+    modules = {
+        file.relative_to(SOURCE).as_posix(): file.read_text(encoding="utf-8")
+        for file in sorted(SOURCE.rglob("*.py"))
+    }
     assert {name: said for name, text in modules.items() if (said := long_lived(text))} == {}
 
 
 def test_a_long_scope_is_noticed():
     body = "\n".join(f"    step_{number} = {number}" for number in range(MOST_LINES + 1))
-    assert long_lived(f"def f(a):\n    found = a\n{body}\n    return found\n") == [f"f: found, lines 2 to {MOST_LINES + 4}"]
+    assert long_lived(f"def f(a):\n    found = a\n{body}\n    return found\n") == [
+        f"f: found, lines 2 to {MOST_LINES + 4}"
+    ]
     assert long_lived("def f(a):\n    found = a\n    return found\n") == []

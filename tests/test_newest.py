@@ -1,4 +1,6 @@
-"""The check of newer libraries: what it reads from locks and results, and how it finds the library that changes something."""
+"""The check of newer libraries: what it reads from locks and results, and how it finds the library
+that changes something.
+"""
 
 import re
 import tomllib
@@ -27,7 +29,9 @@ def test_pins_of_a_lock():
 
 
 def test_what_moved():
-    found = run.moved({"numpy": "2.4", "scipy": "1.17", "six": "1"}, {"numpy": "2.5", "scipy": "1.17", "new": "3"})
+    found = run.moved(
+        {"numpy": "2.4", "scipy": "1.17", "six": "1"}, {"numpy": "2.5", "scipy": "1.17", "new": "3"}
+    )
     assert run.in_words(found) == "new none -> 3, numpy 2.4 -> 2.5, six 1 -> none"
     assert run.flags(found) == ["--upgrade-package=new==3", "--upgrade-package=numpy==2.5"]
 
@@ -64,7 +68,10 @@ def test_the_last_bit_of_a_result_counts_but_no_time(results):
 
 def test_a_result_that_is_not_there_differs_and_many_are_counted():
     many = {("tables", str(number)): "" for number in range(100, 112)}
-    assert run.difference(many, {}) == f"12 of 12 tables differ: {', '.join(map(str, range(100, 110)))} and 2 more"
+    assert (
+        run.difference(many, {})
+        == f"12 of 12 tables differ: {', '.join(map(str, range(100, 110)))} and 2 more"
+    )
 
 
 @pytest.mark.parametrize(
@@ -102,7 +109,11 @@ def test_a_copy_has_no_results_and_nothing_that_git_ignores(tmp_path, monkeypatc
         (tmp_path / "tree" / name).touch()
     monkeypatch.setattr(run, "ROOT", tmp_path / "tree")
     run.copy(tmp_path / "copy")
-    files = {str(file.relative_to(tmp_path / "copy")) for file in (tmp_path / "copy").rglob("*") if file.is_file()}
+    files = {
+        str(file.relative_to(tmp_path / "copy"))
+        for file in (tmp_path / "copy").rglob("*")
+        if file.is_file()
+    }
     assert files == {".git/a", "results/README.md", "workflow/archive/a"}
     assert (tmp_path / "copy" / ".venv").readlink() == tmp_path / "tree" / ".venv"
 
@@ -111,7 +122,10 @@ def test_a_copy_has_no_results_and_nothing_that_git_ignores(tmp_path, monkeypatc
     ("log", "lines"),
     [
         ("FAILED tests/test_a.py::test_b\n1 failed in 2 s\n", ["FAILED tests/test_a.py::test_b"]),
-        ("ERROR: No matching distribution found\nmake: *** [.venv/ready] Error 1\n", ["ERROR: No matching distribution found"]),
+        (
+            "ERROR: No matching distribution found\nmake: *** [.venv/ready] Error 1\n",
+            ["ERROR: No matching distribution found"],
+        ),
         ("one job failed\nmake: *** [smoke] Error 1\n", ["one job failed"]),
         ("", []),
     ],
@@ -122,7 +136,10 @@ def test_reasons_of_a_failure(log, lines):
 
 def test_a_failure_says_why_and_where(tmp_path, monkeypatch):
     monkeypatch.setattr(run, "ROOT", tmp_path)
-    assert run.run(tmp_path, "sh", "-c", "echo no wheel; exit 3") == "failed: sh -c echo no wheel; exit 3 (newest.log)\n  no wheel"
+    assert (
+        run.run(tmp_path, "sh", "-c", "echo no wheel; exit 3")
+        == "failed: sh -c echo no wheel; exit 3 (newest.log)\n  no wheel"
+    )
     assert run.run(tmp_path, "true") == ""
 
 
@@ -131,20 +148,38 @@ NEW = {"numpy": ("2.4", "2.5"), "scipy": ("1.17", "1.18"), "yte": ("1", "2")}
 
 @pytest.fixture
 def newest(tmp_path, monkeypatch):
-    """The check with commands that only say what they would do: new versions of some libraries change a table, and the tests answer."""
+    """The check with commands that only say what they would do: new versions of some libraries
+    change a table, and the tests answer.
+    """
     moved = {}
 
     def start(guilty, answer):
         def renew(folder, given):
-            names = NEW if given == ["--upgrade"] else [word.partition("=")[2].partition("==")[0] for word in given]
+            names = (
+                NEW
+                if given == ["--upgrade"]
+                else [word.partition("=")[2].partition("==")[0] for word in given]
+            )
             moved[folder] = {name: NEW[name] for name in names if name in NEW}
             return moved[folder]
 
         def digests(results):
-            return {("tables", "t"): str(set(guilty) <= moved.get(results.parents[1], {}).keys()), ("tables", "u"): ""}
+            return {
+                ("tables", "t"): str(set(guilty) <= moved.get(results.parents[1], {}).keys()),
+                ("tables", "u"): "",
+            }
 
-        stand_ins = {"renew": renew, "digests": digests, "copy": lambda folder: None, "smoke": lambda folder, libraries: ""}
-        for name, stand_in in {**stand_ins, "run": lambda folder, *command: answer, "PLACE": tmp_path / "newest"}.items():
+        stand_ins = {
+            "renew": renew,
+            "digests": digests,
+            "copy": lambda folder: None,
+            "smoke": lambda folder, libraries: "",
+        }
+        for name, stand_in in {
+            **stand_ins,
+            "run": lambda folder, *command: answer,
+            "PLACE": tmp_path / "newest",
+        }.items():
             monkeypatch.setattr(run, name, stand_in)
         return run.main(["--upgrade"])
 
@@ -154,14 +189,43 @@ def newest(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("guilty", "answer", "status", "lines"),
     [
-        (["six"], "", 0, ["the same bits in all 2 run tables, tables, data of figures, claims and summaries", "all tests pass"]),
+        (
+            ["six"],
+            "",
+            0,
+            [
+                "the same bits in all 2 run tables, tables, data of figures, claims and summaries",
+                "all tests pass",
+            ],
+        ),
         (["six"], "failed: pytest", 1, ["failed: pytest"]),
-        (["numpy"], "", 1, ["1 of 2 tables differ: t", "all tests pass", "numpy 2.4 -> 2.5: 1 of 2 tables differ: t"]),
-        (["scipy", "yte"], "", 1, ["all tests pass", "scipy 1.17 -> 1.18, yte 1 -> 2: 1 of 2 tables differ: t"]),
-        (["numpy", "yte"], "", 1, ["all tests pass", f"{run.in_words(NEW)}: 1 of 2 tables differ: t"]),
+        (
+            ["numpy"],
+            "",
+            1,
+            [
+                "1 of 2 tables differ: t",
+                "all tests pass",
+                "numpy 2.4 -> 2.5: 1 of 2 tables differ: t",
+            ],
+        ),
+        (
+            ["scipy", "yte"],
+            "",
+            1,
+            ["all tests pass", "scipy 1.17 -> 1.18, yte 1 -> 2: 1 of 2 tables differ: t"],
+        ),
+        (
+            ["numpy", "yte"],
+            "",
+            1,
+            ["all tests pass", f"{run.in_words(NEW)}: 1 of 2 tables differ: t"],
+        ),
     ],
 )
-def test_the_check_says_what_differs_which_library_did_it_and_what_fails(newest, capsys, guilty, answer, status, lines):
+def test_the_check_says_what_differs_which_library_did_it_and_what_fails(
+    newest, capsys, guilty, answer, status, lines
+):
     assert newest(guilty, answer) == status
     told = capsys.readouterr().out.splitlines()
     assert told[0] == "3 libraries have moved"
@@ -181,8 +245,14 @@ def test_a_deprecated_call_fails_if_it_is_ours(kind):
 def test_scheduled_checks_use_the_oldest_and_the_newest_python():
     """The versions that pyproject.toml and the Makefile accept."""
     project = tomllib.loads((run.ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    oldest, beyond = map(int, re.fullmatch(r">=3\.(\d+),<3\.(\d+)", project["requires-python"]).groups())
-    assert f"(3, {oldest}) <= sys.version_info[:2] < (3, {beyond})" in (run.ROOT / "Makefile").read_text(encoding="utf-8")
-    jobs = yaml.safe_load(Path(run.ROOT, ".github/workflows/checks.yml").read_text(encoding="utf-8"))["jobs"]
+    oldest, beyond = map(
+        int, re.fullmatch(r">=3\.(\d+),<3\.(\d+)", project["requires-python"]).groups()
+    )
+    assert f"(3, {oldest}) <= sys.version_info[:2] < (3, {beyond})" in (
+        run.ROOT / "Makefile"
+    ).read_text(encoding="utf-8")
+    jobs = yaml.safe_load(
+        Path(run.ROOT, ".github/workflows/checks.yml").read_text(encoding="utf-8")
+    )["jobs"]
     assert jobs["test"]["strategy"]["matrix"]["python"] == [f"3.{oldest}", f"3.{beyond - 1}"]
     assert jobs["newest"]["steps"][1]["with"]["python-version"] == f"3.{beyond - 1}"

@@ -1,4 +1,6 @@
-"""The genetic algorithm over nodes (meledje): its edges against an independent test, its optimum, its operators, degenerate cases."""
+"""The genetic algorithm over nodes (meledje): its edges against an independent test, its optimum,
+its operators, degenerate cases.
+"""
 
 import itertools
 import math
@@ -25,7 +27,12 @@ from bezierplan.workspaces.problem import Problem
 
 MAPS = File(__file__).parents[1] / "config" / "studies" / "meledje" / "workspaces"
 # Least energies from the lower left to the upper right corner, by a program of its own.
-OPTIMA = {"env1_initial": 26.268314, "env1_modified": 28.946764, "env2_initial": 35.548689, "env2_modified": 32.194010}
+OPTIMA = {
+    "env1_initial": 26.268314,
+    "env1_modified": 28.946764,
+    "env2_initial": 35.548689,
+    "env2_modified": 32.194010,
+}
 SETTINGS = {
     "mutation": "proposed",
     "population": 20,
@@ -54,7 +61,15 @@ SETTINGS = {
 OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
 RULES = filled(
     node_genetic.Settings,
-    SETTINGS | {"mutation": "random", "population": 2, "generations": 0, "stall": 1, "most_nodes": 1, "mutation_probability": 1.0},
+    SETTINGS
+    | {
+        "mutation": "random",
+        "population": 2,
+        "generations": 0,
+        "stall": 1,
+        "most_nodes": 1,
+        "mutation_probability": 1.0,
+    },
 )
 BLOCK = from_lines(["......", "..##..", "..##..", "......"], 1.0, "cell")
 
@@ -64,7 +79,12 @@ def grid_of(name, cell=1.0):
 
 
 def problem(grid, start=0, target=None):
-    return Problem("test", grid, grid.centre(start), grid.centre(grid.occupied.size - 1 if target is None else target))
+    return Problem(
+        "test",
+        grid,
+        grid.centre(start),
+        grid.centre(grid.occupied.size - 1 if target is None else target),
+    )
 
 
 def plan(where, seed=0, **changes):
@@ -87,14 +107,24 @@ def cells_of(path, grid):
 
 
 def meets(one, other, cell, columns):
-    """Whether the edge between two cells passes through the interior of a cell, by corners on both sides, in half cells."""
+    """Whether the edge between two cells passes through the interior of a cell, by corners on both
+    sides, in half cells.
+    """
     (x0, y0), (x1, y1) = ((2 * (c % columns) + 1, 2 * (c // columns) + 1) for c in (one, other))
     left, low = 2 * (cell % columns), 2 * (cell // columns)
-    if not (min(x0, x1) < left + 2 and max(x0, x1) > left and min(y0, y1) < low + 2 and max(y0, y1) > low):
+    if not (
+        min(x0, x1) < left + 2
+        and max(x0, x1) > left
+        and min(y0, y1) < low + 2
+        and max(y0, y1) > low
+    ):
         return False
     if one == other:
         return one == cell
-    sides = [(x1 - x0) * (y - y0) - (y1 - y0) * (x - x0) for x, y in itertools.product((left, left + 2), (low, low + 2))]
+    sides = [
+        (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
+        for x, y in itertools.product((left, left + 2), (low, low + 2))
+    ]
     return min(sides) < 0 < max(sides)
 
 
@@ -142,15 +172,21 @@ def test_edges_measured_on_demand_give_the_same_bits(mutation, monkeypatch):
 
 
 def reference_optimum(grid, start, target):
-    """Length of the shortest path over free cells, by Dijkstra's algorithm over all pairs that see each other."""
+    """Length of the shortest path over free cells, by Dijkstra's algorithm over all pairs that see
+    each other.
+    """
     cells, columns = grid.occupied.size, grid.occupied.shape[1]
     free = np.flatnonzero(~grid.occupied).tolist()
-    pairs = [(one, other) for one, other in itertools.combinations(free, 2) if met(one, other, grid) == 0]
+    pairs = [
+        (one, other) for one, other in itertools.combinations(free, 2) if met(one, other, grid) == 0
+    ]
     if not pairs:
         return math.inf
     one, other = np.array(pairs).T
     lengths = [length(a, b, columns) for a, b in pairs]
-    return dijkstra(csr_array((lengths, (one, other)), shape=(cells, cells)), directed=False, indices=start)[target]
+    return dijkstra(
+        csr_array((lengths, (one, other)), shape=(cells, cells)), directed=False, indices=start
+    )[target]
 
 
 @pytest.mark.parametrize("name", OPTIMA)
@@ -158,7 +194,9 @@ def test_optimum_of_the_four_maps(name):
     grid = ENVIRONMENTS[name].workspace
     energy, path = cheapest(ground_of(grid, 1.0), 0, 255)
     assert energy == pytest.approx(OPTIMA[name], abs=1e-6)
-    assert math.fsum(length(a, b, 16) for a, b in itertools.pairwise(path.tolist())) == pytest.approx(energy)
+    assert math.fsum(
+        length(a, b, 16) for a, b in itertools.pairwise(path.tolist())
+    ) == pytest.approx(energy)
     assert all(met(a, b, grid) == 0 for a, b in itertools.pairwise(path.tolist()))
     assert plan(ENVIRONMENTS[name], generations=0).extra["optimum"] == energy
 
@@ -180,8 +218,14 @@ def test_objective_claim_and_class_of_the_result(mutation, name):
         found = plan(ENVIRONMENTS[name], seed, mutation=mutation, generations=12)
         edges = list(itertools.pairwise(cells_of(found.path, grid).tolist()))
         obstacles = sum(met(a, b, grid) for a, b in edges)
-        assert found.objective == pytest.approx(math.fsum(length(a, b, columns) for a, b in edges) + 15 * obstacles)
-        assert found.claimed_feasible == (obstacles == 0) == check(curves.bezier_pieces(found.path), region(grid)).feasible
+        assert found.objective == pytest.approx(
+            math.fsum(length(a, b, columns) for a, b in edges) + 15 * obstacles
+        )
+        assert (
+            found.claimed_feasible
+            == (obstacles == 0)
+            == check(curves.bezier_pieces(found.path), region(grid)).feasible
+        )
         classes = [found.extra[key] for key in ("optimal", "near_optimal", "infeasible")]
         assert sum(classes) == 1
         assert found.extra["infeasible"] == (obstacles > 0)
@@ -198,12 +242,17 @@ def test_optimum_is_found_and_never_beaten(name):
 
 
 def test_first_populations_do_not_depend_on_the_operator():
-    first = {plan(ENVIRONMENTS["env1_initial"], 3, mutation=mutation).history[0] for mutation in OPERATORS}
+    first = {
+        plan(ENVIRONMENTS["env1_initial"], 3, mutation=mutation).history[0]
+        for mutation in OPERATORS
+    }
     assert len(first) == 1
 
 
 def test_lengths_and_penalties_are_in_units():
-    small, large = (plan(problem(grid_of("env1_initial", cell)), 5, penalty=15.0 * cell) for cell in (1.0, 10.0))
+    small, large = (
+        plan(problem(grid_of("env1_initial", cell)), 5, penalty=15.0 * cell) for cell in (1.0, 10.0)
+    )
     assert large.objective == pytest.approx(10 * small.objective)
     assert large.path.points == pytest.approx(10 * small.path.points)
     assert large.extra["optimum"] == pytest.approx(10 * small.extra["optimum"])
@@ -221,7 +270,12 @@ def test_search_stops_after_generations_without_improvement():
 def test_evaluations_are_the_population_of_each_generation_and_the_neighbours_tried():
     where = ENVIRONMENTS["env1_initial"]
     assert plan(where, mutation="random", generations=7, stall=100).evaluations == 20 * 8
-    tried = plan(where, mutation="ref12", generations=7, stall=100, mutation_probability=1.0).evaluations - 20 * 8
+    tried = (
+        plan(
+            where, mutation="ref12", generations=7, stall=100, mutation_probability=1.0
+        ).evaluations
+        - 20 * 8
+    )
     assert 20 * 7 * 2 < tried <= 20 * 7 * 8
 
 
@@ -230,23 +284,37 @@ def test_the_best_path_so_far_is_kept_if_wanted():
     runs = [plan(where, seed, mutation="random") for seed in range(10)]
     assert any(found.objective > found.history[-1] for found in runs)
     for seed in range(10):
-        kept, best = plan(where, seed, mutation="random", elitism=1), plan(where, seed, mutation="random", result="best_so_far")
+        kept, best = (
+            plan(where, seed, mutation="random", elitism=1),
+            plan(where, seed, mutation="random", result="best_so_far"),
+        )
         assert kept.objective == pytest.approx(kept.history[-1], abs=1e-9)
         assert best.objective == best.history[-1] == runs[seed].history[-1]
 
 
 @pytest.mark.parametrize("selection", ["linear_rank", "best_half", "tournament"])
 def test_only_independent_cuts_make_longer_paths(selection):
-    few = {"initial": "unrestricted", "most_nodes": 2, "generations": 2, "population": 2, "selection": selection}
+    few = {
+        "initial": "unrestricted",
+        "most_nodes": 2,
+        "generations": 2,
+        "population": 2,
+        "selection": selection,
+    }
     most = {
-        cut: max(len(plan(ENVIRONMENTS["env2_initial"], seed, cut=cut, **few).path.points) for seed in range(100))
+        cut: max(
+            len(plan(ENVIRONMENTS["env2_initial"], seed, cut=cut, **few).path.points)
+            for seed in range(100)
+        )
         for cut in ("same", "independent")
     }
     assert most["same"] == 4 < most["independent"]
 
 
 def test_without_a_penalty_infeasible_results_are_told():
-    found = [plan(ENVIRONMENTS["env1_initial"], seed, penalty=0.0, generations=100) for seed in range(5)]
+    found = [
+        plan(ENVIRONMENTS["env1_initial"], seed, penalty=0.0, generations=100) for seed in range(5)
+    ]
     assert all(each.extra["infeasible"] and not each.claimed_feasible for each in found)
     assert all(each.objective < OPTIMA["env1_initial"] for each in found)
 
@@ -262,7 +330,11 @@ def first_paths(grid, initial="feasible", count=300, most_nodes=12, seed=0):
     rng, paths = np.random.default_rng(seed), []
     for _ in range(count):
         path = np.zeros(most_nodes + 2, dtype=np.int64)
-        paths.append(path[: node_genetic._first_path(rng, path, grid.occupied.size - 1, free, ground, rules)].tolist())
+        paths.append(
+            path[
+                : node_genetic._first_path(rng, path, grid.occupied.size - 1, free, ground, rules)
+            ].tolist()
+        )
     return paths
 
 
@@ -278,7 +350,9 @@ def test_first_paths_are_feasible_walks(name):
 
 
 def test_first_step_of_a_walk_is_uniform_among_visible_cells():
-    visible = [cell for cell in range(1, 23) if not BLOCK.occupied.flat[cell] and met(0, cell, BLOCK) == 0]
+    visible = [
+        cell for cell in range(1, 23) if not BLOCK.occupied.flat[cell] and met(0, cell, BLOCK) == 0
+    ]
     steps = [path[1] for path in first_paths(BLOCK, count=20_000)]
     counts = np.array([steps.count(cell) for cell in visible])
     assert counts.sum() == len(steps)
@@ -315,7 +389,9 @@ def test_random_first_paths(initial):
 
 
 def test_closed_corners_are_met():
-    """Of (0, 0) to (2, 2) on a map with a block beside the way; the straight way passes two corners."""
+    """Of (0, 0) to (2, 2) on a map with a block beside the way; the straight way passes two
+    corners.
+    """
     for rows, open_, closed in (
         (["...", ".#.", "..."], 1, 1),
         (["...", "#..", "..."], 0, 1),
@@ -328,7 +404,9 @@ def test_closed_corners_are_met():
             assert obstacles_met(ground_of(grid, 1.0, closed=True), one, other) == closed
         # Along a row nothing changes, and what passes an interior is met by either rule.
         for one, other in itertools.product(range(9), repeat=2):
-            assert obstacles_met(ground_of(grid, 1.0, True), one, other) >= obstacles_met(ground_of(grid, 1.0), one, other)
+            assert obstacles_met(ground_of(grid, 1.0, True), one, other) >= obstacles_met(
+                ground_of(grid, 1.0), one, other
+            )
 
 
 @pytest.mark.parametrize("name", OPTIMA)
@@ -336,28 +414,37 @@ def test_optima_of_the_maps_touch_corners(name):
     """So that the rule of corners matters: with closed ones every optimum is longer."""
     found = plan(ENVIRONMENTS[name], corners="closed", generations=2)
     assert found.extra["optimum"] > OPTIMA[name] + 0.01
-    assert plan(ENVIRONMENTS[name], generations=2).extra["optimum"] == pytest.approx(OPTIMA[name], abs=1e-6)
+    assert plan(ENVIRONMENTS[name], generations=2).extra["optimum"] == pytest.approx(
+        OPTIMA[name], abs=1e-6
+    )
 
 
 def test_a_node_beside_an_obstacle_encounters_it():
-    """Below the block and past it: the edges are free, the first inner node lies beside the block, the second does not."""
+    """Below the block and past it: the edges are free, the first inner node lies beside the block,
+    the second does not.
+    """
     path = [0, 3, 11, 23]
     for seed in range(20):
         by_edge, by_neighbour = (
-            mutated(path, BLOCK, "proposed", seed, without_obstacle="none", obstacle_node=node)[0] for node in ("edge", "neighbour")
+            mutated(path, BLOCK, "proposed", seed, without_obstacle="none", obstacle_node=node)[0]
+            for node in ("edge", "neighbour")
         )
         assert by_edge == path
         assert by_neighbour[1] != 3
         assert by_neighbour[2] == 11
     far = from_lines(["........", "........", "........", "......##"], 1.0, "cell")
-    assert mutated([0, 8, 31], far, "proposed", without_obstacle="none", obstacle_node="neighbour")[0] == [0, 8, 31]
+    assert mutated([0, 8, 31], far, "proposed", without_obstacle="none", obstacle_node="neighbour")[
+        0
+    ] == [0, 8, 31]
 
 
 def test_reference_21_leaves_a_path_that_is_blocked_elsewhere_if_it_tests_the_whole():
     # The last edge passes the block, so that no new node makes the path feasible.
     path = [0, 1, 6, 12, 11]
     assert met(12, 11, BLOCK) > 0
-    changed = [mutated(path, BLOCK, "ref21", seed, ref21_test="edges")[0] != path for seed in range(40)]
+    changed = [
+        mutated(path, BLOCK, "ref21", seed, ref21_test="edges")[0] != path for seed in range(40)
+    ]
     whole = [mutated(path, BLOCK, "ref21", seed, ref21_test="path")[0] for seed in range(40)]
     assert any(changed)
     for after in whole:
@@ -365,14 +452,29 @@ def test_reference_21_leaves_a_path_that_is_blocked_elsewhere_if_it_tests_the_wh
 
 
 def test_mutation_once_a_node_mutates_more():
-    often, seldom = (plan(ENVIRONMENTS["env1_initial"], mutation_for=each, generations=10) for each in ("node", "path"))
+    often, seldom = (
+        plan(ENVIRONMENTS["env1_initial"], mutation_for=each, generations=10)
+        for each in ("node", "path")
+    )
     assert often.evaluations > 2 * seldom.evaluations
 
 
 def test_roulette_draws_by_the_reciprocal_of_the_objective():
-    """Paths of nearly equal energy are then drawn nearly alike, so selection presses less than by ranks."""
+    """Paths of nearly equal energy are then drawn nearly alike, so selection presses less than by
+    ranks.
+    """
     spins, ranks = (
-        np.mean([plan(ENVIRONMENTS["env1_initial"], seed, selection=selection, mutation_probability=0.0).objective for seed in range(10)])
+        np.mean(
+            [
+                plan(
+                    ENVIRONMENTS["env1_initial"],
+                    seed,
+                    selection=selection,
+                    mutation_probability=0.0,
+                ).objective
+                for seed in range(10)
+            ]
+        )
         for selection in ("roulette", "linear_rank")
     )
     assert spins > ranks
@@ -383,12 +485,22 @@ def mutated(path, grid, mutation, seed=0, **changes):
     rules = filled(node_genetic.Settings, SETTINGS | {"mutation": mutation} | changes)
     path = np.array(path)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
-    tried = mutate(np.random.default_rng(seed), path, drawn, ground_of(grid, 1.0), rules, np.empty(8, dtype=np.int64))
+    tried = mutate(
+        np.random.default_rng(seed),
+        path,
+        drawn,
+        ground_of(grid, 1.0),
+        rules,
+        np.empty(8, dtype=np.int64),
+    )
     return path.tolist(), tried
 
 
 def cost(path, grid):
-    return sum(length(a, b, grid.occupied.shape[1]) + 15 * met(a, b, grid) for a, b in itertools.pairwise(path))
+    return sum(
+        length(a, b, grid.occupied.shape[1]) + 15 * met(a, b, grid)
+        for a, b in itertools.pairwise(path)
+    )
 
 
 def around(cell, grid):
@@ -397,7 +509,12 @@ def around(cell, grid):
     found = []
     for up, across in itertools.product((-1, 0, 1), repeat=2):
         row, column = cell // columns + up, cell % columns + across
-        if (up, across) != (0, 0) and 0 <= row < rows and 0 <= column < columns and not grid.occupied[row, column]:
+        if (
+            (up, across) != (0, 0)
+            and 0 <= row < rows
+            and 0 <= column < columns
+            and not grid.occupied[row, column]
+        ):
             found.append(row * columns + column)
     return found
 
@@ -430,7 +547,9 @@ def test_an_operator_changes_at_most_one_inner_node_to_a_free_cell(mutation):
     assert set(moved) == set(range(1, len(path) - 1))
 
 
-@pytest.mark.parametrize(("mutation", "keep_better"), list(itertools.product(["ref12", "proposed"], [False, True])))
+@pytest.mark.parametrize(
+    ("mutation", "keep_better"), list(itertools.product(["ref12", "proposed"], [False, True]))
+)
 def test_the_best_neighbour_takes_the_place_of_a_node(mutation, keep_better):
     grid = random_grid(3)
     kept = 0
@@ -444,7 +563,9 @@ def test_the_best_neighbour_takes_the_place_of_a_node(mutation, keep_better):
         costs = [cost([*path[:k], cell, *path[k + 1 :]], grid) for cell in around(path[k], grid)]
         assert tried == len(costs)
         assert cost(after, grid) == pytest.approx(min(costs))
-        assert after[k] == around(path[k], grid)[int(np.argmax(np.array(costs) < min(costs) + 1e-9))]
+        assert (
+            after[k] == around(path[k], grid)[int(np.argmax(np.array(costs) < min(costs) + 1e-9))]
+        )
         assert not keep_better or cost(after, grid) < cost(path, grid)
     assert (kept > 0) == keep_better
 
@@ -514,13 +635,21 @@ def test_random_mutation_draws_occupied_cells_if_it_may():
             patch.setattr(node_genetic, "_search", search)
             plan(where, 1, mutation="random", random_node=drawn)
     occupied = where.workspace.occupied.ravel()
-    assert drawn_from == {"free": [cell for cell in range(1, 255) if not occupied[cell]], "any": list(range(1, 255))}
+    assert drawn_from == {
+        "free": [cell for cell in range(1, 255) if not occupied[cell]],
+        "any": list(range(1, 255)),
+    }
     # One mutation draws any of them, each as likely as another.
     found = [mutated([0, 1, 255], where.workspace, "random", seed)[0][1] for seed in range(4000)]
     assert set(found) == set(drawn_from["free"])
     # With occupied cells more of the feasible paths are spoilt.
     shares = {
-        drawn: np.mean([plan(where, seed, mutation="random", random_node=drawn).extra["made_infeasible"] for seed in range(10)])
+        drawn: np.mean(
+            [
+                plan(where, seed, mutation="random", random_node=drawn).extra["made_infeasible"]
+                for seed in range(10)
+            ]
+        )
         for drawn in ("free", "any")
     }
     assert shares["free"] < shares["any"]
@@ -544,7 +673,13 @@ def test_node_diversity_is_the_chance_that_a_node_is_foreign(seed):
     lengths = rng.integers(2, 8, 12)
     paths = rng.integers(0, 15, (12, 8))
     inner = [set(path[1 : n - 1].tolist()) for path, n in zip(paths, lengths)]
-    foreign = [node not in other for i, nodes in enumerate(inner) for node in nodes for j, other in enumerate(inner) if j != i]
+    foreign = [
+        node not in other
+        for i, nodes in enumerate(inner)
+        for node in nodes
+        for j, other in enumerate(inner)
+        if j != i
+    ]
     assert node_genetic.node_diversity(paths, lengths, 15) == pytest.approx(np.mean(foreign))
 
 
@@ -593,11 +728,16 @@ def test_a_target_out_of_reach_of_so_few_nodes():
 def test_starts_between_centres_are_refused():
     where = Problem("test", BLOCK, (0.7, 0.5), (5.5, 3.5))
     for refuse in (node_genetic.serves, plan):
-        with pytest.raises(ValueError, match=r"start: \(0.7, 0.5\).*centre of a cell.*\(0.5, 0.5\)"):
+        with pytest.raises(
+            ValueError, match=r"start: \(0.7, 0.5\).*centre of a cell.*\(0.5, 0.5\)"
+        ):
             refuse(where)
 
 
-@pytest.mark.parametrize(("setting", "value", "wanted"), [("population", 61, "even number"), ("friction", 0.0, "above 0")])
+@pytest.mark.parametrize(
+    ("setting", "value", "wanted"),
+    [("population", 61, "even number"), ("friction", 0.0, "above 0")],
+)
 def test_settings_that_do_not_fit(setting, value, wanted):
     with pytest.raises(ValueError, match=f"{setting}: .*{wanted}"):
         node_genetic.check(SETTINGS | {setting: value})
@@ -605,7 +745,13 @@ def test_settings_that_do_not_fit(setting, value, wanted):
 
 @pytest.mark.parametrize(
     ("setting", "value"),
-    [("mutation_probability", 1.2), ("crossover_probability", -0.1), ("penalty", -1.0), ("mutation", "ref13"), ("most_nodes", 0)],
+    [
+        ("mutation_probability", 1.2),
+        ("crossover_probability", -0.1),
+        ("penalty", -1.0),
+        ("mutation", "ref13"),
+        ("most_nodes", 0),
+    ],
 )
 def test_settings_out_of_range(setting, value):
     annotation = planner_settings(node_genetic)[setting]

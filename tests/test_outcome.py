@@ -30,13 +30,29 @@ def comparison(values, ours, methods=("plain", "other")):
         "why": "",
     }
     verdict = ["agrees" if each else "disagrees" for each in in_range]
-    return pd.DataFrame(frame | {"statistic": "mean", "n_published": 10, "in_range": in_range, "verdict": verdict, "possible": True})
+    return pd.DataFrame(
+        frame
+        | {
+            "statistic": "mean",
+            "n_published": 10,
+            "in_range": in_range,
+            "verdict": verdict,
+            "possible": True,
+        }
+    )
 
 
 def test_interpretations_that_do_not_decide_are_not_counted():
-    numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2]).assign(primary=[True, False])})
+    numbers = summary.numbers(
+        {("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2]).assign(primary=[True, False])}
+    )
     claims = pd.DataFrame(
-        {"study": "one", "id": ["C1", "C1", "C2"], "primary": [True, False, True], "verdict": ["supported", "partly", "no effect"]}
+        {
+            "study": "one",
+            "id": ["C1", "C1", "C2"],
+            "primary": [True, False, True],
+            "verdict": ["supported", "partly", "no effect"],
+        }
         | {"finding": False}
     )
     found = headline.outcome(numbers, claims).loc["one"]
@@ -46,7 +62,15 @@ def test_interpretations_that_do_not_decide_are_not_counted():
 
 def test_published_number_that_is_wrong_is_counted_as_one_that_disagrees():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])})
-    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
+    claims = pd.DataFrame(
+        {
+            "study": ["one"],
+            "id": ["C1"],
+            "primary": [True],
+            "finding": [False],
+            "verdict": ["supported"],
+        }
+    )
     found = headline.outcome(numbers, claims).loc["one"]
     assert (found["numbers"], found["agrees"]) == (2, 1)
 
@@ -57,7 +81,9 @@ def test_numbers_without_a_published_value_are_left_out():
 
 
 def counted(*tables):
-    return summary.numbers({("one", f"table{n}"): table for n, table in enumerate(tables)})["counted"].tolist()
+    return summary.numbers({("one", f"table{n}"): table for n, table in enumerate(tables)})[
+        "counted"
+    ].tolist()
 
 
 def test_repeats_in_another_table_are_counted_once():
@@ -71,12 +97,17 @@ def test_repeats_in_another_table_are_counted_once():
 def test_impossible_and_unjudged_numbers_are_not_counted():
     table = comparison([1.0, 9.0], [1.2, 9.0])
     assert counted(table.assign(possible=[True, False], metric="feasible")) == [True, False]
-    assert counted(table.assign(possible=[True, False])) == [True, True]  # a length below the bound is impossible on our map alone
+    assert counted(table.assign(possible=[True, False])) == [
+        True,
+        True,
+    ]  # a length below the bound is impossible on our map alone
     assert counted(table.assign(in_range=pd.array([None, True], dtype="boolean"))) == [False, True]
 
 
 def test_counts_that_add_up_are_one_number_fewer():
-    table = comparison([4.0, 6.0], [4.0, 6.0]).assign(method="plain", metric=["optimal", "infeasible"], statistic="count")
+    table = comparison([4.0, 6.0], [4.0, 6.0]).assign(
+        method="plain", metric=["optimal", "infeasible"], statistic="count"
+    )
     assert counted(table) == [True, False]
     assert counted(table.assign(n_published=11)) == [True, True]
     assert counted(table.assign(method=["plain", "other"])) == [True, True]
@@ -84,16 +115,34 @@ def test_counts_that_add_up_are_one_number_fewer():
 
 def test_outcome_counts_verdicts_of_numbers():
     words = ["agrees", "disagrees", "inconclusive", "inconclusive"]
-    table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(verdict=words)
-    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
+    table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(
+        verdict=words
+    )
+    claims = pd.DataFrame(
+        {
+            "study": ["one"],
+            "id": ["C1"],
+            "primary": [True],
+            "finding": [False],
+            "verdict": ["supported"],
+        }
+    )
     found = headline.outcome(summary.numbers({("one", "table1"): table}), claims).loc["one"]
     assert found[["numbers", "agrees", "disagrees", "inconclusive"]].to_list() == [4, 1, 1, 2]
 
 
 def test_interpretations_that_agree_stand_next_to_the_verdict():
-    claims = pd.DataFrame({"study": "one", "id": ["C1", "C1", "C2", "C3"], "variant": ["", "other", "", ""]})
-    claims = claims.assign(primary=[True, False, True, True], finding=False, verdict=["supported", "partly", "no effect", "undecided"])
-    tried = pd.DataFrame({"study": "one", "claim": ["C1", "C1", "C2"], "changed": [False, False, True]})
+    claims = pd.DataFrame(
+        {"study": "one", "id": ["C1", "C1", "C2", "C3"], "variant": ["", "other", "", ""]}
+    )
+    claims = claims.assign(
+        primary=[True, False, True, True],
+        finding=False,
+        verdict=["supported", "partly", "no effect", "undecided"],
+    )
+    tried = pd.DataFrame(
+        {"study": "one", "claim": ["C1", "C1", "C2"], "changed": [False, False, True]}
+    )
     found = summary.with_interpretations(claims, tried)
     assert found["interpretations"].to_list() == ["3 of 3", "", "1 of 2", ""]
     assert found["verdict"].equals(claims["verdict"])
@@ -115,7 +164,9 @@ def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
 
 def test_missing_results_are_told_in_one_line(tmp_path, monkeypatch):
     monkeypatch.setattr(outcome, "RESULTS", tmp_path / "extended")
-    with pytest.raises(Fault, match=r"extended/claims.csv: not there yet; `make outcome` makes it$"):
+    with pytest.raises(
+        Fault, match=r"extended/claims.csv: not there yet; `make outcome` makes it$"
+    ):
         outcome.main(ArgumentParser(), [])
 
 

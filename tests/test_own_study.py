@@ -1,5 +1,5 @@
-"""A study of a reader's own, outside of the repository: a map, a planner with a module beside it, a table, a figure, claims, an
-alternative, and a wrong published number.
+"""A study of a reader's own, outside of the repository: a map, a planner with a module beside it, a
+table, a figure, claims, an alternative, and a wrong published number.
 """
 
 import json
@@ -89,14 +89,22 @@ assumptions:
      reason: invented, source: assumed}
 """
 
-# The first is the length of the parabola of height 1.5 over a base of 8; the second is shorter than any path round the disc.
+# The first is the length of the parabola of height 1.5 over a base of 8; the second is shorter than
+# any path round the disc.
 LOW = math.sqrt(64 + 16 * 1.5**2) / 2 + 64 / (8 * 1.5) * math.asinh(4 * 1.5 / 8)
 PUBLISHED = f"problem,method,metric,statistic,n,unit,value\nacross,low,length,mean,30,m,{LOW:.2f}\nacross,high,length,mean,30,m,8.00\n"
 
 
 def snakemake(folder, *words):
     common = ["-s", ROOT / "Snakefile", "--workflow-profile", "none", "--cores", "2"]
-    given = ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params"]
+    given = [
+        "--config",
+        f"studies=[{folder / 'bends'}]",
+        "--rerun-triggers",
+        "mtime",
+        "input",
+        "params",
+    ]
     done = starts.snakemake(folder, *common, *words, *given)
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
@@ -104,7 +112,9 @@ def snakemake(folder, *words):
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    """The folder of results of the invented study, made from a working folder that holds nothing else."""
+    """The folder of results of the invented study, made from a working folder that holds nothing
+    else.
+    """
     folder = tmp_path_factory.mktemp("own")
     study = folder / "bends"
     (study / "published").mkdir(parents=True)
@@ -119,7 +129,9 @@ def results(tmp_path_factory):
     }.items():
         (study / name).write_text(text)
     snakemake(folder, "alternatives")
-    snakemake(folder, "all")  # after the alternatives, because the page shows those that have been tried
+    snakemake(
+        folder, "all"
+    )  # after the alternatives, because the page shows those that have been tried
     return folder / "results" / "full" / "bends"
 
 
@@ -134,7 +146,11 @@ def test_own_planner_stands_in_the_table_and_the_comparison(results):
 
 
 def test_wrong_published_number_is_flagged(results):
-    comparison = pd.read_csv(results / "tables" / "lengths.comparison.csv").query("metric == 'length'").set_index("method")
+    comparison = (
+        pd.read_csv(results / "tables" / "lengths.comparison.csv")
+        .query("metric == 'length'")
+        .set_index("method")
+    )
     assert comparison.loc["low", "in_range"]
     assert not comparison.loc["high", "in_range"]
 
@@ -142,7 +158,8 @@ def test_wrong_published_number_is_flagged(results):
 def test_published_length_below_the_bound_is_audited(results):
     audit = pd.read_csv(results / "audit.csv")
     assert audit.set_index("place")["consistent"].to_dict() == {
-        f"problem=across, method={method}, metric=length, statistic=mean": method == "low" for method in ("low", "high")
+        f"problem=across, method={method}, metric=length, statistic=mean": method == "low"
+        for method in ("low", "high")
     }
 
 
@@ -155,7 +172,11 @@ def test_claim_that_is_false_is_contradicted_and_its_contrary_supported(results)
 def test_alternative_changes_the_verdict(results):
     (row,) = pd.read_csv(results / "sensitivity.csv").to_dict("records")
     assert (row["assumption"], row["claim"], row["alternative"]) == ("O1", "C1", 6)
-    assert (row["verdict"], row["verdict_alternative"], row["changed"]) == ("supported", "contradicted", True)
+    assert (row["verdict"], row["verdict_alternative"], row["changed"]) == (
+        "supported",
+        "contradicted",
+        True,
+    )
 
 
 def test_only_an_edit_of_the_code_beside_the_planner_reruns_its_methods(results):
@@ -195,5 +216,8 @@ def test_figure_shows_the_own_planner(results):
 
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
-    assert "Of 2 published numbers, 1 agrees and 1 disagrees. Of 2 claims, 1 is supported and 1 is contradicted." in summary
+    assert (
+        "Of 2 published numbers, 1 agrees and 1 disagrees. Of 2 claims, 1 is supported and 1 is "
+        "contradicted." in summary
+    )
     assert "| 1 / 1 / 0 of 2 |" in summary

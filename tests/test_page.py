@@ -20,7 +20,19 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import HOSTILE, claim, comparison, number, page
 
-from bezierplan.figures.page import HERE, addresses, answer, build, content, gather, job, other, pictures, runs, search
+from bezierplan.figures.page import (
+    HERE,
+    addresses,
+    answer,
+    build,
+    content,
+    gather,
+    job,
+    other,
+    pictures,
+    runs,
+    search,
+)
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
@@ -77,7 +89,12 @@ def test_data_block_obeys_the_schema_of_the_page_and_restores_the_content(read):
 
 
 def test_page_asks_for_no_other_file(read):
-    sources = [attributes[name] for _, attributes in read.elements for name in ("src", "srcset", "poster") if name in attributes]
+    sources = [
+        attributes[name]
+        for _, attributes in read.elements
+        for name in ("src", "srcset", "poster")
+        if name in attributes
+    ]
     sources += [attributes["href"] for tag, attributes in read.elements if tag == "link"]
     assert all(source.startswith("data:") for source in sources)
     assert "@import" not in HERE.joinpath("static/page.css").read_text()
@@ -86,7 +103,11 @@ def test_page_asks_for_no_other_file(read):
 def test_addresses_are_unique_and_every_link_within_the_page_has_its_place(read):
     places = [attributes["id"] for _, attributes in read.elements if "id" in attributes]
     assert len(places) == len(set(places))
-    links = {attributes["href"][1:] for tag, attributes in read.elements if tag == "a" and attributes["href"].startswith("#")}
+    links = {
+        attributes["href"][1:]
+        for tag, attributes in read.elements
+        if tag == "a" and attributes["href"].startswith("#")
+    }
     assert links <= set(places)
     assert {"one/table1/a/length/mean", "one/C2", "one/table1", "one/O1"} <= set(places)
 
@@ -97,17 +118,25 @@ def test_same_content_gives_the_same_bytes(text):
 
 def test_scripts_never_insert_markup():
     for file in HERE.glob("static/*.js"):
-        assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", file.read_text())
+        assert not re.search(
+            r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", file.read_text()
+        )
     assert sum(len(file.read_text().splitlines()) for file in HERE.glob("static/*.js")) < 500
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Addresses
 
 
 def test_cell_is_named_by_what_tells_it_from_the_primary_interpretation():
     cells = [
-        {"method": method, "workspace": room, "profile": "default", "metric": "objective", "statistic": "mean"}
+        {
+            "method": method,
+            "workspace": room,
+            "profile": "default",
+            "metric": "objective",
+            "statistic": "mean",
+        }
         for method in ("singer", "gauss")
         for room in ("equal", "other")
     ]
@@ -116,21 +145,29 @@ def test_cell_is_named_by_what_tells_it_from_the_primary_interpretation():
 
 
 def test_cells_that_would_share_an_address_name_all_their_keys():
-    cells = [{"a": "x", "b": "y", "metric": "m", "statistic": "s"}, {"a": "y", "b": "x", "metric": "m", "statistic": "s"}]
+    cells = [
+        {"a": "x", "b": "y", "metric": "m", "statistic": "s"},
+        {"a": "y", "b": "x", "metric": "m", "statistic": "s"},
+    ]
     cells += [{"a": "x", "b": "x", "metric": "m", "statistic": "s"}]
     found = addresses.of_cells("t/t1", cells, {"a": "x", "b": "x"})
     assert found == ["t/t1/x/y/m/s", "t/t1/y/x/m/s", "t/t1/m/s"]
 
 
-@given(st.lists(st.tuples(st.sampled_from("ab c"), st.integers(0, 3)), unique=True, min_size=1), st.sampled_from("ab"))
+@given(
+    st.lists(st.tuples(st.sampled_from("ab c"), st.integers(0, 3)), unique=True, min_size=1),
+    st.sampled_from("ab"),
+)
 def test_addresses_tell_cells_apart(keys, primary):
-    cells = [{"name": name, "value": value, "metric": "m", "statistic": "s"} for name, value in keys]
+    cells = [
+        {"name": name, "value": value, "metric": "m", "statistic": "s"} for name, value in keys
+    ]
     found = addresses.of_cells("t/t1", cells, {"name": primary})
     assert len(set(found)) == len(cells)
     assert not any(" " in each for each in found)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # The answer
 
 
@@ -142,8 +179,10 @@ def test_answer_says_what_fails_in_each_paper_and_links_to_it():
     sentences = page().answer
     assert said(sentences) == [
         "one: 1 of 3 numbers agrees, 1 disagrees; 1 of 2 claims is supported, C2 fails.",
-        "1 of 1 supported claims that can be resampled would show again in at least 80\u00a0% of experiments of the paper's size.",
-        "1 of 2 claims that can be interpreted in more than one way keeps its verdict in every interpretation.",
+        "1 of 1 supported claims that can be resampled would show again in at least 80\u00a0% of "
+        "experiments of the paper's size.",
+        "1 of 2 claims that can be interpreted in more than one way keeps its verdict in every "
+        "interpretation.",
         "The papers' own numbers contradict each other or an exact bound in 1 of 1 check: one.",
     ]
     assert content.Part(text="C2", address="one/C2") in sentences[0]
@@ -154,28 +193,44 @@ def test_five_papers_are_answered_in_eight_sentences():
     good = own.model_copy(update={"claims": own.claims[:1]})
     sentences = answer.answer(dict.fromkeys("abcd", own) | {"e": good})
     assert len(sentences) == 8
-    assert said(sentences)[4] == "e: 1 of 3 numbers agrees, 1 disagrees; 1 of 1 claim is supported, none fails."
-    assert said(sentences)[5].startswith("All 5 supported claims that can be resampled would show again")
+    assert (
+        said(sentences)[4]
+        == "e: 1 of 3 numbers agrees, 1 disagrees; 1 of 1 claim is supported, none fails."
+    )
+    assert said(sentences)[5].startswith(
+        "All 5 supported claims that can be resampled would show again"
+    )
 
 
 def test_claims_that_fail_are_named_with_the_comparison_that_decides():
     own = page().studies["one"]
-    assert [(key, claim.id) for key, claim in answer.failing({"x": own, "y": own})] == [("x", "C2"), ("y", "C2")]
+    assert [(key, claim.id) for key, claim in answer.failing({"x": own, "y": own})] == [
+        ("x", "C2"),
+        ("y", "C2"),
+    ]
     words = [build.evidence(own.claims[0].model_copy(update={"decisive": n})) for n in (0, 1)]
-    assert words[0] == "exact arc length, a lower than b: effect -1 unit (95\u00a0% interval -2 to -0.2)"
+    assert (
+        words[0]
+        == "exact arc length, a lower than b: effect -1 unit (95\u00a0% interval -2 to -0.2)"
+    )
     assert words[1] == "exact arc length, a lower than b: effect 0.4 unit"
     assert build.evidence(own.claims[0].model_copy(update={"decisive": None})) == ""
     failed = comparison(None, None, None, "-").model_copy(update={"counted": "0 of 10, 10 of 10"})
     claim = own.claims[0].model_copy(update={"comparisons": [failed], "decisive": 0})
-    assert build.evidence(claim) == "exact arc length, a lower than b: a value in 0 of 10 and 10 of 10 runs"
+    assert (
+        build.evidence(claim)
+        == "exact arc length, a lower than b: a value in 0 of 10 and 10 of 10 runs"
+    )
 
 
 def test_scale_without_judged_numbers_says_so():
     bare = page().studies["one"].model_copy(update={"claims": [], "tables": [], "audit": []})
-    assert said(answer.answer({"one": bare})) == ["A subset that shows how the page works: no runs, too few to judge numbers or claims."]
+    assert said(answer.answer({"one": bare})) == [
+        "A subset that shows how the page works: no runs, too few to judge numbers or claims."
+    ]
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Pictures
 
 
@@ -183,9 +238,21 @@ def test_strips_share_one_scale_and_keep_order():
     (forest,) = pictures.forests([comparison(-1.0, -2.0, -0.2), comparison(0.5, 0.1, 1.0)])
     first, second = forest.strips
     assert first.zero == second.zero
-    assert 0 < first.low < first.effect < first.high < first.zero < second.low < second.effect < second.high < 100
+    assert (
+        0
+        < first.low
+        < first.effect
+        < first.high
+        < first.zero
+        < second.low
+        < second.effect
+        < second.high
+        < 100
+    )
     # Places are linear in effects.
-    assert math.isclose((second.effect - first.effect) / (first.high - first.low), 1.5 / 1.8, rel_tol=1e-3)
+    assert math.isclose(
+        (second.effect - first.effect) / (first.high - first.low), 1.5 / 1.8, rel_tol=1e-3
+    )
     assert first.margin[0] < first.zero < first.margin[1]
 
 
@@ -200,7 +267,9 @@ def test_unknown_effect_leaves_the_strip_empty():
 
 
 def outline(text):
-    """Places of an outline in absolute steps (M L Q C z) or relative ones (also h v), control points among them."""
+    """Places of an outline in absolute steps (M L Q C z) or relative ones (also h v), control
+    points among them.
+    """
     places, at, first = [], np.zeros(2), np.zeros(2)
     for name, numbers in re.findall("([A-Za-z])([^A-Za-z]*)", text):
         values = [float(each) for each in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)]
@@ -216,12 +285,22 @@ def outline(text):
 
 
 def test_outlines_in_short_words():
-    assert pictures._stepwise("M 1.5 2 \nL 1.5 0.126 \nL -0.5 .13 \nz \nM 3 3 \nQ 4 3 4 4.004 \n") == "m1.5 2v-1.87h-2zm1.5 1q1 0 1 1"
+    assert (
+        pictures._stepwise("M 1.5 2 \nL 1.5 0.126 \nL -0.5 .13 \nz \nM 3 3 \nQ 4 3 4 4.004 \n")
+        == "m1.5 2v-1.87h-2zm1.5 1q1 0 1 1"
+    )
 
 
 @given(st.lists(st.tuples(*[st.integers(-(10**6), 10**6)] * 4), min_size=1, max_size=30))
 def test_relative_steps_add_up_without_drift(steps):
-    text = "M 0.5 0.25 " + "".join(f"Q {a / 1000} {b / 1000} {c / 1000} {d / 1000} L {d / 1000} {b / 1000} " for a, b, c, d in steps) + "z"
+    text = (
+        "M 0.5 0.25 "
+        + "".join(
+            f"Q {a / 1000} {b / 1000} {c / 1000} {d / 1000} L {d / 1000} {b / 1000} "
+            for a, b, c, d in steps
+        )
+        + "z"
+    )
     assert np.allclose(outline(text), outline(pictures._stepwise(text)), atol=0.00501, rtol=0)
 
 
@@ -243,12 +322,14 @@ def test_figure_in_the_page_keeps_its_words_and_its_shape(tmp_path):
     was = [outline(each) for each in re.findall(r' d="([^"]*)"', (tmp_path / "a.svg").read_text())]
     now = [outline(each) for each in re.findall(r" d='([^']*)'", small)]
     assert [len(each) for each in now] == [len(each) for each in was] != []
-    assert all(np.allclose(one, other, atol=0.0051, rtol=0) for one, other in zip(was, now, strict=True))
+    assert all(
+        np.allclose(one, other, atol=0.0051, rtol=0) for one, other in zip(was, now, strict=True)
+    )
     assert len(re.findall("clip-path:", small)) == 1
     assert pictures.size(tmp_path / "a.svg") == (144, 72)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Tables
 
 
@@ -256,8 +337,14 @@ def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last()
     table = page().studies["one"].tables[0]
     laid = build.grid(table, {})
     assert (laid.keys, laid.columns, laid.decimals) == (["method"], ["length", "objective"], [2, 2])
-    assert [(row.keys, [cell and cell.address for cell in row.cells], row.primary) for row in laid.rows] == [
-        ([("a", "one/method/a")], ["one/table1/a/length/mean", "one/table1/a/objective/mean"], True),
+    assert [
+        (row.keys, [cell and cell.address for cell in row.cells], row.primary) for row in laid.rows
+    ] == [
+        (
+            [("a", "one/method/a")],
+            ["one/table1/a/length/mean", "one/table1/a/objective/mean"],
+            True,
+        ),
         ([("b", "one/method/b")], ["one/table1/b/length/mean", None], True),
         ([("c", "one/method/c")], ["one/table1/c/length/mean", None], False),
     ]
@@ -269,7 +356,14 @@ def test_deviation_is_in_per_cent_of_the_published_number_and_of_counts_for_as_m
     assert build.deviation(given.model_copy(update={"ours": 298.0})) == "+49\u00a0%"
     assert build.deviation(given.model_copy(update={"published": 0.0})) == ""
     count = given.model_copy(
-        update={"statistic": "count", "published": 5.0, "n_published": 100.0, "ours": 220.0, "scaled": 5.5, "n": 4000.0}
+        update={
+            "statistic": "count",
+            "published": 5.0,
+            "n_published": 100.0,
+            "ours": 220.0,
+            "scaled": 5.5,
+            "n": 4000.0,
+        }
     )
     assert build.deviation(count) == "+10\u00a0%"
     assert (count.beside, given.beside) == (5.5, 198.0)
@@ -279,7 +373,8 @@ def test_the_scale_is_said_first_with_what_the_readme_rests_on():
     repeats = {"full": [[10, 30], [100, 100]], "extended": [[250, 4000]]}
     assert answer.about_scale("full", repeats) == [
         "Scale full has as many runs as the papers report: 10 to 100 per method and condition.",
-        "The README's numbers rest on scale extended (250 to 4,000 runs; make extended), so they can differ from these.",
+        "The README's numbers rest on scale extended (250 to 4,000 runs; make extended), so they "
+        "can differ from these.",
     ]
     assert answer.about_scale("extended", repeats)[1] == "The README's numbers are of this scale."
 
@@ -323,30 +418,70 @@ def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
 
 
 def test_best_interpretations_and_the_one_in_force_are_shown_with_what_they_explain():
-    tried = pd.DataFrame({"interpretation": [*(f"O1={n}" for n in range(20)), "default"], "in_range": range(21, 0, -1), "numbers": 30})
-    tried = tried.assign(by_chance=0.5, impossible=0, in_words="none", score=range(21, 0, -1), fresh_in_range=20, fresh_score=21.0)
+    tried = pd.DataFrame(
+        {
+            "interpretation": [*(f"O1={n}" for n in range(20)), "default"],
+            "in_range": range(21, 0, -1),
+            "numbers": 30,
+        }
+    )
+    tried = tried.assign(
+        by_chance=0.5,
+        impossible=0,
+        in_words="none",
+        score=range(21, 0, -1),
+        fresh_in_range=20,
+        fresh_score=21.0,
+    )
     explained = pd.DataFrame(
-        {"table": ["a", "a", "b"], "default": [True, False, False], "best": [True, True, False], "interpretations": [9, 2, 0]}
+        {
+            "table": ["a", "a", "b"],
+            "default": [True, False, False],
+            "best": [True, True, False],
+            "interpretations": [9, 2, 0],
+        }
     ).assign(missed_by=[0.0, 0.0, 1.0], value_published=10.0)
     held_out = pd.DataFrame({"table": ["a"], "score_line": [np.nan]})
     found = other.of_interpretations(tried, explained, held_out)
-    assert [each.interpretation for each in found["explanations"]] == [*(f"O1={n}" for n in range(10)), "default"]
-    assert found["interpretations_in_words"].startswith("Of 21 interpretations, the printed numbers are most likely from")
-    assert [tuple(each.model_dump().values()) for each in found["explained"]] == [("a", 2, 1, 2, 0), ("b", 1, 0, 0, 1)]
+    assert [each.interpretation for each in found["explanations"]] == [
+        *(f"O1={n}" for n in range(10)),
+        "default",
+    ]
+    assert found["interpretations_in_words"].startswith(
+        "Of 21 interpretations, the printed numbers are most likely from"
+    )
+    assert [tuple(each.model_dump().values()) for each in found["explained"]] == [
+        ("a", 2, 1, 2, 0),
+        ("b", 1, 0, 0, 1),
+    ]
 
 
 def test_method_with_corners_has_no_number_of_curvature():
-    row = {"study": "one", "method": "a", "baseline": "rounded", "conditions": 2, "feasible": 0.5, "feasible_baseline": 1.0}
-    measured = pd.DataFrame([row | {"compared": 2, "length": 1.5, "bent": 2, "curvature": math.inf, "cpu": 3.0}])
+    row = {
+        "study": "one",
+        "method": "a",
+        "baseline": "rounded",
+        "conditions": 2,
+        "feasible": 0.5,
+        "feasible_baseline": 1.0,
+    }
+    measured = pd.DataFrame(
+        [row | {"compared": 2, "length": 1.5, "bent": 2, "curvature": math.inf, "cpu": 3.0}]
+    )
     found = other.of_worth("one", measured)
-    assert [(each.cornered, each.curvature, each.length) for each in found["worth"]] == [(True, None, 1.5)]
+    assert [(each.cornered, each.curvature, each.length) for each in found["worth"]] == [
+        (True, None, 1.5)
+    ]
     assert found["worth_in_words"].startswith("1 method: feasible in 50 %")
     assert other.of_worth("two", measured) == {}
 
 
 def test_search_finds_every_published_number_and_every_run_shown_by_its_words():
     found = {entry.address: entry for entry in search.entries(page())}
-    assert found["one/table1/a/objective/mean"].text == "a: objective, mean: 10.51 → 10.71 inconclusive"
+    assert (
+        found["one/table1/a/objective/mean"].text
+        == "a: objective, mean: 10.51 → 10.71 inconclusive"
+    )
     assert found["one/circles/p/a/0"].text.startswith("best feasible run of ")
     assert found["one/worth/a"].more == "one a"
     assert "one/table1/c/length/mean" not in found
@@ -362,36 +497,67 @@ def test_alternative_judged_beside_another_verdict_is_out_of_date():
             "verdict_alternative": "undecided",
         }
     )
-    judged = pd.DataFrame({"id": ["C1", "C2"], "primary": True, "verdict": ["supported", "contradicted"]})
+    judged = pd.DataFrame(
+        {"id": ["C1", "C2"], "primary": True, "verdict": ["supported", "contradicted"]}
+    )
     assert [choice.claim for choice in gather._choices(tried, judged)] == ["C1"]
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Runs
 
 
 def stored(folder, lengths, feasible):
     """Files of runs of a method m on an empty room, whose paths are straight."""
-    room = Problem("room", from_lines(["....", "....", "...."], cell=1.0, unit="m"), (0.5, 0.5), (3.5, 0.5))
+    room = Problem(
+        "room", from_lines(["....", "....", "...."], cell=1.0, unit="m"), (0.5, 0.5), (3.5, 0.5)
+    )
     problem_files.write({"room": room}, {"room": "room"}, str(folder / "p.parquet"))
     parquet.write_table(problem_files.bounds_of({"room": room}), folder / "p.bounds.parquet")
     rows = [
-        {"id": f"s/e/room/m/{n}", "problem": "room", "method": "m", "repeat": n, "feasible": ok, "length": length, "claimed_feasible": True}
-        | {"collision_at": math.nan if ok else 0.5, "collision_depth": 0.0, "clearance": 0.1, "evaluations": 5, "stop": "generations"}
-        | {"history": [5.0, 5.0, 4.0, 4.0], "path_curve": "polyline", "path_points": [0.5, 0.5, 3.5, 0.5]}
+        {
+            "id": f"s/e/room/m/{n}",
+            "problem": "room",
+            "method": "m",
+            "repeat": n,
+            "feasible": ok,
+            "length": length,
+            "claimed_feasible": True,
+        }
+        | {
+            "collision_at": math.nan if ok else 0.5,
+            "collision_depth": 0.0,
+            "clearance": 0.1,
+            "evaluations": 5,
+            "stop": "generations",
+        }
+        | {
+            "history": [5.0, 5.0, 4.0, 4.0],
+            "path_curve": "polyline",
+            "path_points": [0.5, 0.5, 3.5, 0.5],
+        }
         for n, (length, ok) in enumerate(zip(lengths, feasible, strict=True))
     ]
     parquet.write_table(pa.Table.from_pylist(rows), folder / "0.parquet")
-    files = {"runs": [str(folder / "0.parquet")], "problems": str(folder / "p.parquet"), "bounds": str(folder / "p.bounds.parquet")}
+    files = {
+        "runs": [str(folder / "0.parquet")],
+        "problems": str(folder / "p.parquet"),
+        "bounds": str(folder / "p.bounds.parquet"),
+    }
     return {"methods": ["m"], "repeats": len(rows)} | files
 
 
 def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
-    lengths, feasible = [5.0, 3.5, 4.0, 9.0, 8.0, 7.0, 6.0], [True, True, True, True, False, False, False]
+    lengths, feasible = (
+        [5.0, 3.5, 4.0, 9.0, 8.0, 7.0, 6.0],
+        [True, True, True, True, False, False, False],
+    )
     found = runs.chosen("s", "e", stored(tmp_path, lengths, feasible))
     (shown,) = found.shown
     assert (shown.count, shown.feasible) == (7, 4)
-    assert [shown.best, shown.median, shown.worst, *shown.failed] == [f"s/e/room/m/{n}" for n in (1, 2, 3, 4, 5)]
+    assert [shown.best, shown.median, shown.worst, *shown.failed] == [
+        f"s/e/room/m/{n}" for n in (1, 2, 3, 4, 5)
+    ]
     assert found.runs.keys() == {f"s/e/room/m/{n}" for n in (1, 2, 3, 4, 5)}
     assert found.runs["s/e/room/m/4"].collision == (2.0, 0.5)
     assert found.runs["s/e/room/m/1"].history == [(0, 5.0), (2, 4.0), (3, 4.0)]
@@ -412,30 +578,53 @@ def test_place_of_a_drive_is_found_where_its_way_crosses_itself():
     # To the right, back through the same places, then up; the robot waits at the first place.
     path = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 0.0], [0.0, 1.5]])
     places = [(0, 0), (0, 0), (1, 0), (2, 0), (3, 0), (2, 0), (1, 0), (0, 0), (0, 1), (0, 1.5)]
-    assert np.allclose(runs._driven(path, np.array(places, dtype=float), 1.0), [0, 0, 1, 2, 3, 4, 5, 6, 7, 7.5])
+    assert np.allclose(
+        runs._driven(path, np.array(places, dtype=float), 1.0), [0, 0, 1, 2, 3, 4, 5, 6, 7, 7.5]
+    )
 
 
 def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
     described = stored(tmp_path, [3.0], [False])
-    rows = [{**row, "collision_at": 1.5, "steps": 2.5} for row in parquet.read_table(described["runs"][0]).to_pylist()]
+    rows = [
+        {**row, "collision_at": 1.5, "steps": 2.5}
+        for row in parquet.read_table(described["runs"][0]).to_pylist()
+    ]
     parquet.write_table(pa.Table.from_pylist(rows), described["runs"][0])
     empty = from_lines(["....", "....", "...."], cell=1.0, unit="m")
     later = from_lines(["#...", "....", "...#"], cell=1.0, unit="m")
     room = {"room": Problem("room", empty, (0.5, 0.5), (3.5, 0.5))}
-    world_files.write(room, {"room": "room"}, {"room": ChangingCells((empty, later), np.array([2.0]), 1.0, 9)}, described["problems"])
+    world_files.write(
+        room,
+        {"room": "room"},
+        {"room": ChangingCells((empty, later), np.array([2.0]), 1.0, 9)},
+        described["problems"],
+    )
     trace = [{"id": "s/e/room/m/0", "x": [0.5, 1.5, 2.5, 3.5], "y": [0.5] * 4}]
     parquet.write_table(pa.Table.from_pylist(trace), tmp_path / "0.traces.parquet")
     found = runs.chosen("s", "e", described | {"traces": [str(tmp_path / "0.traces.parquet")]})
     (drive,) = found.runs.values()
-    assert (drive.steps, drive.driven, drive.collision, drive.collision_step, drive.control) == (2.5, [0, 1, 2, 3], (2.0, 0.5), 1.5, [])
+    assert (drive.steps, drive.driven, drive.collision, drive.collision_step, drive.control) == (
+        2.5,
+        [0, 1, 2, 3],
+        (2.0, 0.5),
+        1.5,
+        [],
+    )
     assert found.problems["s/e/room"].world == content.World(moments=[2.0], changed=[[0, 11]])
 
 
 def test_equal_workspaces_stand_once():
     problem = page().problems["one/first/p"]
-    found = job._once({"a": {"x": 1}, "b": {"x": 2}, "c": {"x": 1}}, {n: problem.model_copy(update={"workspace": n}) for n in "abc"})
+    found = job._once(
+        {"a": {"x": 1}, "b": {"x": 2}, "c": {"x": 1}},
+        {n: problem.model_copy(update={"workspace": n}) for n in "abc"},
+    )
     assert found["workspaces"] == {"a": {"x": 1}, "b": {"x": 2}}
-    assert {name: each.workspace for name, each in found["problems"].items()} == {"a": "a", "b": "b", "c": "a"}
+    assert {name: each.workspace for name, each in found["problems"].items()} == {
+        "a": "a",
+        "b": "b",
+        "c": "a",
+    }
 
 
 @given(
@@ -454,20 +643,37 @@ def test_drawn_path_stays_within_its_tolerance(points, kind):
 
 
 def test_the_answer_counts_claims_that_would_show_again_and_keep_their_verdict():
-    claims = [claim(f"C{n}", "supported", replication=share) for n, share in enumerate([0.9, 0.8, 0.79, 0.1, None])]
+    claims = [
+        claim(f"C{n}", "supported", replication=share)
+        for n, share in enumerate([0.9, 0.8, 0.79, 0.1, None])
+    ]
     told = "".join(part.text for part in answer._replication(claims))
     assert told.startswith("2 of 4 supported claims that can be resampled would show again")
-    one, other = (content.Interpretation(variant="a", verdict=verdict, holds="1 of 1") for verdict in ("supported", "contradicted"))
+    one, other = (
+        content.Interpretation(variant="a", verdict=verdict, holds="1 of 1")
+        for verdict in ("supported", "contradicted")
+    )
     read = [
-        claim(f"C{n}", "supported", interpretations=interpretations) for n, interpretations in enumerate([[one], [one, other], [other], []])
+        claim(f"C{n}", "supported", interpretations=interpretations)
+        for n, interpretations in enumerate([[one], [one, other], [other], []])
     ]
     told = "".join(part.text for part in answer._interpretations(read))
-    assert told.startswith("1 of 3 claims that can be interpreted in more than one way keeps its verdict in every interpretation")
+    assert told.startswith(
+        "1 of 3 claims that can be interpreted in more than one way keeps its verdict in every "
+        "interpretation"
+    )
 
 
 def test_what_was_judged_again_stands_on_the_page():
     assert "were judged again" not in build.html(page(), Path())
-    verified = content.Verified(files=2, runs=1234, paths=567, bounds=89, digest="0123abcd", versions={"numba": "1.2", "numpy": "3.4"})
+    verified = content.Verified(
+        files=2,
+        runs=1234,
+        paths=567,
+        bounds=89,
+        digest="0123abcd",
+        versions={"numba": "1.2", "numpy": "3.4"},
+    )
     told = " ".join(build.html(page().model_copy(update={"verified": verified}), Path()).split())
     assert "All 1,234 runs shown here, 567 different paths, were judged again" in told
     assert "and 89 bounds computed again, without a difference" in told

@@ -1,4 +1,6 @@
-"""The page in a real browser, opened from disk: a small page with every kind of content, and that of scale smoke."""
+"""The page in a real browser, opened from disk: a small page with every kind of content, and that
+of scale smoke.
+"""
 
 import os
 import re
@@ -19,9 +21,12 @@ BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-c
 CHROMIUM = next(filter(None, map(shutil.which, BROWSERS)), None)
 SMOKE = Path(__file__).parents[1] / "results" / "smoke" / "index.html"
 
-# The environment comes from PyPI, which has no browser: that belongs to the machine, and not every reader can install one. Continuous
-# integration installs it (`.ci/run`).
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no browser here, and PyPI has none; Debian: apt install chromium-headless-shell")
+# The environment comes from PyPI, which has no browser: that belongs to the machine, and not every
+# reader can install one. Continuous integration installs it (`.ci/run`).
+pytestmark = pytest.mark.skipif(
+    CHROMIUM is None,
+    reason="no browser here, and PyPI has none; Debian: apt install chromium-headless-shell",
+)
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +34,8 @@ def browser():
     # The sandbox of the browser does not start for root, as in a container.
     arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
     with sync_playwright() as playwright:
-        # The page answers a click a moment later, on a busy machine much later: what is expected is waited for.
+        # The page answers a click a moment later, on a busy machine much later: what is expected is
+        # waited for.
         expect.set_options(timeout=60_000)
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
         yield browser
@@ -57,7 +63,9 @@ def smoke():
 
 @pytest.fixture
 def visit(browser):
-    """Open a file at an address, and fail at the end on any complaint of the browser and any request for another file."""
+    """Open a file at an address, and fail at the end on any complaint of the browser and any
+    request for another file.
+    """
     complaints, contexts = [], []
 
     def visit(file, address="", **options):
@@ -65,10 +73,22 @@ def visit(browser):
         context.set_default_timeout(60_000)
         contexts.append(context)
         tab = context.new_page()
-        tab.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None)
+        tab.on(
+            "console",
+            lambda message: (
+                complaints.append(message.text) if message.type in ("error", "warning") else None
+            ),
+        )
         tab.on("pageerror", lambda error: complaints.append(str(error)))
         own = f"{file.as_uri()}"
-        tab.on("request", lambda request: None if request.url.startswith((own, "data:", "blob:")) else complaints.append(request.url))
+        tab.on(
+            "request",
+            lambda request: (
+                None
+                if request.url.startswith((own, "data:", "blob:"))
+                else complaints.append(request.url)
+            ),
+        )
         tab.goto(own + (f"#{address}" if address else ""))
         return tab
 
@@ -79,16 +99,24 @@ def visit(browser):
 
 
 @pytest.mark.parametrize(
-    "options", [{}, {"color_scheme": "dark"}, {"viewport": {"width": 400, "height": 800}}], ids=["light", "dark", "narrow"]
+    "options",
+    [{}, {"color_scheme": "dark"}, {"viewport": {"width": 400, "height": 800}}],
+    ids=["light", "dark", "narrow"],
 )
 def test_page_opens_without_complaint_and_passes_axe(visit, file, options):
     from axe_playwright_python.sync_playwright import Axe
 
     tab = visit(file, **options)
-    tab.evaluate("document.querySelectorAll('details').forEach((each, n) => { if (n < 12) each.open = true; })")
+    tab.evaluate(
+        "document.querySelectorAll('details').forEach((each, n) => { if (n < 12) each.open = "
+        "true; })"
+    )
     tab.wait_for_timeout(200)
     found = Axe().run(tab, options={"runOnly": ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"]})
-    assert [(each["id"], [node["html"][:200] for node in each["nodes"][:3]]) for each in found.response["violations"]] == []
+    assert [
+        (each["id"], [node["html"][:200] for node in each["nodes"][:3]])
+        for each in found.response["violations"]
+    ] == []
 
 
 def test_narrow_page_does_not_scroll_sideways(visit, file):
@@ -105,7 +133,10 @@ def test_without_scripts_tables_verdicts_and_figures_are_there(visit, file):
     table = tab.locator(".paper details.table:not([id^=page-methods]):has(table)").first
     table.locator("> summary").click()
     expect(table.locator("table").first).to_be_visible()
-    assert all(tab.locator("figure img").nth(n).get_attribute("src").startswith("data:") for n in range(tab.locator("figure img").count()))
+    assert all(
+        tab.locator("figure img").nth(n).get_attribute("src").startswith("data:")
+        for n in range(tab.locator("figure img").count())
+    )
     expect(tab.locator(".search")).to_be_hidden()
 
 
@@ -169,7 +200,9 @@ def test_search_works_by_keyboard(visit, small):
 def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
     tab = visit(small)
     tab.locator("#page-query").fill("objective mean")
-    expect(tab.locator("#page-hits a").first).to_have_attribute("href", "#one/table1/a/objective/mean")
+    expect(tab.locator("#page-hits a").first).to_have_attribute(
+        "href", "#one/table1/a/objective/mean"
+    )
 
 
 @pytest.mark.parametrize(
@@ -177,15 +210,29 @@ def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
     [
         ("How can I replay a run?", ["page-paths"], "Path viewer"),
         ("What should I use instead?", ["page-use"], "What should I use?"),
-        ("What are the published and the reproduced mean objective of a?", ["one/table1/a/objective/mean"], "10.51 → 10.71 inconclusive"),
-        ("Are the paths of a lower than those of b?", ["one/C1", "one/C2", "one/C3"], "Method a is the best (C1)."),
+        (
+            "What are the published and the reproduced mean objective of a?",
+            ["one/table1/a/objective/mean"],
+            "10.51 → 10.71 inconclusive",
+        ),
+        (
+            "Are the paths of a lower than those of b?",
+            ["one/C1", "one/C2", "one/C3"],
+            "Method a is the best (C1).",
+        ),
         ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best (C2)."),
-        ("What does inconclusive mean?", ["page-word/inconclusive", "one/table1/a/objective/mean"], "the range is too wide"),
+        (
+            "What does inconclusive mean?",
+            ["page-word/inconclusive", "one/table1/a/objective/mean"],
+            "the range is too wide",
+        ),
         ("Which claims of one hold", ["one/C1"], "claim, supported"),
         ("the path of a's worst feasible run", ["one/first/p/a/1"], "worst feasible run"),
     ],
 )
-def test_question_in_plain_words_finds_its_answer_in_one_step(visit, small, question, addresses, answer):
+def test_question_in_plain_words_finds_its_answer_in_one_step(
+    visit, small, question, addresses, answer
+):
     tab = visit(small)
     tab.locator("#page-query").fill(question)
     hits = tab.locator("#page-hits a")
@@ -239,7 +286,9 @@ def test_claims_that_fail_are_listed_with_the_reason(visit, small):
     tab = visit(small)
     tab.locator("summary", has_text="claims that fail, and why").click()
     expect(tab.locator(".failing li")).to_have_count(1)
-    expect(tab.locator(".failing")).to_contain_text("exact arc length, a lower than b: effect -1 unit (95\u00a0% interval -2 to -0.2)")
+    expect(tab.locator(".failing")).to_contain_text(
+        "exact arc length, a lower than b: effect -1 unit (95\u00a0% interval -2 to -0.2)"
+    )
     tab.locator(".failing a").click()
     tab.locator("[id='one/C2'] .facts").wait_for()
 
@@ -253,7 +302,9 @@ def test_viewer_draws_the_chosen_run(visit, small):
     run.focus()
     tab.keyboard.press("End")
     tab.locator("#viewer-map .hit").wait_for(state="attached")
-    expect(tab.locator("#viewer-command")).to_have_text("python -m bezierplan replay one/first/p/a/2")
+    expect(tab.locator("#viewer-command")).to_have_text(
+        "python -m bezierplan replay one/first/p/a/2"
+    )
     expect(tab.locator("#viewer-facts")).to_contain_text("not feasible")
 
 
@@ -273,12 +324,17 @@ def circle(tab):
 
 
 def way(tab):
-    return [round(float(each), 6) for each in re.findall(r"[-.\d]+", tab.locator("#viewer-map .path").get_attribute("d"))]
+    return [
+        round(float(each), 6)
+        for each in re.findall(r"[-.\d]+", tab.locator("#viewer-map .path").get_attribute("d"))
+    ]
 
 
 def at(tab, time):
     tab.locator("#viewer-clock").evaluate(
-        "(clock, time) => { clock.step = 'any'; clock.value = time; clock.dispatchEvent(new Event('input')); }", str(time)
+        "(clock, time) => { clock.step = 'any'; clock.value = time; clock.dispatchEvent(new "
+        "Event('input')); }",
+        str(time),
     )
 
 
@@ -313,7 +369,8 @@ def test_drive_plays_by_keyboard_pauses_and_ends(visit, small):
     tab.locator("#viewer-play").focus()
     tab.keyboard.press("Enter")
     tab.wait_for_function(
-        "document.getElementById('viewer-play').textContent === 'Play' && viewer.querySelector('#viewer-clock').value === '3.5'"
+        "document.getElementById('viewer-play').textContent === 'Play' && "
+        "viewer.querySelector('#viewer-clock').value === '3.5'"
     )
     tab.locator("#viewer-clock").focus()
     tab.keyboard.press("Home")

@@ -1,4 +1,6 @@
-"""`python -m bezierplan plan`: one path on a map of any kind, its examples, and every fault in one line with status 2."""
+"""`python -m bezierplan plan`: one path on a map of any kind, its examples, and every fault in one
+line with status 2.
+"""
 
 import json
 import re
@@ -40,9 +42,13 @@ def test_without_a_planner_it_is_the_rounded_shortest_path(capsys):
     assert found["planner"] == "rounded_shortest_path"
     assert found["shortest"] == "29.5658 m"
     assert found["feasible"] == "yes"
-    length, gap = re.fullmatch(r"([\d.]+) m, ([\d.e-]+) % above the shortest path", found["length"]).groups()
+    length, gap = re.fullmatch(
+        r"([\d.]+) m, ([\d.e-]+) % above the shortest path", found["length"]
+    ).groups()
     assert float(length) / SHORTEST - 1 == pytest.approx(float(gap) / 100, abs=1e-5)
-    assert found["curvature"].startswith("at most 2.5")  # one over the turning radius of 0.02 times 20 m
+    assert found["curvature"].startswith(
+        "at most 2.5"
+    )  # one over the turning radius of 0.02 times 20 m
     assert found["CPU time"].endswith(" s")
 
 
@@ -90,7 +96,20 @@ def test_a_path_that_collides_is_told_with_the_place(capsys):
 
 def test_a_planner_takes_its_settings_from_its_study_and_a_seed_decides(capsys):
     one, other, again = (
-        planned(capsys, GAPS, *ENDS, "--planner", "prm", "--settings", "{nodes: 800}", "--cell", 0.2, "--seed", seed) for seed in (1, 2, 1)
+        planned(
+            capsys,
+            GAPS,
+            *ENDS,
+            "--planner",
+            "prm",
+            "--settings",
+            "{nodes: 800}",
+            "--cell",
+            0.2,
+            "--seed",
+            seed,
+        )
+        for seed in (1, 2, 1)
     )
     assert "nodes 800, " in one["settings"]
     assert one["length"] == again["length"] != other["length"]
@@ -100,41 +119,89 @@ def test_other_kinds_of_map(capsys, tmp_path):
     (tmp_path / "room.txt").write_text("....\n.##.\n....\n")
     found = planned(capsys, tmp_path / "room.txt", "--start", "0.5,1.5", "--target", "3.5,1.5")
     assert found["shortest"] == "3.41421 cell"
-    Image.fromarray(np.array([[254, 254, 254], [254, 0, 254], [254, 254, 254]], dtype=np.uint8)).save(tmp_path / "room.pgm")
+    Image.fromarray(
+        np.array([[254, 254, 254], [254, 0, 254], [254, 254, 254]], dtype=np.uint8)
+    ).save(tmp_path / "room.pgm")
     (tmp_path / "room.yaml").write_text("image: room.pgm\nresolution: 2\norigin: [-3, -3, 0]\n")
-    found = planned(capsys, tmp_path / "room.yaml", "--start=-2,0", "--target", "2,0", "--settings", "{turning_radius: 0}")
+    found = planned(
+        capsys,
+        tmp_path / "room.yaml",
+        "--start=-2,0",
+        "--target",
+        "2,0",
+        "--settings",
+        "{turning_radius: 0}",
+    )
     assert found["shortest"] == "4.82843 m"
     (tmp_path / "room.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n.@.\n")
     (tmp_path / "room.scen").write_text("version 1\n0 room.map 3 2 0 1 2 1 4\n")
     scenario = ["--scenario", f"{tmp_path / 'room.scen'}:1"]
     assert planned(capsys, tmp_path / "room.map", *scenario)["feasible"] == "yes"
-    assert "expected a number from 1 to 1" in refused(capsys, tmp_path / "room.map", "--scenario", f"{tmp_path / 'room.scen'}:2")
+    assert "expected a number from 1 to 1" in refused(
+        capsys, tmp_path / "room.map", "--scenario", f"{tmp_path / 'room.scen'}:2"
+    )
 
 
 FAULTS = {
-    "start in an obstacle": ([GAPS, "--start", "5,10", "--target", "18,10"], "start: .*in an obstacle; expected a free place"),
-    "target outside": ([GAPS, "--start", "2,10", "--target", "99,10"], "target: .*outside the workspace; expected x from 0 to 20"),
+    "start in an obstacle": (
+        [GAPS, "--start", "5,10", "--target", "18,10"],
+        "start: .*in an obstacle; expected a free place",
+    ),
+    "target outside": (
+        [GAPS, "--start", "2,10", "--target", "99,10"],
+        "target: .*outside the workspace; expected x from 0 to 20",
+    ),
     "no target": ([GAPS, "--start", "2,10"], "--target: missing; expected X,Y"),
     "words": ([GAPS, "--start", "here", "--target", "18,10"], "--start: here; expected X,Y"),
     "no map": (["nowhere.geojson", *ENDS], "nowhere.geojson: cannot be read"),
-    "kind of map": (["room.dwg", *ENDS], "room.dwg: unknown kind of map; expected a file that ends in .geojson"),
+    "kind of map": (
+        ["room.dwg", *ENDS],
+        "room.dwg: unknown kind of map; expected a file that ends in .geojson",
+    ),
     "planner": ([GAPS, *ENDS, "--planner", "pmr"], "--planner: pmr: unknown; did you mean prm"),
     "planner of circles": (
         [CELLS, "--start", "0.5,0.5", "--target", "15.5,0.5", "--planner", "chaotic_pso"],
         "serves workspaces of kind circles, polygons, and a map is grid",
     ),
     "setting": ([GAPS, *ENDS, "--settings", "{radius: 1}"], "--settings: radius: unknown"),
-    "value": ([GAPS, *ENDS, "--settings", "{turning_radius: -1}"], "--settings: turning_radius: -1; expected a number from 0 to 100000"),
-    "settings": ([GAPS, *ENDS, "--settings", "fast"], "--settings: fast: expected '{name: value, ...}'"),
-    "out": ([GAPS, *ENDS, "--out", "path.pdf"], "--out: path.pdf; expected a file that ends in .svg, .png"),
+    "value": (
+        [GAPS, *ENDS, "--settings", "{turning_radius: -1}"],
+        "--settings: turning_radius: -1; expected a number from 0 to 100000",
+    ),
+    "settings": (
+        [GAPS, *ENDS, "--settings", "fast"],
+        "--settings: fast: expected '{name: value, ...}'",
+    ),
+    "out": (
+        [GAPS, *ENDS, "--out", "path.pdf"],
+        "--out: path.pdf; expected a file that ends in .svg, .png",
+    ),
     "like": ([GAPS, *ENDS, "--like", "smooth"], "--like: smooth; expected STUDY/METHOD"),
-    "cell": ([GAPS, *ENDS, "--planner", "prm", "--cell", "0"], "--cell: 0; expected a number above 0"),
-    "endless cell": ([GAPS, *ENDS, "--planner", "prm", "--cell", "inf"], "--cell: inf; expected a number above 0"),
-    "folder": ([GAPS, *ENDS, "--out", "nowhere/path.svg"], "--out: nowhere/path.svg: no folder nowhere; expected one that exists"),
+    "cell": (
+        [GAPS, *ENDS, "--planner", "prm", "--cell", "0"],
+        "--cell: 0; expected a number above 0",
+    ),
+    "endless cell": (
+        [GAPS, *ENDS, "--planner", "prm", "--cell", "inf"],
+        "--cell: inf; expected a number above 0",
+    ),
+    "folder": (
+        [GAPS, *ENDS, "--out", "nowhere/path.svg"],
+        "--out: nowhere/path.svg: no folder nowhere; expected one that exists",
+    ),
     "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
-    "scenario and ends": ([GAPS, *ENDS, "--scenario", "a.scen:1"], "--scenario: a.scen:1: has a start and a target of its own"),
-    "radius": (["a.yaml", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected 0 or a number of at least 1e-06"),
-    "scenario": ([GAPS, "--scenario", "a.scen:1"], "--scenario: only for a MovingAI grid; .*gaps.geojson is polygons"),
+    "scenario and ends": (
+        [GAPS, *ENDS, "--scenario", "a.scen:1"],
+        "--scenario: a.scen:1: has a start and a target of its own",
+    ),
+    "radius": (
+        ["a.yaml", *ENDS, "--robot-radius", "-1"],
+        "--robot-radius: -1; expected 0 or a number of at least 1e-06",
+    ),
+    "scenario": (
+        [GAPS, "--scenario", "a.scen:1"],
+        "--scenario: only for a MovingAI grid; .*gaps.geojson is polygons",
+    ),
 }
 
 
@@ -162,7 +229,16 @@ def test_a_large_map_shows_free_and_occupied_cells_apart(capsys, tmp_path):
     lines = ["." * rows] * rows
     lines[30:60] = ["." * 40 + "#" * 40 + "." * 40] * 30
     (tmp_path / "room.txt").write_text("\n".join(lines) + "\n")
-    planned(capsys, tmp_path / "room.txt", "--start", "1,1", "--target", "119,119", "--out", tmp_path / "path.png")
+    planned(
+        capsys,
+        tmp_path / "room.txt",
+        "--start",
+        "1,1",
+        "--target",
+        "119,119",
+        "--out",
+        tmp_path / "path.png",
+    )
     shades = np.asarray(Image.open(tmp_path / "path.png").convert("L"))
     # Lines around cells would darken the free ones. The middle of the map's lower half is free.
     middle = shades[shades.shape[0] // 2 :, shades.shape[1] // 2 - 100 : shades.shape[1] // 2 + 100]
@@ -172,17 +248,30 @@ def test_a_large_map_shows_free_and_occupied_cells_apart(capsys, tmp_path):
 def test_a_target_that_cannot_be_reached_is_told(capsys, tmp_path):
     (tmp_path / "room.txt").write_text("..#.\n..#.\n")
     told = refused(capsys, tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "3.5,0.5")
-    assert told == "--target: 3.5,0.5: no free way leads there from the start; expected one that can be reached\n"
+    assert (
+        told
+        == "--target: 3.5,0.5: no free way leads there from the start; expected one that can be "
+        "reached\n"
+    )
 
 
-# What a planner answers, or does before it does, and what is told of it. The room has a wall between start and target.
+# What a planner answers, or does before it does, and what is told of it. The room has a wall
+# between start and target.
 ANSWERS = {
-    "elsewhere": ("line[1] = (1.5, 0.5)", "answer", "its answer: path: target: (1.5, 0.5); expected exactly (3.5, 0.5)"),
+    "elsewhere": (
+        "line[1] = (1.5, 0.5)",
+        "answer",
+        "its answer: path: target: (1.5, 0.5); expected exactly (3.5, 0.5)",
+    ),
     "nothing": ("", "None", "its answer: is a NoneType; expected a Plan"),
     "an error": ("{}[1]", "answer", "KeyError: 1"),
     "an error of two lines": ('raise ValueError("a\\nb")', "answer", "ValueError: a b"),
     "an exit": ("raise SystemExit(0)", "answer", "sys.exit: 0"),
-    "an empty map": ("problem.workspace.occupied[:] = False", "answer", "ValueError: assignment destination is read-only"),
+    "an empty map": (
+        "problem.workspace.occupied[:] = False",
+        "answer",
+        "ValueError: assignment destination is read-only",
+    ),
     "another map": (
         'object.__setattr__(problem.workspace, "occupied", ~problem.workspace.occupied)',
         "answer",
@@ -197,12 +286,21 @@ def test_answer_of_a_planner_comes_through_the_door(capsys, tmp_path, name):
     (tmp_path / "room.txt").write_text("....\n.#..\n.#..\n")
     planner = tmp_path / "own.py"
     planner.write_text(
-        "import numpy as np\nfrom bezierplan.planners import Path, Plan\n\n\ndef plan(problem, rng):\n"
+        "import numpy as np\nfrom bezierplan.planners import Path, Plan\n\n\ndef plan(problem, "
+        "rng):\n"
         f"    line = np.array([problem.start, problem.target])\n    {code}\n"
         '    answer = Plan(Path("polyline", line), 1.0, True, 1, np.array([1.0]), "done", {})\n'
         f"    return {given}\n"
     )
-    words = [tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "3.5,0.5", "--planner", planner]
+    words = [
+        tmp_path / "room.txt",
+        "--start",
+        "0.5,0.5",
+        "--target",
+        "3.5,0.5",
+        "--planner",
+        planner,
+    ]
     assert refused(capsys, *words) == f"--planner: {planner}: {told}\n"
 
 
@@ -211,7 +309,23 @@ def test_a_feasible_path_shorter_than_the_bound_is_no_answer(capsys, monkeypatch
     (tmp_path / "room.txt").write_text("...\n...\n")
     found = shortest_paths.shortest_path
     monkeypatch.setattr(
-        shortest_paths, "shortest_path", lambda problem, **known: (bound := found(problem, **known))._replace(length=bound.length + 1)
+        shortest_paths,
+        "shortest_path",
+        lambda problem, **known: (bound := found(problem, **known))._replace(
+            length=bound.length + 1
+        ),
     )
-    told = refused(capsys, tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "2.5,0.5", "--planner", "straight_line")
-    assert told.startswith("--planner: straight_line: its path is 2 long and feasible, but no free path is shorter than 3: ")
+    told = refused(
+        capsys,
+        tmp_path / "room.txt",
+        "--start",
+        "0.5,0.5",
+        "--target",
+        "2.5,0.5",
+        "--planner",
+        "straight_line",
+    )
+    assert told.startswith(
+        "--planner: straight_line: its path is 2 long and feasible, but no free path is shorter "
+        "than 3: "
+    )

@@ -39,24 +39,33 @@ def test_planners_find_the_modules_beside_them_and_no_others(tmp_path):
 
 
 ENDS = {
-    "import os; os._exit(0)": "when it is imported: its process ended itself with exit status 0, before it was done",
+    "import os; os._exit(0)": "when it is imported: its process ended itself with exit status 0, "
+    "before it was done",
     "import sys; sys.exit(0)": "line 1: sys.exit: 0",
     "raise KeyboardInterrupt": "line 1: KeyboardInterrupt",
     "raise type('Own', (BaseException,), {})('no')": "line 1: Own: no",
-    "import os; os.kill(os.getpid(), 9)": "when it is imported: its process was ended by signal SIGKILL",
-    "import ctypes; ctypes.string_at(0)": "when it is imported: its process was ended by signal SIGSEGV",
+    "import os; os.kill(os.getpid(), 9)": "when it is imported: its process was ended by signal "
+    "SIGKILL",
+    "import ctypes; ctypes.string_at(0)": "when it is imported: its process was ended by signal "
+    "SIGSEGV",
     "while True: pass": "when it is imported: not done within the time limit of 1 s; it is ended",
     "import os, time; os.fork() or time.sleep(600)": f"when it is imported: {watchdog.LEFT}",
-    "import os, time; os.fork() and os._exit(3) or time.sleep(600)": "when it is imported: its process ended itself with exit status 3",
+    "import os, time; os.fork() and os._exit(3) or time.sleep(600)": "when it is imported: its "
+    "process ended itself with "
+    "exit status 3",
     "raise ValueError('\\x1b[31m' + 'a' * 10**6)": r"line 1: ValueError: \x1b[31maaa",
 }
 SOUND = "def plan(problem, rng, *, tries: int):\n    return None\n"
-linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere no process that has loaded libraries is forked")
+linux = pytest.mark.skipif(
+    sys.platform != "linux", reason="elsewhere no process that has loaded libraries is forked"
+)
 
 
 @linux
 @pytest.mark.parametrize("end", ENDS)
-def test_file_that_ends_or_stalls_when_it_is_imported_is_told_in_one_line(end, tmp_path, monkeypatch):
+def test_file_that_ends_or_stalls_when_it_is_imported_is_told_in_one_line(
+    end, tmp_path, monkeypatch
+):
     monkeypatch.setattr(interface, "LIMIT", 1.0)
     file = tmp_path / "ends.py"
     file.write_text(f"{end}\n{SOUND}")
@@ -81,7 +90,10 @@ def test_check_that_ends_or_stalls_is_told_in_one_line(end, tmp_path, monkeypatc
 
 def test_sound_planner_is_loaded_and_asked(tmp_path):
     file = tmp_path / "sound.py"
-    file.write_text(f"{SOUND}def check(settings):\n    if settings['tries'] > 3: raise ValueError('tries: 4; expected at most 3')\n")
+    file.write_text(
+        f"{SOUND}def check(settings):\n    if settings['tries'] > 3: raise ValueError('tries: 4; "
+        f"expected at most 3')\n"
+    )
     module = interface.loaded(str(file), "place")
     interface.asked(module.check, "place", {"tries": 3})
     with pytest.raises(checked.Fault, match=r"^place: tries: 4; expected at most 3$"):
@@ -90,15 +102,32 @@ def test_sound_planner_is_loaded_and_asked(tmp_path):
 
 COMMANDS = {
     "check-planner": ["check-planner", "ends.py", "--settings", "{tries: 1}"],
-    "plan": ["plan", "room.txt", "--start", "0.5,0.5", "--target", "1.5,0.5", "--planner", "ends.py", "--settings", "{tries: 1}"],
+    "plan": [
+        "plan",
+        "room.txt",
+        "--start",
+        "0.5,0.5",
+        "--target",
+        "1.5,0.5",
+        "--planner",
+        "ends.py",
+        "--settings",
+        "{tries: 1}",
+    ],
 }
 
 
 @linux
-@pytest.mark.parametrize(("command", "place"), [("plan", "import"), ("plan", "plan"), ("check-planner", "plan")])
+@pytest.mark.parametrize(
+    ("command", "place"), [("plan", "import"), ("plan", "plan"), ("check-planner", "plan")]
+)
 def test_command_whose_planner_exits_says_so(command, place, tmp_path):
     (tmp_path / "room.txt").write_text("..\n")
-    source = f"import os\nos._exit(0)\n{SOUND}" if place == "import" else SOUND.replace("return None", "import os; os._exit(0)")
+    source = (
+        f"import os\nos._exit(0)\n{SOUND}"
+        if place == "import"
+        else SOUND.replace("return None", "import os; os._exit(0)")
+    )
     (tmp_path / "ends.py").write_text(source)
     words = [sys.executable, "-m", "bezierplan", *COMMANDS[command]]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -1,7 +1,8 @@
-"""What was transcribed by hand, held against a second form of it: tables as printed, what papers say of them, maps as lists of blocks.
+"""What was transcribed by hand, held against a second form of it: tables as printed, what papers
+say of them, maps as lists of blocks.
 
-tests/data/printed has the tables in the layout of the papers, taken from the papers a second time. A wrong digit, or two numbers that
-changed places, stands in one of the two transcriptions only.
+tests/data/printed has the tables in the layout of the papers, taken from the papers a second time.
+A wrong digit, or two numbers that changed places, stands in one of the two transcriptions only.
 """
 
 import hashlib
@@ -26,8 +27,12 @@ def printed(study, table):
 
 
 def transcribed(study, table):
-    """Rows of a file of published numbers as text, so that a zero at the end counts: a dictionary each."""
-    return pd.read_csv(STUDIES / study / "published" / f"{table}.csv", dtype=str, keep_default_na=False).to_dict("records")
+    """Rows of a file of published numbers as text, so that a zero at the end counts: a dictionary
+    each.
+    """
+    return pd.read_csv(
+        STUDIES / study / "published" / f"{table}.csv", dtype=str, keep_default_na=False
+    ).to_dict("records")
 
 
 # How a label is called in config/.
@@ -55,7 +60,9 @@ OBSTACLES = ("5", "10", "15", "20", "25")
 
 
 def cells(study, table, keys, columns):
-    """Set of (key columns, metric, statistic, text) of a printed table. keys: label -> values of the key columns; columns: as `COLUMNS`."""
+    """Set of (key columns, metric, statistic, text) of a printed table. keys: label -> values of
+    the key columns; columns: as `COLUMNS`.
+    """
     found = set()
     for label, *texts in printed(study, table):
         assert len(texts) == len(columns), label
@@ -72,7 +79,9 @@ def own(study, table, *keys):
 
 
 CASES = [(case, number) for case in ("case1", "case2") for number in OBSTACLES]
-LENGTH_AND_TIME = [(metric, statistic) for metric in ("length", "cpu_s") for statistic in ("min", "max", "mean")]
+LENGTH_AND_TIME = [
+    (metric, statistic) for metric in ("length", "cpu_s") for statistic in ("min", "max", "mean")
+]
 TRIALS = [("optimal", "count"), ("near_optimal", "count"), ("infeasible", "count")]
 MEANS = [("objective", "mean"), ("generation_improved", "mean"), ("cpu_s", "mean")]
 SWARMS = [("collisions_c", "mean"), ("rank", "mean"), ("objective", "mean")]
@@ -92,19 +101,29 @@ def test_lengths_of_elhoseny2017(table):
 
 def test_times_of_elhoseny2017():
     columns = [(number,) for number in OBSTACLES]
-    assert own("elhoseny2017", "table6", "method", "obstacles") == cells("elhoseny2017", "table6", method, columns)
+    assert own("elhoseny2017", "table6", "method", "obstacles") == cells(
+        "elhoseny2017", "table6", method, columns
+    )
     found, name = set(), ""
     for label, statistic, *texts in printed("elhoseny2017", "table5"):
         name = label or name
         called = {"GA": "mga_plain", "Proposed Method": "mga"}[name]
-        found |= {(called, number, {"Avg.": "mean", "STD": "std"}[statistic], text) for number, text in zip(OBSTACLES, texts)}
+        found |= {
+            (called, number, {"Avg.": "mean", "STD": "std"}[statistic], text)
+            for number, text in zip(OBSTACLES, texts)
+        }
     assert own("elhoseny2017", "table5", "method", "obstacles", "statistic") == found
 
 
 def test_example_and_maps_of_elhoseny2017():
     genes = [(str(number),) for number in range(1, 11)]
-    assert own("elhoseny2017", "table1", "solution", "gene") == cells("elhoseny2017", "table1", lambda label: (label,), genes)
-    rows = [[row["map_id"], row["map_name"], f"{row['size_m']} x {row['size_n']}"] for row in transcribed("elhoseny2017", "table4")]
+    assert own("elhoseny2017", "table1", "solution", "gene") == cells(
+        "elhoseny2017", "table1", lambda label: (label,), genes
+    )
+    rows = [
+        [row["map_id"], row["map_name"], f"{row['size_m']} x {row['size_n']}"]
+        for row in transcribed("elhoseny2017", "table4")
+    ]
     assert rows == printed("elhoseny2017", "table4")
 
 
@@ -114,32 +133,63 @@ def test_tables_of_ma2020(number):
     assert own("ma2020", table, *OF_METHOD) == cells("ma2020", table, method, LENGTH_AND_TIME)
     assert {row["workspace"] for row in transcribed("ma2020", table)} == {f"environment{number}"}
     # The text repeats some of them.
-    rows = {tuple(row[key] for key in ("workspace", *OF_METHOD, "value")) for row in transcribed("ma2020", table)}
-    said = {tuple(row[key] for key in ("workspace", *OF_METHOD, "value")) for row in transcribed("ma2020", "text_numbers")}
+    rows = {
+        tuple(row[key] for key in ("workspace", *OF_METHOD, "value"))
+        for row in transcribed("ma2020", table)
+    }
+    said = {
+        tuple(row[key] for key in ("workspace", *OF_METHOD, "value"))
+        for row in transcribed("ma2020", "text_numbers")
+    }
     assert {row for row in said if row[0] == f"environment{number}"} <= rows
 
 
 @pytest.mark.parametrize(
-    ("table", "problem"), [("table2", "env1_initial"), ("table3", "env1_modified"), ("table4", "env2_initial"), ("table5", "env2_modified")]
+    ("table", "problem"),
+    [
+        ("table2", "env1_initial"),
+        ("table3", "env1_modified"),
+        ("table4", "env2_initial"),
+        ("table5", "env2_modified"),
+    ],
 )
 def test_tables_of_meledje(table, problem):
     assert own("meledje", table, *OF_METHOD) == cells("meledje", table, method, TRIALS + MEANS)
     assert {row["problem"] for row in transcribed("meledje", table)} == {problem}
     # The paper counts out of 100 trials.
-    assert [sum(int(text) for text in texts[:3]) for _, *texts in printed("meledje", table)] == [100] * 4
+    assert [sum(int(text) for text in texts[:3]) for _, *texts in printed("meledje", table)] == [
+        100
+    ] * 4
 
 
 def test_table_of_song2016():
-    columns = [(way, metric) for way in ("nonsmooth", "smooth") for metric in ("generation_1pct", "objective")]
-    found = cells("song2016", "table1", lambda label: (label.removeprefix("Grid ").replace(" to ", "_"),), columns)
+    columns = [
+        (way, metric)
+        for way in ("nonsmooth", "smooth")
+        for metric in ("generation_1pct", "objective")
+    ]
+    found = cells(
+        "song2016",
+        "table1",
+        lambda label: (label.removeprefix("Grid ").replace(" to ", "_"),),
+        columns,
+    )
     assert own("song2016", "table1", "problem", "method", "metric") == found
 
 
-@pytest.mark.parametrize(("table", "prefix", "rows"), [("table3", "cpso1", 8), ("table4", "cpso2", 8), ("table5", "", 5)])
+@pytest.mark.parametrize(
+    ("table", "prefix", "rows"), [("table3", "cpso1", 8), ("table4", "cpso2", 8), ("table5", "", 5)]
+)
 def test_tables_of_tharwat2018(table, prefix, rows):
-    found = cells("tharwat2018", table, lambda label: (f"{prefix}_{label.lower()}",) if prefix else method(label), SWARMS)
+    found = cells(
+        "tharwat2018",
+        table,
+        lambda label: (f"{prefix}_{label.lower()}",) if prefix else method(label),
+        SWARMS,
+    )
     assert own("tharwat2018", table, *OF_METHOD) == found
-    # The mean ranks of k methods add to k (k + 1) / 2: to 36 in Tables 3 and 4, up to rounding; those of Table 5 do not add to 15.
+    # The mean ranks of k methods add to k (k + 1) / 2: to 36 in Tables 3 and 4, up to rounding;
+    # those of Table 5 do not add to 15.
     total = sum(float(texts[1]) for _, *texts in printed("tharwat2018", table))
     assert total == pytest.approx({"table3": 36.0, "table4": 36.1, "table5": 13.8}[table])
     assert len(found) == 3 * rows
@@ -162,9 +212,19 @@ RUNS = {
 
 @pytest.mark.parametrize("study", RUNS)
 def test_numbers_of_runs_and_units(study):
-    rows = [row for file in (STUDIES / study / "published").glob("table*.csv") for row in transcribed(study, file.stem) if "metric" in row]
+    rows = [
+        row
+        for file in (STUDIES / study / "published").glob("table*.csv")
+        for row in transcribed(study, file.stem)
+        if "metric" in row
+    ]
     runs, unit = RUNS[study]
-    units = {"cpu_s": "s", "generation_1pct": "generation", "generation_improved": "generation", "collisions_c": "samples"}
+    units = {
+        "cpu_s": "s",
+        "generation_1pct": "generation",
+        "generation_improved": "generation",
+        "collisions_c": "samples",
+    }
     units |= dict.fromkeys(("objective", "length", "cells4"), unit)
     assert {row["n"] for row in rows} == {runs}
     assert all(row["unit"] == units.get(row["metric"], "-") for row in rows)
@@ -174,26 +234,50 @@ def test_numbers_of_runs_and_units(study):
 
 
 def occupied_cells(study, name):
-    return from_lines((STUDIES / study / "workspaces" / f"{name}.txt").read_text().splitlines(), 1.0, "cell").occupied
+    return from_lines(
+        (STUDIES / study / "workspaces" / f"{name}.txt").read_text().splitlines(), 1.0, "cell"
+    ).occupied
 
 
 def test_free_cells_of_song2016_are_those_with_a_number():
     """Figure 2 prints the number of every free cell, and nothing in the others."""
-    numbers = [[int(number) for number in line[0].split()] for line in printed("song2016", "figure2")]
+    numbers = [
+        [int(number) for number in line[0].split()] for line in printed("song2016", "figure2")
+    ]
     free = np.flatnonzero(~occupied_cells("song2016", "figure2")).tolist()
     assert free == sorted(itertools.chain(*numbers))
     assert len(free) == 192
     # From the top row down, each with sixteen numbers.
-    assert [{number // 16 for number in line} for line in numbers] == [{row} for row in range(15, -1, -1)]
+    assert [{number // 16 for number in line} for line in numbers] == [
+        {row} for row in range(15, -1, -1)
+    ]
 
 
-# The maps of meledje and ma2020 are printed as pictures only. Those here are our own design: as blocks (first column, first row from
-# below, columns, rows), and what changes in them.
+# The maps of meledje and ma2020 are printed as pictures only. Those here are our own design: as
+# blocks (first column, first row from below, columns, rows), and what changes in them.
 BLOCKS = {
-    "env1_initial": ((3, 13, 3, 2), (2, 9, 3, 2), (8, 11, 8, 1), (12, 9, 4, 2), (11, 6, 3, 2), (0, 5, 5, 2), (0, 4, 9, 1), (11, 0, 3, 2)),
-    "env2_initial": ((0, 12, 11, 2), (12, 9, 2, 3), (4, 9, 3, 2), (0, 6, 2, 3), (3, 5, 2, 3), (6, 7, 10, 1), (0, 3, 13, 1)),
+    "env1_initial": (
+        (3, 13, 3, 2),
+        (2, 9, 3, 2),
+        (8, 11, 8, 1),
+        (12, 9, 4, 2),
+        (11, 6, 3, 2),
+        (0, 5, 5, 2),
+        (0, 4, 9, 1),
+        (11, 0, 3, 2),
+    ),
+    "env2_initial": (
+        (0, 12, 11, 2),
+        (12, 9, 2, 3),
+        (4, 9, 3, 2),
+        (0, 6, 2, 3),
+        (3, 5, 2, 3),
+        (6, 7, 10, 1),
+        (0, 3, 13, 1),
+    ),
 }
-# The wall below grows by two cells, and a block loses its lower row; the gap in the middle wall moves from columns 2 and 5 to 6 and 7.
+# The wall below grows by two cells, and a block loses its lower row; the gap in the middle wall
+# moves from columns 2 and 5 to 6 and 7.
 CHANGES = {
     "env1": {"occupied": ((9, 4), (10, 4)), "free": ((11, 6), (12, 6), (13, 6))},
     "env2": {"occupied": ((2, 7), (5, 7)), "free": ((6, 7), (7, 7))},
@@ -222,4 +306,7 @@ DIGESTS = {
 
 @pytest.mark.parametrize("name", DIGESTS)
 def test_maps_of_ma2020_are_those_that_were_drawn(name):
-    assert hashlib.sha256((STUDIES / "ma2020" / "workspaces" / f"{name}.txt").read_bytes()).hexdigest() == DIGESTS[name]
+    assert (
+        hashlib.sha256((STUDIES / "ma2020" / "workspaces" / f"{name}.txt").read_bytes()).hexdigest()
+        == DIGESTS[name]
+    )

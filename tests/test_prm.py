@@ -1,4 +1,6 @@
-"""The probabilistic roadmap: its sight test, its graph against a plain reference, degenerate cases."""
+"""The probabilistic roadmap: its sight test, its graph against a plain reference, degenerate
+cases.
+"""
 
 import itertools
 import math
@@ -20,7 +22,12 @@ SETTINGS = {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0}
 
 def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
     table = np.array(circles, dtype=float).reshape(-1, 3)
-    return Problem("test", Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"), start, target)
+    return Problem(
+        "test",
+        Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"),
+        start,
+        target,
+    )
 
 
 PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
@@ -31,7 +38,9 @@ def plan(where=PUBLIC, seed=0, **changes):
 
 
 def shortest(points, roads):
-    """Length of the shortest way from point 0 to point 1, by relaxing every road as often as there are points."""
+    """Length of the shortest way from point 0 to point 1, by relaxing every road as often as there
+    are points.
+    """
     lengths = np.full(len(points), np.inf)
     lengths[0] = 0
     for _ in points:
@@ -49,7 +58,9 @@ def sees(one, other, where):
     return (distances > where.workspace.radii - 1e-6).all()
 
 
-@pytest.mark.parametrize(("links", "seed"), list(itertools.product(["visible", "nearest"], range(4))))
+@pytest.mark.parametrize(
+    ("links", "seed"), list(itertools.product(["visible", "nearest"], range(4)))
+)
 def test_path_is_the_shortest_way_over_the_roads(links, seed):
     nodes, neighbours = 12, 4
     rng = np.random.default_rng(seed)
@@ -60,8 +71,15 @@ def test_path_is_the_shortest_way_over_the_roads(links, seed):
             points.append(point)
     pairs = set(itertools.combinations(range(len(points)), 2))
     if links == "nearest":
-        ranked = [sorted(range(len(points)), key=lambda other: math.dist(points[one], points[other])) for one in range(len(points))]
-        pairs = {tuple(sorted((one, other))) for one in range(len(points)) for other in ranked[one][1 : neighbours + 1]}
+        ranked = [
+            sorted(range(len(points)), key=lambda other: math.dist(points[one], points[other]))
+            for one in range(len(points))
+        ]
+        pairs = {
+            tuple(sorted((one, other)))
+            for one in range(len(points))
+            for other in ranked[one][1 : neighbours + 1]
+        }
     roads = [(one, other) for one, other in pairs if sees(points[one], points[other], PUBLIC)]
     found = plan(seed=seed, nodes=nodes, links=links, neighbours=neighbours)
     assert found.extra["roads"] == len(roads)
@@ -82,7 +100,10 @@ def test_paths_are_free_by_the_certified_check_and_as_long_as_said(seed):
 def test_more_nodes_keep_those_of_fewer():
     low, high, is_free, _ = prm._among_circles(PUBLIC.workspace, 0.0)
     for seed in range(5):
-        few, some, many = (prm._free_points(np.random.default_rng(seed), nodes, low, high, is_free) for nodes in (10, 50, 200))
+        few, some, many = (
+            prm._free_points(np.random.default_rng(seed), nodes, low, high, is_free)
+            for nodes in (10, 50, 200)
+        )
         assert list(map(len, (few, some, many))) == [10, 50, 200]
         assert np.array_equal(few, some[:10])
         assert np.array_equal(some, many[:50])
@@ -109,8 +130,11 @@ def test_as_many_neighbours_as_nodes_are_all():
     ids=["through", "before", "past", "grazing", "behind", "no way"],
 )
 def test_sight_is_exact(end, seen):
-    # From the origin a circle of radius 1 at (2, 0) hides all within 30 degrees beyond the tangent points.
-    assert prm._visible(np.zeros((1, 2)), np.array([end], dtype=float), np.array([[2.0, 0.0]]), np.array([1.0])).tolist() == [seen]
+    # From the origin a circle of radius 1 at (2, 0) hides all within 30 degrees beyond the tangent
+    # points.
+    assert prm._visible(
+        np.zeros((1, 2)), np.array([end], dtype=float), np.array([[2.0, 0.0]]), np.array([1.0])
+    ).tolist() == [seen]
 
 
 def test_touching_is_allowed():
@@ -158,7 +182,9 @@ def test_nodes_on_a_grid_are_uniform_in_free_cells():
     assert not grid.occupied[row, column].any()
     assert len(nodes) == 5000
     # A quarter of the nodes in each quarter of the field, as far as it is free.
-    free = np.array([(~grid.occupied[r : r + 51, c : c + 51]).sum() for r in (0, 50) for c in (0, 50)])
+    free = np.array(
+        [(~grid.occupied[r : r + 51, c : c + 51]).sum() for r in (0, 50) for c in (0, 50)]
+    )
     counts = np.histogram2d(row, column, bins=[0, 50.5, 101])[0].ravel()
     assert counts == pytest.approx(5000 * free / free.sum(), abs=4 * math.sqrt(1250))
 
@@ -169,7 +195,9 @@ def test_no_nodes_leave_the_straight_line_of_an_empty_field():
 
 
 def test_a_sealed_target_on_a_grid():
-    sealed = Problem("test", from_lines(["...#.", "...##", "....."], 1.0, "cell"), (0.5, 0.5), (4.5, 2.5))
+    sealed = Problem(
+        "test", from_lines(["...#.", "...##", "....."], 1.0, "cell"), (0.5, 0.5), (4.5, 2.5)
+    )
     assert plan(sealed).path is None
 
 
@@ -183,7 +211,10 @@ def test_nearest_points_in_order_and_the_first_of_equally_near_ones():
     found = prm._nearest(points, 7)
     for i in range(len(points)):
         others = [j for j in range(len(points)) if j != i]
-        assert found[i].tolist() == sorted(others, key=lambda j: ((points[j] - points[i]) ** 2).sum())[:7]
+        assert (
+            found[i].tolist()
+            == sorted(others, key=lambda j: ((points[j] - points[i]) ** 2).sum())[:7]
+        )
 
 
 def test_settings():

@@ -1,4 +1,6 @@
-"""Random maps of blocks: as described, drawn from their names alone, and chosen by their shortest lattice path."""
+"""Random maps of blocks: as described, drawn from their names alone, and chosen by their shortest
+lattice path.
+"""
 
 import itertools
 import math
@@ -11,17 +13,36 @@ from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems
 from bezierplan.workspaces import random_blocks
 
-MAP = {"kind": "random_blocks", "largest_block": 4, "clear_ends": 2, "corners": "none", "unit": "cell"}
-PROBLEM = {"workspace": "blocks", "side": 20, "start": [0, 0], "target": [20, 20], "obstacles": 60, "layout": 0}
+MAP = {
+    "kind": "random_blocks",
+    "largest_block": 4,
+    "clear_ends": 2,
+    "corners": "none",
+    "unit": "cell",
+}
+PROBLEM = {
+    "workspace": "blocks",
+    "side": 20,
+    "start": [0, 0],
+    "target": [20, 20],
+    "obstacles": 60,
+    "layout": 0,
+}
 
 
 def maps(count, description=MAP, problem=PROBLEM, name="study/blocks"):
-    return [grid.occupied for grid in itertools.islice(random_blocks.maps(description, problem, name), count)]
+    return [
+        grid.occupied
+        for grid in itertools.islice(random_blocks.maps(description, problem, name), count)
+    ]
 
 
 def built(count, obstacles=60, **changes):
     """The maps of an experiment's first layouts."""
-    described = {f"blocks_{layout}": PROBLEM | {"layout": layout, "obstacles": obstacles} for layout in range(count)}
+    described = {
+        f"blocks_{layout}": PROBLEM | {"layout": layout, "obstacles": obstacles}
+        for layout in range(count)
+    }
     job = {"study": "study", "problems": described, "workspaces": {"blocks": MAP | changes}}
     return [problem.workspace.occupied for problem in problems.build_all(job, None)[0].values()]
 
@@ -59,15 +80,21 @@ def test_blocks_have_all_sizes_and_reach_all_borders():
     assert together.all()
 
 
-@pytest.mark.parametrize(("obstacles", "length"), [(60, 10 + 15 * math.sqrt(2)), (83, 14 + 13 * math.sqrt(2))])
+@pytest.mark.parametrize(
+    ("obstacles", "length"), [(60, 10 + 15 * math.sqrt(2)), (83, 14 + 13 * math.sqrt(2))]
+)
 def test_maps_are_drawn_until_their_shortest_lattice_path_has_the_wanted_length(obstacles, length):
     for occupied in built(3, obstacles, lattice_length=round(length, 4)):
-        found = shortest_paths.lattice_path(occupied, (0, 0), (19, 19), math.sqrt(2), "none").length + math.sqrt(2)
+        found = shortest_paths.lattice_path(
+            occupied, (0, 0), (19, 19), math.sqrt(2), "none"
+        ).length + math.sqrt(2)
         assert found == pytest.approx(length)
 
 
 def test_without_a_wanted_length_the_first_map_with_a_path_is_taken():
-    assert np.array_equal(built(1)[0], next(iter(random_blocks.maps(MAP, PROBLEM, "study/blocks"))).occupied)
+    assert np.array_equal(
+        built(1)[0], next(iter(random_blocks.maps(MAP, PROBLEM, "study/blocks"))).occupied
+    )
 
 
 def test_maps_without_a_block_are_empty():
@@ -80,14 +107,28 @@ def test_maps_without_a_block_are_empty():
         (
             {"lattice_length": 28.0},
             {},
-            "obstacles: 60: of 50 maps none has so many occupied cells and a shortest lattice path of lattice_length 28",
+            "obstacles: 60: of 50 maps none has so many occupied cells and a shortest lattice "
+            "path of lattice_length 28",
         ),
-        ({}, {"obstacles": 300}, "obstacles: 300: of 50 maps none has so many occupied cells and a path from start to target"),
-        ({}, {"target": [21, 20]}, "target: \\[21, 20\\]: outside the map; expected x and y from 0 to 20"),
+        (
+            {},
+            {"obstacles": 300},
+            "obstacles: 300: of 50 maps none has so many occupied cells and a path from start to "
+            "target",
+        ),
+        (
+            {},
+            {"target": [21, 20]},
+            "target: \\[21, 20\\]: outside the map; expected x and y from 0 to 20",
+        ),
     ],
 )
 def test_what_no_map_can_be_is_told(description, problem, told, monkeypatch):
     monkeypatch.setattr(random_blocks, "MOST_MAPS", 50)
-    job = {"study": "study", "problems": {"blocks_0": PROBLEM | problem}, "workspaces": {"blocks": MAP | description}}
+    job = {
+        "study": "study",
+        "problems": {"blocks_0": PROBLEM | problem},
+        "workspaces": {"blocks": MAP | description},
+    }
     with pytest.raises(ValueError, match=told):
         problems.build_all(job, None)

@@ -10,16 +10,30 @@ from bezierplan.workspaces import files, random_field
 from bezierplan.workspaces.circles import Circles
 
 FIELD = {"kind": "random_field", "radius": 0.06, "clear_ends": 2.0, "unit": "cell"}
-PROBLEM = {"workspace": "dense", "side": 100, "start": [0, 0], "target": [100, 100], "obstacles": 25, "layout": 0}
+PROBLEM = {
+    "workspace": "dense",
+    "side": 100,
+    "start": [0, 0],
+    "target": [100, 100],
+    "obstacles": 25,
+    "layout": 0,
+}
 
 
 def test_a_field_is_drawn_from_its_name_alone():
     one, again = (random_field.field(FIELD, PROBLEM, "study/dense") for _ in range(2))
     assert np.array_equal(one.occupied, again.occupied)
-    for change in ({"layout": 1}, {"obstacles": 24}, {"side": 120}, {"start": [0, 100], "target": [100, 0]}):
+    for change in (
+        {"layout": 1},
+        {"obstacles": 24},
+        {"side": 120},
+        {"start": [0, 100], "target": [100, 0]},
+    ):
         other = random_field.field(FIELD, PROBLEM | change, "study/dense")
         assert not np.array_equal(one.drawn.centres[:20], other.drawn.centres[:20])
-    assert not np.array_equal(one.drawn.centres, random_field.field(FIELD, PROBLEM, "study/other").drawn.centres)
+    assert not np.array_equal(
+        one.drawn.centres, random_field.field(FIELD, PROBLEM, "study/other").drawn.centres
+    )
 
 
 def test_cells_are_those_whose_centres_lie_in_circles():
@@ -29,21 +43,28 @@ def test_cells_are_those_whose_centres_lie_in_circles():
     assert len(grid.drawn.radii) == 25
     assert set(grid.drawn.radii) == {6.0}
     x, y = np.meshgrid(np.arange(101), np.arange(101))
-    inside = (np.hypot(x[..., None] - grid.drawn.centres[:, 0], y[..., None] - grid.drawn.centres[:, 1]) <= 6.0).any(axis=-1)
+    inside = (
+        np.hypot(x[..., None] - grid.drawn.centres[:, 0], y[..., None] - grid.drawn.centres[:, 1])
+        <= 6.0
+    ).any(axis=-1)
     assert np.array_equal(grid.occupied, inside)
     assert grid.centre(102) == (1.0, 1.0)
     assert grid.cell_of(100, 0) == (0, 100)
 
 
 def test_a_circle_over_the_border_and_one_that_reaches_no_centre():
-    grid = random_field.from_circles(Circles((0, 9, 0, 9), np.array([[0.0, 9.0], [4.5, 4.5]]), np.array([1.0, 0.3]), "cell"))
+    grid = random_field.from_circles(
+        Circles((0, 9, 0, 9), np.array([[0.0, 9.0], [4.5, 4.5]]), np.array([1.0, 0.3]), "cell")
+    )
     row, column = np.nonzero(grid.occupied)
     assert sorted(zip(column, row)) == [(0, 8), (0, 9), (1, 9)]
 
 
 def test_circles_keep_clear_of_the_ends():
     for number in range(200):
-        grid = random_field.field(FIELD | {"radius": 0.025}, PROBLEM | {"obstacles": 5, "layout": number}, "study/dense")
+        grid = random_field.field(
+            FIELD | {"radius": 0.025}, PROBLEM | {"obstacles": 5, "layout": number}, "study/dense"
+        )
         for end in ((0, 0), (100, 100)):
             assert np.hypot(*(grid.drawn.centres - end).T).min() >= 2.5 + 2
 
@@ -56,15 +77,26 @@ def test_fields_that_cut_off_the_target_are_drawn_again():
     crowded = FIELD | {"radius": 0.11}
     for number in range(5):
         grid = random_field.field(crowded, PROBLEM | {"layout": number}, "study/crowded")
-        assert np.isfinite(shortest_paths.lattice_path(grid.occupied, (0, 0), (100, 100), 1.5, "free").length)
-    with pytest.raises(ValueError, match=r"radius: 0[.]15: start and target are cut off from each other in 200 fields"):
-        random_field.field(FIELD | {"radius": 0.15}, PROBLEM | {"obstacles": 60, "side": 40, "target": [40, 40]}, "study/walled")
+        assert np.isfinite(
+            shortest_paths.lattice_path(grid.occupied, (0, 0), (100, 100), 1.5, "free").length
+        )
+    with pytest.raises(
+        ValueError,
+        match=r"radius: 0[.]15: start and target are cut off from each other in 200 fields",
+    ):
+        random_field.field(
+            FIELD | {"radius": 0.15},
+            PROBLEM | {"obstacles": 60, "side": 40, "target": [40, 40]},
+            "study/walled",
+        )
     with pytest.raises(ValueError, match="radius: no circle keeps"):
         random_field.field(FIELD | {"radius": 1.5}, PROBLEM, "study/covered")
 
 
 def test_ends_outside_are_told():
-    with pytest.raises(ValueError, match=r"target: \[101, 100\]: outside the field; expected x and y from 0 to 100"):
+    with pytest.raises(
+        ValueError, match=r"target: \[101, 100\]: outside the field; expected x and y from 0 to 100"
+    ):
         random_field.field(FIELD, PROBLEM | {"target": [101, 100]}, "study/dense")
 
 
@@ -83,7 +115,9 @@ def test_bounds_of_a_moved_grid_are_those_of_the_same_cells_at_the_origin(tmp_pa
     job = {"study": "study", "workspaces": {"dense": FIELD}, "problems": {"case1_0_25": PROBLEM}}
     (moved,), _ = problems.build_all(job, tmp_path)[0].values(), None
     at_origin = moved._replace(
-        workspace=type(moved.workspace)(moved.workspace.occupied, 1.0, "cell"), start=(0.5, 0.5), target=(100.5, 100.5)
+        workspace=type(moved.workspace)(moved.workspace.occupied, 1.0, "cell"),
+        start=(0.5, 0.5),
+        target=(100.5, 100.5),
     )
     one, other = shortest_paths.shortest_path(moved), shortest_paths.shortest_path(at_origin)
     assert one.length == other.length

@@ -7,7 +7,12 @@ from hypothesis import strategies as st
 from bezierplan.planners.parts.random_integers import below, integer
 
 
-@given(st.integers(0, 2**32), st.lists(st.tuples(st.integers(-(2**40), 2**40), st.integers(1, 2**32 - 1)), min_size=1, max_size=20))
+@given(
+    st.integers(0, 2**32),
+    st.lists(
+        st.tuples(st.integers(-(2**40), 2**40), st.integers(1, 2**32 - 1)), min_size=1, max_size=20
+    ),
+)
 def test_integers_are_those_of_the_generator(seed, ranges):
     """Also one after the other, where half of a drawn number may be kept for the next."""
     ours, numpys = np.random.default_rng(seed), np.random.default_rng(seed)

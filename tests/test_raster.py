@@ -34,12 +34,19 @@ WALL = (np.array([[2.0, 0.0], [2.5, 0.0], [2.5, 3.0], [2.0, 3.0]]),)
 
 
 def drawn(name, cell, rule):
-    return files.load({"kind": "raster", "unit": "m", "file": f"{name}.geojson", "cell": cell, "rule": rule}, BENCHMARK_MAPS)
+    return files.load(
+        {"kind": "raster", "unit": "m", "file": f"{name}.geojson", "cell": cell, "rule": rule},
+        BENCHMARK_MAPS,
+    )
 
 
 def ends(name):
     properties = json.loads((BENCHMARK_MAPS / f"{name}.geojson").read_text())["properties"]
-    return tuple(properties["start"]), tuple(properties["target"]), properties["shortest_path_length_m"]
+    return (
+        tuple(properties["start"]),
+        tuple(properties["target"]),
+        properties["shortest_path_length_m"],
+    )
 
 
 @pytest.mark.parametrize("name", OCCUPIED_CENTRES)
@@ -49,14 +56,18 @@ def test_occupied_cells_of_the_benchmark_maps(name):
     left, right, bottom, top = grid.drawn.bounds
     assert grid.occupied.shape == (round((top - bottom) / 0.1) + 1, round((right - left) / 0.1) + 1)
     # What overlaps is not less, but for cells whose centre lies on an edge.
-    assert drawn(name, 0.1, "overlap").occupied.sum() >= grid.occupied.sum() - 4 * sum(grid.occupied.shape)
+    assert drawn(name, 0.1, "overlap").occupied.sum() >= grid.occupied.sum() - 4 * sum(
+        grid.occupied.shape
+    )
 
 
 @pytest.mark.parametrize("name", OCCUPIED_CENTRES)
 def test_the_bound_is_that_of_the_polygons(name):
     start, target, length = ends(name)
     grid = drawn(name, 0.5, "overlap")
-    assert shortest_paths.shortest_path(Problem(name, grid, start, target)).length == pytest.approx(length, abs=1e-5)
+    assert shortest_paths.shortest_path(Problem(name, grid, start, target)).length == pytest.approx(
+        length, abs=1e-5
+    )
 
 
 @settings(max_examples=60)
@@ -64,7 +75,9 @@ def test_the_bound_is_that_of_the_polygons(name):
 def test_a_segment_over_free_cells_enters_no_polygon(data):
     name = data.draw(st.sampled_from(["complex2", "gaps"]))
     grid = drawn(name, 0.4, "overlap")
-    row, column = data.draw(st.sampled_from(np.argwhere(~grid.occupied[:, :-1] & ~grid.occupied[:, 1:]).tolist()))
+    row, column = data.draw(
+        st.sampled_from(np.argwhere(~grid.occupied[:, :-1] & ~grid.occupied[:, 1:]).tolist())
+    )
     centres = grid.in_units(np.array([[column, row], [column + 1, row]]) + 0.5)
     assert check(centres[None], region(grid)).feasible
     cell = shapely.box(*(centres[0] - 0.2 + 1e-6), *(centres[0] + 0.2 - 1e-6))
@@ -80,10 +93,17 @@ def test_the_check_sees_the_polygons_and_not_the_cells():
 def test_rules():
     polygons = Polygons((0.0, 4.0, 0.0, 4.0), (WALL,), "m")
     assert np.flatnonzero(raster.from_polygons(polygons, 1.0, "centre").occupied[0]).tolist() == [2]
-    assert np.flatnonzero(raster.from_polygons(polygons, 1.0, "overlap").occupied[0]).tolist() == [2]
-    assert np.flatnonzero(raster.from_polygons(polygons, 0.5, "overlap").occupied[0]).tolist() == [4, 5]
+    assert np.flatnonzero(raster.from_polygons(polygons, 1.0, "overlap").occupied[0]).tolist() == [
+        2
+    ]
+    assert np.flatnonzero(raster.from_polygons(polygons, 0.5, "overlap").occupied[0]).tolist() == [
+        4,
+        5,
+    ]
     # The centres of the last row and column lie outside a border that is no multiple of the cell.
-    beyond = raster.from_polygons(replace(polygons, bounds=(0.0, 3.8, 0.0, 4.0)), 1.0, "centre").occupied
+    beyond = raster.from_polygons(
+        replace(polygons, bounds=(0.0, 3.8, 0.0, 4.0)), 1.0, "centre"
+    ).occupied
     assert beyond[:, 4].all()
     assert not beyond[:, 3].any()
 
@@ -96,24 +116,39 @@ def test_an_obstacle_without_a_cell_is_told(caplog):
 
 
 def test_too_many_cells_are_refused():
-    with pytest.raises(ValueError, match=r"cell: 0.001: the grid would have 20001 x 20001 cells; expected at most"):
+    with pytest.raises(
+        ValueError, match=r"cell: 0.001: the grid would have 20001 x 20001 cells; expected at most"
+    ):
         drawn("gaps", 0.001, "overlap")
 
 
 def test_a_start_in_an_occupied_cell_is_refused():
     described = {"workspace": "gaps", "start": [4.6, 10], "target": [18, 10]}
     assert problems.build("p", described, drawn("gaps", 0.1, "overlap")).start == (4.6, 10.0)
-    with pytest.raises(ValueError, match=r"start: .*in an occupied cell; expected a free one, or a smaller cell"):
+    with pytest.raises(
+        ValueError, match=r"start: .*in an occupied cell; expected a free one, or a smaller cell"
+    ):
         problems.build("p", described, drawn("gaps", 1.0, "overlap"))
 
 
 def test_a_fine_raster_is_drawn_as_its_polygons():
     parts = picture.parts(drawn("gaps", 0.1, "overlap"))
     assert set(parts["part"]) == {"corner", "ring"}
-    assert parts[parts["part"] == "ring"]["obstacle"].nunique() == len(drawn("gaps", 0.1, "overlap").drawn.obstacles)
+    assert parts[parts["part"] == "ring"]["obstacle"].nunique() == len(
+        drawn("gaps", 0.1, "overlap").drawn.obstacles
+    )
     assert {"free", "occupied", "ring"} <= set(picture.parts(drawn("gaps", 1.0, "overlap"))["part"])
 
 
 def test_a_workspace_that_is_no_file_is_told():
     with pytest.raises(ValueError, match=r"file: nowhere.geojson: cannot be read"):
-        files.load({"kind": "raster", "unit": "m", "file": "nowhere.geojson", "cell": 1, "rule": "overlap"}, Path())
+        files.load(
+            {
+                "kind": "raster",
+                "unit": "m",
+                "file": "nowhere.geojson",
+                "cell": 1,
+                "rule": "overlap",
+            },
+            Path(),
+        )

@@ -1,7 +1,8 @@
-"""Every shell command of the README, executed in a copy of the tree whose configuration names song2016 alone.
+"""Every shell command of the README, executed in a copy of the tree whose configuration names
+song2016 alone.
 
-As printed: what takes seconds. As dry runs (`snakemake -n`, `make -n`): what takes minutes to hours. `test_cluster.py` executes those for a
-cluster.
+As printed: what takes seconds. As dry runs (`snakemake -n`, `make -n`): what takes minutes to
+hours. `test_cluster.py` executes those for a cluster.
 """
 
 import functools
@@ -18,7 +19,12 @@ import trees
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, flags=re.M | re.S)
-COMMANDS = [re.split(r"\s+# ", line)[0] for language, block in BLOCKS if language == "sh" for line in block.splitlines()]
+COMMANDS = [
+    re.split(r"\s+# ", line)[0]
+    for language, block in BLOCKS
+    if language == "sh"
+    for line in block.splitlines()
+]
 
 DRY = {
     "make reproduce": "make -n reproduce",
@@ -33,7 +39,11 @@ ON_CLUSTER = {
     "snakemake extended --workflow-profile profiles/slurm",
 }
 # These read results, so they come last.
-LATE = [command for command in COMMANDS if any(word in command for word in (" --report ", " digest ", " verify ", " replay "))]
+LATE = [
+    command
+    for command in COMMANDS
+    if any(word in command for word in (" --report ", " digest ", " verify ", " replay "))
+]
 ORDER = [command for command in COMMANDS if command not in LATE] + LATE
 
 
@@ -52,14 +62,21 @@ def tree(tmp_path_factory):
 
 @functools.cache
 def executed(tree, command):
-    """What a command prints, which must succeed; each is executed once. A dry run needs no shell."""
+    """What a command prints, which must succeed; each is executed once. A dry run needs no
+    shell.
+    """
     if command.startswith("snakemake -n "):
         done = starts.snakemake(tree, *shlex.split(command)[1:])
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout + done.stderr
     environment = os.environ | {"PYTHONPATH": str(tree / "src")}
     done = subprocess.run(
-        ["bash", "-c", f". .venv/bin/activate && {command}"], cwd=tree, env=environment, capture_output=True, text=True, check=False
+        ["bash", "-c", f". .venv/bin/activate && {command}"],
+        cwd=tree,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert not (tree / "bad").exists()
@@ -72,7 +89,9 @@ def test_command_works_as_printed(tree, command):
 
 
 def test_own_study_of_the_readme_was_run(tree):
-    assert "Results: results/full/mystudy" in executed(tree, "snakemake mystudy --config studies=[./mystudy]")
+    assert "Results: results/full/mystudy" in executed(
+        tree, "snakemake mystudy --config studies=[./mystudy]"
+    )
     table = (tree / "results/full/mystudy/tables/lengths.csv").read_text()
     assert "mine" in table
     assert "genetic" in table

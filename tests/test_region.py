@@ -1,4 +1,6 @@
-"""Whether a point is blocked, by the region alone, against the certified check of the path that stays there."""
+"""Whether a point is blocked, by the region alone, against the certified check of the path that
+stays there.
+"""
 
 import numpy as np
 import pytest
@@ -17,7 +19,12 @@ RING = np.array([[1.0, 6.0], [3.5, 6.0], [3.5, 9.0], [1.0, 9.0]])
 HOLE = np.array([[2.0, 7.0], [3.0, 7.0], [3.0, 8.0], [2.0, 8.0]])
 WORKSPACES = {
     "grid": from_lines(["....#", ".##..", ".##..", "....#", "#...."], 2.0, "unit"),
-    "circles": Circles((0.0, 10.0, 0.0, 10.0), np.array([[3.0, 3.0], [5.0, 3.0], [9.5, 9.5]]), np.array([1.0, 1.5, 1.0]), "unit"),
+    "circles": Circles(
+        (0.0, 10.0, 0.0, 10.0),
+        np.array([[3.0, 3.0], [5.0, 3.0], [9.5, 9.5]]),
+        np.array([1.0, 1.5, 1.0]),
+        "unit",
+    ),
     "polygons": Polygons((0.0, 10.0, 0.0, 10.0), ((SQUARE,), (WALL,), (RING, HOLE)), "unit"),
 }
 # Whole and half numbers meet edges, corners and seams.
@@ -33,6 +40,8 @@ def test_point_is_blocked_where_a_path_that_stays_there_collides(kind, x, y):
 
 
 @pytest.mark.parametrize("kind", WORKSPACES)
-@pytest.mark.parametrize("point", [(-1.0, 5.0), (11.0, 5.0), (5.0, -1.0), (5.0, 11.0), (50.0, 50.0)])
+@pytest.mark.parametrize(
+    "point", [(-1.0, 5.0), (11.0, 5.0), (5.0, -1.0), (5.0, 11.0), (50.0, 50.0)]
+)
 def test_outside_is_blocked(kind, point):
     assert blocks(region(WORKSPACES[kind]), point)

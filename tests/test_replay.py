@@ -24,7 +24,10 @@ def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):
 
 
 def test_run_made_again_differs_from_another(tmp_path):
-    one, other = (replay.replay(f"song2016/routes/0_15/random_search/{repeat}", STUDIES).runs.iloc[0] for repeat in (0, 1))
+    one, other = (
+        replay.replay(f"song2016/routes/0_15/random_search/{repeat}", STUDIES).runs.iloc[0]
+        for repeat in (0, 1)
+    )
     assert replay.equal(one, one.to_dict())
     assert not replay.equal(one, other.to_dict())
 
@@ -52,9 +55,17 @@ def test_unknown_part_of_a_name_is_told(name, told):
         replay.replay(name, STUDIES)
 
 
-@pytest.mark.parametrize(("column", "other"), [("feasible", False), ("collision_at", 0.5), ("path_points", [0.0, 0.0, 3.0, 3.0])])
+@pytest.mark.parametrize(
+    ("column", "other"),
+    [("feasible", False), ("collision_at", 0.5), ("path_points", [0.0, 0.0, 3.0, 3.0])],
+)
 def test_a_run_of_equal_length_but_another_verdict_or_path_is_not_equal(column, other):
-    stored = {"length": 3.0, "feasible": True, "collision_at": 1.0, "path_points": [0.0, 0.0, 1.0, 2.0]}
+    stored = {
+        "length": 3.0,
+        "feasible": True,
+        "collision_at": 1.0,
+        "path_points": [0.0, 0.0, 1.0, 2.0],
+    }
     assert replay.equal(pd.Series(stored), stored)
     assert not replay.equal(pd.Series(stored), stored | {column: other})
 
@@ -62,14 +73,25 @@ def test_a_run_of_equal_length_but_another_verdict_or_path_is_not_equal(column, 
 def told(name):
     found = replay.replay(name, STUDIES)
     run = found.runs.iloc[0]
-    return dict(replay.described(run, found.problems[run["problem"]], STUDIES["song2016"].experiments["routes"]))
+    return dict(
+        replay.described(
+            run, found.problems[run["problem"]], STUDIES["song2016"].experiments["routes"]
+        )
+    )
 
 
 def test_a_run_is_told_in_words_with_units_and_four_digits():
     feasible = told("song2016/routes/0_15/rounded/0")
     assert re.fullmatch(r"[0-9.]{4,6} unit, [0-9.]+ % above the shortest path", feasible["length"])
-    assert (feasible["feasible"], feasible["planner's check"], feasible["clearance"]) == ("yes", "feasible", "0 unit")
+    assert (feasible["feasible"], feasible["planner's check"], feasible["clearance"]) == (
+        "yes",
+        "feasible",
+        "0 unit",
+    )
     assert "note" not in feasible
     colliding = told("song2016/routes/0_15/straight_line/99999")
-    assert re.fullmatch(r"no: enters an obstacle at [0-9.]+,[0-9.]+, at most [0-9.]+ unit deep", colliding["feasible"])
+    assert re.fullmatch(
+        r"no: enters an obstacle at [0-9.]+,[0-9.]+, at most [0-9.]+ unit deep",
+        colliding["feasible"],
+    )
     assert colliding["note"].startswith("no table has this repeat: this experiment has ")

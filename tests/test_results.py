@@ -8,23 +8,47 @@ from bezierplan.analysis import audit, results
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
-DISC = Problem("disc", Circles((-5.0, 5.0, -5.0, 5.0), np.array([[0.0, 0.0]]), np.array([1.0]), "m"), (-2.0, 0.0), (2.0, 0.0))
+DISC = Problem(
+    "disc",
+    Circles((-5.0, 5.0, -5.0, 5.0), np.array([[0.0, 0.0]]), np.array([1.0]), "m"),
+    (-2.0, 0.0),
+    (2.0, 0.0),
+)
 BOUND = 2 * np.sqrt(3) + np.pi / 3
-BOUNDS = pd.DataFrame({"problem": ["disc"], "straight_line": 4.0, "bound": BOUND, "least_length": BOUND - 1e-8, "bound_path": [[]]})
+BOUNDS = pd.DataFrame(
+    {
+        "problem": ["disc"],
+        "straight_line": 4.0,
+        "bound": BOUND,
+        "least_length": BOUND - 1e-8,
+        "bound_path": [[]],
+    }
+)
 
 
 def runs(lengths, feasible=True):
-    rows = {"id": [f"s/e/disc/m/{i}" for i in range(len(lengths))], "problem": "disc", "repeat": range(len(lengths)), "length": lengths}
+    rows = {
+        "id": [f"s/e/disc/m/{i}" for i in range(len(lengths))],
+        "problem": "disc",
+        "repeat": range(len(lengths)),
+        "length": lengths,
+    }
     return pd.DataFrame(rows | {"feasible": feasible, "objective": lengths})
 
 
 def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
-    with pytest.raises(ValueError, match=r"run s/e/disc/m/1 is said to be feasible, but its length 4\.5 lies below the bound"):
+    with pytest.raises(
+        ValueError,
+        match=r"run s/e/disc/m/1 is said to be feasible, but its length 4\.5 lies below the bound",
+    ):
         results.joined(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
 
 
 def test_colliding_path_may_be_shorter_than_the_bound():
-    assert len(results.joined(runs([5.0, 4.0], feasible=[True, False]), {"disc": DISC}, BOUNDS).runs) == 2
+    assert (
+        len(results.joined(runs([5.0, 4.0], feasible=[True, False]), {"disc": DISC}, BOUNDS).runs)
+        == 2
+    )
 
 
 def test_bound_itself_and_what_the_tolerance_leaves_of_it_are_accepted():
@@ -50,13 +74,29 @@ def test_of_equal_runs_the_first_repeat_is_picked():
 
 
 def test_published_length_is_audited_against_the_bound_of_its_problem():
-    """A row names its problem or workspace, the table's interpretation does, or the experiment has only one; spreads are no lengths."""
-    rows = [("a", "length", "min", 8.9), ("a", "length", "mean", 9.1), ("a", "length", "std", 0.5), ("a", "cpu_s", "mean", 0.1)]
-    table = pd.DataFrame(rows, columns=["method", "metric", "statistic", "value"]).assign(printed=["8.9", "9.1", "0.5", "0.1"])
-    one, two = (pd.DataFrame({"bound": [9.0, 5.0][:n]}, index=["disc", "other"][:n]) for n in (1, 2))
+    """A row names its problem or workspace, the table's interpretation does, or the experiment has
+    only one; spreads are no lengths.
+    """
+    rows = [
+        ("a", "length", "min", 8.9),
+        ("a", "length", "mean", 9.1),
+        ("a", "length", "std", 0.5),
+        ("a", "cpu_s", "mean", 0.1),
+    ]
+    table = pd.DataFrame(rows, columns=["method", "metric", "statistic", "value"]).assign(
+        printed=["8.9", "9.1", "0.5", "0.1"]
+    )
+    one, two = (
+        pd.DataFrame({"bound": [9.0, 5.0][:n]}, index=["disc", "other"][:n]) for n in (1, 2)
+    )
 
     def audited(table, bounds, primary):
-        return [row["consistent"] for row in audit.below_bound({"t": table}, {"t": bounds}, {"t": primary} if primary else {})]
+        return [
+            row["consistent"]
+            for row in audit.below_bound(
+                {"t": table}, {"t": bounds}, {"t": primary} if primary else {}
+            )
+        ]
 
     assert audited(table, one, None) == [False, True]
     assert audited(table, two, None) == []
@@ -66,8 +106,21 @@ def test_published_length_is_audited_against_the_bound_of_its_problem():
     assert audited(table.assign(problem="elsewhere"), one, None) == []
 
 
-@pytest.mark.parametrize(("printed", "consistent"), [("8.95", True), ("8.94", False), ("8.5", False), ("9", True), ("8.9", False)])
+@pytest.mark.parametrize(
+    ("printed", "consistent"),
+    [("8.95", True), ("8.94", False), ("8.5", False), ("9", True), ("8.9", False)],
+)
 def test_audit_allows_half_a_unit_of_the_last_printed_digit(printed, consistent):
-    table = pd.DataFrame({"problem": ["disc"], "metric": "length", "statistic": "min", "value": [float(printed)], "printed": [printed]})
-    (row,) = audit.below_bound({"t": table}, {"t": pd.DataFrame({"bound": [8.9549]}, index=["disc"])}, {})
+    table = pd.DataFrame(
+        {
+            "problem": ["disc"],
+            "metric": "length",
+            "statistic": "min",
+            "value": [float(printed)],
+            "printed": [printed],
+        }
+    )
+    (row,) = audit.below_bound(
+        {"t": table}, {"t": pd.DataFrame({"bound": [8.9549]}, index=["disc"])}, {}
+    )
     assert row["consistent"] == consistent

@@ -1,4 +1,6 @@
-"""A robot with a width and a turning radius: lengths in closed form, clearance by shapely, way points, and what is refused in one line."""
+"""A robot with a width and a turning radius: lengths in closed form, clearance by shapely, way
+points, and what is refused in one line.
+"""
 
 import math
 from itertools import pairwise
@@ -21,10 +23,14 @@ def box(left, right, bottom, top):
 
 
 def wall(half_length, half_width, half_height, radius):
-    """Length of the shortest path of a disc around one end of a wall, between points in its middle, at both sides; and of its arcs."""
+    """Length of the shortest path of a disc around one end of a wall, between points in its middle,
+    at both sides; and of its arcs.
+    """
     a, h = half_length - half_width, half_height
     turn = math.asin(radius / math.hypot(a, h)) + math.atan2(h, a)
-    return 2 * math.sqrt(a**2 + h**2 - radius**2) + 2 * radius * turn + 2 * half_width, 2 * radius * turn
+    return 2 * math.sqrt(
+        a**2 + h**2 - radius**2
+    ) + 2 * radius * turn + 2 * half_width, 2 * radius * turn
 
 
 def one_wall(kind, folder):
@@ -43,9 +49,16 @@ def one_wall(kind, folder):
     frame = [[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]]
     shapes = [("border", frame), ("obstacle", ring)]
     features = [
-        {"type": "Feature", "properties": {"role": role}, "geometry": {"type": "Polygon", "coordinates": [each]}} for role, each in shapes
+        {
+            "type": "Feature",
+            "properties": {"role": role},
+            "geometry": {"type": "Polygon", "coordinates": [each]},
+        }
+        for role, each in shapes
     ]
-    (folder / "wall.geojson").write_text(str({"type": "FeatureCollection", "features": features}).replace("'", '"'))
+    (folder / "wall.geojson").write_text(
+        str({"type": "FeatureCollection", "features": features}).replace("'", '"')
+    )
     return folder / "wall.geojson", ()
 
 
@@ -68,7 +81,10 @@ def least_distance(file, obstacles, bounds):
     points = np.loadtxt(file, delimiter=",", skiprows=1)[:, 1:3]
     line = shapely.LineString(points)
     left, right, bottom, top = bounds
-    return min(line.distance(shapely.union_all(obstacles)), line.distance(shapely.box(left, bottom, right, top).exterior))
+    return min(
+        line.distance(shapely.union_all(obstacles)),
+        line.distance(shapely.box(left, bottom, right, top).exterior),
+    )
 
 
 @pytest.mark.parametrize("radius", [0.02, 0.05, 0.0500001, 0.12, 0.2, 0.22])
@@ -76,27 +92,49 @@ def least_distance(file, obstacles, bounds):
 def test_around_a_wall_the_length_is_that_of_tangents_and_arcs(capsys, tmp_path, kind, radius):
     file, options = one_wall(kind, tmp_path)
     out = tmp_path / "path.csv"
-    words = [file, "--start", "0.3,1", "--target", "1.7,1", "--robot-radius", radius, *options, "--step", 0.001, "--out", out]
+    words = [
+        file,
+        "--start",
+        "0.3,1",
+        "--target",
+        "1.7,1",
+        "--robot-radius",
+        radius,
+        *options,
+        "--step",
+        0.001,
+        "--out",
+        out,
+    ]
     found = planned(capsys, *words)
     assert found["robot radius"] == f"{radius:g} m"
     assert found["feasible"] == "yes"
     length, arcs = wall(0.7, 0.05, 0.5, radius)
     assert -1e-5 < float(found["shortest path"].removesuffix(" m")) - length < arcs * ARCS + 1e-5
-    assert least_distance(out, [shapely.box(0.95, 0.5, 1.05, 1.5)], (0, 2, 0, 2)) >= radius - robot.TOLERANCE
+    assert (
+        least_distance(out, [shapely.box(0.95, 0.5, 1.05, 1.5)], (0, 2, 0, 2))
+        >= radius - robot.TOLERANCE
+    )
     assert float(found["clearance"].removesuffix(" m")) == pytest.approx(radius, rel=2e-4)
 
 
 def test_around_circles_the_length_is_exact():
-    circles = bp.Circles((-5.0, 5.0, -5.0, 5.0), centres=np.array([[0.0, 0.0]]), radii=np.array([1.0]), unit="m")
+    circles = bp.Circles(
+        (-5.0, 5.0, -5.0, 5.0), centres=np.array([[0.0, 0.0]]), radii=np.array([1.0]), unit="m"
+    )
     answer = bp.plan(bp.Problem("disc", circles, (-2.0, 0.0), (2.0, 0.0)), robot_radius=0.5)
-    assert answer.shortest == pytest.approx(2 * math.sqrt(4 - 1.5**2) + 3 * math.asin(0.75), rel=1e-12)
+    assert answer.shortest == pytest.approx(
+        2 * math.sqrt(4 - 1.5**2) + 3 * math.asin(0.75), rel=1e-12
+    )
     assert answer.clearance == pytest.approx(0.5, abs=robot.TOLERANCE)
     assert answer.turning_radius == 1.5
 
 
 def test_around_a_corner_the_length_is_that_of_tangents_and_an_arc():
     corner = bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(0, 5, 5, 10),), "m")
-    answer = bp.plan(bp.Problem("corner", corner, (1.0, 4.0), (6.0, 9.0)), robot_radius=1.0, turning_radius=1.0)
+    answer = bp.plan(
+        bp.Problem("corner", corner, (1.0, 4.0), (6.0, 9.0)), robot_radius=1.0, turning_radius=1.0
+    )
     assert 8 + math.pi / 2 <= answer.shortest + 1e-8 <= 8 + math.pi / 2 * (1 + ARCS) + 2e-8
     assert answer.length == pytest.approx(8 + math.pi / 2, abs=1e-3)
     assert answer.turning_radius == pytest.approx(1.0, rel=2e-4)
@@ -110,7 +148,10 @@ def test_a_slot_exactly_as_wide_as_the_robot_is_a_way_and_a_narrower_one_is_not(
         cells[:17, 38:42] = cells[23:, 38:42] = True
         room = bp.Grid(cells, 0.05, "m", (origin, origin))
     else:
-        walls = (box(origin + 1.9, origin + 2.1, origin, origin + 0.85), box(origin + 1.9, origin + 2.1, origin + 1.15, origin + 2))
+        walls = (
+            box(origin + 1.9, origin + 2.1, origin, origin + 0.85),
+            box(origin + 1.9, origin + 2.1, origin + 1.15, origin + 2),
+        )
         room = bp.Polygons((origin, origin + 4.0, origin, origin + 2.0), walls, "m")
     problem = bp.Problem("slot", room, (origin + 0.5, origin + 1.0), (origin + 3.5, origin + 1.0))
     answer = bp.plan(problem, robot_radius=0.15)
@@ -129,16 +170,27 @@ def test_on_random_maps_no_written_path_comes_closer_than_the_radius(tmp_path, s
         cells[:3, :3] = cells[-3:, -3:] = False
         room = bp.Grid(cells, 0.5, "m", (-3.0, 4.0))
         row, column = np.nonzero(cells)
-        obstacles = shapely.box(column * 0.5 - 3, row * 0.5 + 4, column * 0.5 - 2.5, row * 0.5 + 4.5)
+        obstacles = shapely.box(
+            column * 0.5 - 3, row * 0.5 + 4, column * 0.5 - 2.5, row * 0.5 + 4.5
+        )
         ends = (-2.45, 4.55), (6.45, 13.45)
     else:
         centres, reach = rng.uniform(1.5, 8.5, (10, 2)), rng.uniform(0.1, 0.9, (10, 3))
-        rings = [centre + size[:, None] * [[1, 0], [-0.6, 0.9], [-0.5, -0.8]] for centre, size in zip(centres, reach, strict=True)]
+        rings = [
+            centre + size[:, None] * [[1, 0], [-0.6, 0.9], [-0.5, -0.8]]
+            for centre, size in zip(centres, reach, strict=True)
+        ]
         room = bp.Polygons((0.0, 10.0, 0.0, 10.0), tuple((ring,) for ring in rings), "m")
         obstacles = [shapely.Polygon(ring) for ring in rings]
         ends = (0.6, 0.6), (9.4, 9.4)
-    radius = min(radius, 0.99 * shapely.distance(shapely.points(ends), shapely.union_all(obstacles)).min())
-    answer = bp.plan(bp.Problem("random", room, *ends), robot_radius=radius, turning_radius=rng.choice([0.1, 1.0]))
+    radius = min(
+        radius, 0.99 * shapely.distance(shapely.points(ends), shapely.union_all(obstacles)).min()
+    )
+    answer = bp.plan(
+        bp.Problem("random", room, *ends),
+        robot_radius=radius,
+        turning_radius=rng.choice([0.1, 1.0]),
+    )
     if answer.path is None:
         return
     assert answer.feasible
@@ -163,7 +215,9 @@ def test_cells_with_many_corners_grow_by_whole_cells():
     grown = robot.grow(bp.Grid(cells, 1.0, "m"), 0.5)
     assert grown.drawn is None
     assert grown.grown.radius == 0.5
-    answer = bp.plan(bp.Problem("dots", bp.Grid(cells, 1.0, "m"), (2.0, 2.0), (68.0, 68.0)), robot_radius=0.5)
+    answer = bp.plan(
+        bp.Problem("dots", bp.Grid(cells, 1.0, "m"), (2.0, 2.0), (68.0, 68.0)), robot_radius=0.5
+    )
     assert answer.feasible
     assert answer.clearance >= 0.5
 
@@ -172,14 +226,21 @@ def test_a_planner_of_cells_keeps_the_radius_too():
     block = np.zeros((16, 16), dtype=bool)
     block[4:12, 7:9] = True
     problem = bp.Problem("block", bp.Grid(block, 1.0, "m"), (2.5, 8.0), (13.5, 8.0))
-    answer = bp.plan(problem, "song2016/smooth", seed=1, robot_radius=0.7, population=60, generations=60)
+    answer = bp.plan(
+        problem, "song2016/smooth", seed=1, robot_radius=0.7, population=60, generations=60
+    )
     assert answer.robot_radius == 0.7
     assert not answer.feasible or answer.clearance >= 0.7 - robot.TOLERANCE
     assert type(answer.problem.workspace) is bp.Grid
 
 
 def two_walls():
-    return bp.Problem("walls", bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(0, 7, 3, 4), box(3, 10, 6, 7)), "m"), (1.0, 1.0), (9.0, 9.0))
+    return bp.Problem(
+        "walls",
+        bp.Polygons((0.0, 10.0, 0.0, 10.0), (box(0, 7, 3, 4), box(3, 10, 6, 7)), "m"),
+        (1.0, 1.0),
+        (9.0, 9.0),
+    )
 
 
 def test_a_larger_turning_radius_gives_no_tighter_turn():
@@ -190,9 +251,14 @@ def test_a_larger_turning_radius_gives_no_tighter_turn():
     for answer in answers:
         assert answer.feasible
         assert answer.curvature == pytest.approx(1 / answer.turning_radius, rel=1e-3)
-    assert all(bp.plan(two_walls(), turning_radius=radius, strict=True).turning_radius == radius for radius in asked[:4])
+    assert all(
+        bp.plan(two_walls(), turning_radius=radius, strict=True).turning_radius == radius
+        for radius in asked[:4]
+    )
     assert answers[3].stop == "search"  # the circles have room for 1.998 m
-    with pytest.raises(ValueError, match=r"turning_radius: 3 m asked, 2\.\d+ m kept; expected one that can be kept"):
+    with pytest.raises(
+        ValueError, match=r"turning_radius: 3 m asked, 2\.\d+ m kept; expected one that can be kept"
+    ):
         bp.plan(two_walls(), turning_radius=3.0, strict=True)
 
 
@@ -206,33 +272,70 @@ def test_way_points_are_passed_in_their_order():
     assert all(line.distance(shapely.Point(point)) < 1e-2 for point in via)
     assert 0 < places[0] < places[1] < line.length
     legs = zip([(1.0, 1.0), *via], [*via, (9.0, 9.0)], strict=True)
-    parts = [bp.shortest_path(two_walls()._replace(start=start, target=target)).length for start, target in legs]
+    parts = [
+        bp.shortest_path(two_walls()._replace(start=start, target=target)).length
+        for start, target in legs
+    ]
     assert answer.shortest == pytest.approx(sum(parts), rel=1e-12)
     assert answer.turning_radius == 0.3
     assert not answer.corners
-    assert bp.plan(two_walls(), via=via, turning_radius=0.0).turning_radius == 0.0  # the way points are corners
-    assert bp.plan(two_walls(), "shortest_path", via=via).length == pytest.approx(sum(parts), rel=1e-9)
+    assert (
+        bp.plan(two_walls(), via=via, turning_radius=0.0).turning_radius == 0.0
+    )  # the way points are corners
+    assert bp.plan(two_walls(), "shortest_path", via=via).length == pytest.approx(
+        sum(parts), rel=1e-9
+    )
 
 
 WALL = ("--start", "0.3,1", "--target", "1.7,1")
 REFUSED = {
-    "start": ((*WALL, "--robot-radius", "0.4"), "--start: (0.3, 1.0): 0.3 from an obstacle or the border; expected at least the robot's"),
-    "nothing": ((*WALL, "--robot-radius", "1"), "--robot-radius: 1: no place of the map is that far from its obstacles and its border"),
-    "endless": ((*WALL, "--robot-radius", "inf"), "--robot-radius: inf; expected 0 or a number of at least 1e-06"),
-    "strict": ((*WALL, "--settings", "{turning_radius: 9}", "--strict"), "--settings: turning_radius: 9 m asked, "),
-    "1e300": ((*WALL, "--settings", "{turning_radius: 1e300}"), "turning_radius: 1e+300; expected a number from 0 to 100000"),
-    "strict planner": ((*WALL, "--planner", "prm", "--strict"), "--strict: only for rounded_shortest_path and dubins_search"),
+    "start": (
+        (*WALL, "--robot-radius", "0.4"),
+        "--start: (0.3, 1.0): 0.3 from an obstacle or the border; expected at least the robot's",
+    ),
+    "nothing": (
+        (*WALL, "--robot-radius", "1"),
+        "--robot-radius: 1: no place of the map is that far from its obstacles and its border",
+    ),
+    "endless": (
+        (*WALL, "--robot-radius", "inf"),
+        "--robot-radius: inf; expected 0 or a number of at least 1e-06",
+    ),
+    "strict": (
+        (*WALL, "--settings", "{turning_radius: 9}", "--strict"),
+        "--settings: turning_radius: 9 m asked, ",
+    ),
+    "1e300": (
+        (*WALL, "--settings", "{turning_radius: 1e300}"),
+        "turning_radius: 1e+300; expected a number from 0 to 100000",
+    ),
+    "strict planner": (
+        (*WALL, "--planner", "prm", "--strict"),
+        "--strict: only for rounded_shortest_path and dubins_search",
+    ),
     "via planner": (
         (*WALL, "--planner", "prm", "--via", "1,1.8"),
         "--via: only for rounded_shortest_path, dubins_search and shortest_path",
     ),
-    "via in an obstacle": ((*WALL, "--via", "1,1"), "--via: (1.0, 1.0): in an obstacle; expected a free place"),
+    "via in an obstacle": (
+        (*WALL, "--via", "1,1"),
+        "--via: (1.0, 1.0): in an obstacle; expected a free place",
+    ),
     "via outside": ((*WALL, "--via", "-1,1"), "--via: (-1.0, 1.0): outside the workspace"),
     "via in words": ((*WALL, "--via", "1"), "--via: 1; expected X,Y"),
-    "via twice": ((*WALL, "--via", "1,1.8", "--via", "1,1.8"), "--via: (1.0, 1.8): the same place as the one before"),
-    "via within the radius": ((*WALL, "--robot-radius", "0.2", "--via", "1,1.6"), "--via: (1.0, 1.6): 0.1 from an obstacle or the border"),
+    "via twice": (
+        (*WALL, "--via", "1,1.8", "--via", "1,1.8"),
+        "--via: (1.0, 1.8): the same place as the one before",
+    ),
+    "via within the radius": (
+        (*WALL, "--robot-radius", "0.2", "--via", "1,1.6"),
+        "--via: (1.0, 1.6): 0.1 from an obstacle or the border",
+    ),
     "step": ((*WALL, "--step", "0"), "--step: 0; expected a number above 0"),
-    "step without a file": ((*WALL, "--step", "1"), "--step: 1: only for --out with a file that ends in .csv, .geojson"),
+    "step without a file": (
+        (*WALL, "--step", "1"),
+        "--step: 1: only for --out with a file that ends in .csv, .geojson",
+    ),
 }
 
 
@@ -245,6 +348,8 @@ def test_what_cannot_be_is_told_in_one_line(capsys, tmp_path, name):
 def test_what_is_kept_of_a_turning_radius_is_printed(capsys, tmp_path):
     file, _ = one_wall("geojson", tmp_path)
     assert planned(capsys, file, *WALL)["turning radius"] == "0.04 m asked and kept"
-    asked, kept = planned(capsys, file, *WALL, "--settings", "{turning_radius: 9}")["turning radius"].split(" m asked, ")
+    asked, kept = planned(capsys, file, *WALL, "--settings", "{turning_radius: 9}")[
+        "turning radius"
+    ].split(" m asked, ")
     assert asked == "9"
     assert 0 < float(kept.removesuffix(" m kept")) < 9

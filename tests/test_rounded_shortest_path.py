@@ -1,4 +1,6 @@
-"""The rounded shortest path: free on every kind of workspace, as curved as allowed, as far off as asked, nearly as short as possible."""
+"""The rounded shortest path: free on every kind of workspace, as curved as allowed, as far off as
+asked, nearly as short as possible.
+"""
 
 import json
 import math
@@ -29,11 +31,18 @@ ARC = 1e-3
 def benchmark(name):
     text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
     properties = json.loads(text)["properties"]
-    return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
+    return Problem(
+        name,
+        polygons_from_geojson(text, "m"),
+        tuple(properties["start"]),
+        tuple(properties["target"]),
+    )
 
 
 def rounded(problem, turning_radius, offset=0.0):
-    return rounded_shortest_path.plan(problem, np.random.default_rng(0), turning_radius=turning_radius, offset=offset)
+    return rounded_shortest_path.plan(
+        problem, np.random.default_rng(0), turning_radius=turning_radius, offset=offset
+    )
 
 
 def most_curved(path):
@@ -41,13 +50,19 @@ def most_curved(path):
 
 
 def one_corner():
-    """A square beside the way from (0, 0) to (10, 0), so that the path turns at its corners (4, 2) and (6, 2), by symmetry alike."""
+    """A square beside the way from (0, 0) to (10, 0), so that the path turns at its corners (4, 2)
+    and (6, 2), by symmetry alike.
+    """
     square = np.array([[4.0, -5.0], [6.0, -5.0], [6.0, 2.0], [4.0, 2.0]])
-    return Problem("", Polygons((-5.0, 15.0, -5.0, 15.0), ((square,),), "m"), (0.0, 0.0), (10.0, 0.0))
+    return Problem(
+        "", Polygons((-5.0, 15.0, -5.0, 15.0), ((square,),), "m"), (0.0, 0.0), (10.0, 0.0)
+    )
 
 
 def assert_sound(problem, plan, turning_radius):
-    """Free by the certified check, from start to target, without a corner where no turn is tight, and not shorter than possible."""
+    """Free by the certified check, from start to target, without a corner where no turn is tight,
+    and not shorter than possible.
+    """
     found = check(curves.bezier_pieces(plan.path), region(problem.workspace))
     assert found.feasible
     assert plan.path.points[0].tolist() == list(problem.start)
@@ -61,7 +76,9 @@ def assert_sound(problem, plan, turning_radius):
 
 
 @pytest.mark.parametrize("name", MAPS)
-@pytest.mark.parametrize(("turning_radius", "offset"), [(0.3, 0.0), (0.5, 0.2), (3.0, 0.0), (0.0, 0.4)])
+@pytest.mark.parametrize(
+    ("turning_radius", "offset"), [(0.3, 0.0), (0.5, 0.2), (3.0, 0.0), (0.0, 0.4)]
+)
 def test_benchmark_maps(name, turning_radius, offset):
     problem = benchmark(name)
     plan = rounded(problem, turning_radius, offset)
@@ -73,14 +90,19 @@ def test_benchmark_maps(name, turning_radius, offset):
 
 def test_without_a_radius_it_is_the_shortest_path():
     problem = benchmark("complex2")
-    assert rounded(problem, 0.0).objective == pytest.approx(shortest_path(problem).length, abs=1e-12)
+    assert rounded(problem, 0.0).objective == pytest.approx(
+        shortest_path(problem).length, abs=1e-12
+    )
 
 
 def test_one_corner_by_hand():
-    """Legs from (0, 0) and to (10, 0) touch circles of radius 1 below the corners; the arc between them is flat for 2 m."""
+    """Legs from (0, 0) and to (10, 0) touch circles of radius 1 below the corners; the arc between
+    them is flat for 2 m.
+    """
     problem = one_corner()
     plan = rounded(problem, 1.0)
-    # Both turns have the inward direction of the whole bend only if they are joined; here each has room of its own.
+    # Both turns have the inward direction of the whole bend only if they are joined; here each has
+    # room of its own.
     inward = np.array([math.sin(math.atan2(2, 4) / 2), -math.cos(math.atan2(2, 4) / 2)])
     centre = np.array([4.0, 2.0]) + inward
     leg = math.sqrt(centre @ centre - 1)
@@ -91,7 +113,9 @@ def test_one_corner_by_hand():
 
 def test_corners_of_a_walls_end_are_one_turn():
     wall = np.array([[4.9, -5.0], [5.1, -5.0], [5.1, 8.0], [4.9, 8.0]])
-    problem = Problem("", Polygons((-5.0, 15.0, -5.0, 15.0), ((wall,),), "m"), (4.0, 0.0), (6.0, 0.0))
+    problem = Problem(
+        "", Polygons((-5.0, 15.0, -5.0, 15.0), ((wall,),), "m"), (4.0, 0.0), (6.0, 0.0)
+    )
     plan = rounded(problem, 2.0)
     found, _ = assert_sound(problem, plan, 2.0)
     assert found.clearance < 1e-6
@@ -99,8 +123,15 @@ def test_corners_of_a_walls_end_are_one_turn():
 
 
 def test_one_circle_is_gone_round_by_its_own_arc():
-    """The tangents and the arc of a unit circle are 2 sqrt 3 + pi / 3 long; a larger turn touches the circle at its top alone."""
-    disc = Problem("", Circles((-5.0, 5.0, -5.0, 5.0), np.zeros((1, 2)), np.ones(1), "m"), (-2.0, 0.0), (2.0, 0.0))
+    """The tangents and the arc of a unit circle are 2 sqrt 3 + pi / 3 long; a larger turn touches
+    the circle at its top alone.
+    """
+    disc = Problem(
+        "",
+        Circles((-5.0, 5.0, -5.0, 5.0), np.zeros((1, 2)), np.ones(1), "m"),
+        (-2.0, 0.0),
+        (2.0, 0.0),
+    )
     plan = rounded(disc, 0.5)
     assert plan.objective == pytest.approx(2 * math.sqrt(3) + math.pi / 3, rel=1e-5)
     assert plan.extra == {"turns": 1, "tight_turns": 0, "least_radius": 1.0}
@@ -127,7 +158,12 @@ def test_random_circles(seed, turning_radius, offset):
 def test_path_ends_at_the_target_to_the_last_bit():
     """In this world the last leg, begun at its first point, misses the target by a bit."""
     rng = np.random.default_rng(869)
-    problem = Problem("", Circles((-10.0, 10.0, -10.0, 10.0), rng.uniform(-9, 9, (9, 2)), np.full(9, 1.5), "m"), (0.0, 0.0), (4.0, 6.0))
+    problem = Problem(
+        "",
+        Circles((-10.0, 10.0, -10.0, 10.0), rng.uniform(-9, 9, (9, 2)), np.full(9, 1.5), "m"),
+        (0.0, 0.0),
+        (4.0, 6.0),
+    )
     assert_sound(problem, rounded(problem, 0.4), 0.4)
 
 
@@ -159,13 +195,17 @@ def test_start_is_target():
 
 def test_no_way():
     wall = np.array([[4.0, -5.0], [6.0, -5.0], [6.0, 15.0], [4.0, 15.0]])
-    plan = rounded(one_corner()._replace(workspace=Polygons((-5.0, 15.0, -5.0, 15.0), ((wall,),), "m")), 1.0)
+    plan = rounded(
+        one_corner()._replace(workspace=Polygons((-5.0, 15.0, -5.0, 15.0), ((wall,),), "m")), 1.0
+    )
     assert plan.path is None
     assert plan.objective == math.inf
 
 
 def test_rounding_is_fast():
-    """At most 5 ms a map beside the shortest path itself; the best of some runs, for other processes take time as well."""
+    """At most 5 ms a map beside the shortest path itself; the best of some runs, for other
+    processes take time as well.
+    """
     for name in MAPS:
         problem = benchmark(name)
         seconds = []

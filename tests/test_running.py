@@ -1,4 +1,6 @@
-"""A chunk of runs: rows in the order of conditions and repeats whatever order they were made in, stable times, and the limit of a run."""
+"""A chunk of runs: rows in the order of conditions and repeats whatever order they were made in,
+stable times, and the limit of a run.
+"""
 
 import subprocess
 import sys
@@ -12,7 +14,12 @@ from bezierplan.running import execution, watchdog
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
-PROBLEM = Problem("disc", Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"), (1.0, 5.0), (9.0, 5.0))
+PROBLEM = Problem(
+    "disc",
+    Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"),
+    (1.0, 5.0),
+    (9.0, 5.0),
+)
 PLANNER = """
 import numpy as np
 from bezierplan.planners import Path, Plan
@@ -46,9 +53,17 @@ def job(folder, **changed):
 def test_rows_stand_in_order_and_do_not_depend_on_it(tmp_path, monkeypatch):
     given = job(tmp_path)
     runs, times = execution.run_chunk({"disc": PROBLEM}, given)
-    assert runs["id"].to_pylist() == [f"study/bends/disc,bend={bend}/bend/{repeat}" for bend in (0.0, 1.0, 2.0) for repeat in range(4, 10)]
+    assert runs["id"].to_pylist() == [
+        f"study/bends/disc,bend={bend}/bend/{repeat}"
+        for bend in (0.0, 1.0, 2.0)
+        for repeat in range(4, 10)
+    ]
     assert times["id"].to_pylist() == runs["id"].to_pylist()
-    monkeypatch.setattr(execution, "_order", lambda job, conditions, repeats: [(k, n) for k in range(conditions) for n in repeats])
+    monkeypatch.setattr(
+        execution,
+        "_order",
+        lambda job, conditions, repeats: [(k, n) for k in range(conditions) for n in repeats],
+    )
     again, _ = execution.run_chunk({"disc": PROBLEM}, given)
     assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
 
@@ -60,20 +75,30 @@ def test_conditions_take_turns(tmp_path):
     assert order != execution._order(job(tmp_path, method="other"), 3, range(4, 10))
     assert len({k for k, _ in order[:6]}) > 1
     # No condition is always first.
-    assert {execution._order(job(tmp_path, method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)} == {0, 1, 2}
+    assert {
+        execution._order(job(tmp_path, method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)
+    } == {0, 1, 2}
 
 
 def test_deterministic_planner_is_run_once_a_condition(tmp_path):
     given = job(tmp_path)
-    (tmp_path / "bend.py").write_text(PLANNER.replace("made = []", "deterministic = True\nmade = []").replace("rng.random()", "1.0"))
+    (tmp_path / "bend.py").write_text(
+        PLANNER.replace("made = []", "deterministic = True\nmade = []").replace(
+            "rng.random()", "1.0"
+        )
+    )
     runs, times = execution.run_chunk({"disc": PROBLEM}, given)
     assert runs["repeat"].to_pylist() == [*range(4, 10)] * 3
     assert len(set(times["cpu_s"].to_pylist())) <= 3
-    assert runs["objective"].to_pylist() == [objective for objective in (5.0, 6.0, 7.0) for _ in range(6)]
+    assert runs["objective"].to_pylist() == [
+        objective for objective in (5.0, 6.0, 7.0) for _ in range(6)
+    ]
 
 
 def warm_up(seconds):
-    """How many runs are thrown away that take so many seconds one after the other, the last for ever."""
+    """How many runs are thrown away that take so many seconds one after the other, the last for
+    ever.
+    """
     taken = []
 
     def once():
@@ -116,30 +141,49 @@ watchdog.settle()
 
 def watched(folder, work, limit=2.0, pause=0.0):
     source = WATCHED.format(limit=limit, work=work, pause=pause)
-    return subprocess.run([sys.executable, "-c", source], cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+    return subprocess.run(
+        [sys.executable, "-c", source],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
 
 
 @pytest.mark.parametrize(
     ("work", "told"),
     [
-        # The sum holds Python's lock for minutes: neither a thread nor a signal handler of the process would come to its turn.
+        # The sum holds Python's lock for minutes: neither a thread nor a signal handler of the
+        # process would come to its turn.
         ("sum(range(10**11))", "not done within the time limit of 2 s; it is ended"),
         ("os._exit(0)", "its process ended itself with exit status 0, before it was done"),
         ("os._exit(7)", "its process ended itself with exit status 7, before it was done"),
         (
             "os.kill(os.getpid(), signal.SIGKILL)",
-            "its process was ended by signal SIGKILL, by itself, by another program, or for want of memory",
+            "its process was ended by signal SIGKILL, by itself, by another program, or for want "
+            "of memory",
         ),
         ("ctypes.string_at(0)", "its process was ended by signal SIGSEGV"),
         ("os.abort()", "its process was ended by signal SIGABRT"),
         # A child holds whatever a fork inherits.
-        ("os.fork() and os._exit(3) or time.sleep(600)", "its process ended itself with exit status 3, before it was done"),
-        ("os.closerange(3, 99); time.sleep(600)", "not done within the time limit of 2 s; it is ended"),
+        (
+            "os.fork() and os._exit(3) or time.sleep(600)",
+            "its process ended itself with exit status 3, before it was done",
+        ),
+        (
+            "os.closerange(3, 99); time.sleep(600)",
+            "not done within the time limit of 2 s; it is ended",
+        ),
     ],
 )
 def test_whatever_ends_a_run_is_told_in_one_line_that_names_it(work, told, tmp_path):
     done = watched(tmp_path, work)
-    assert (done.returncode, done.stdout, done.stderr) == (1, "", f"run second: {told} (log: log)\n")
+    assert (done.returncode, done.stdout, done.stderr) == (
+        1,
+        "",
+        f"run second: {told} (log: log)\n",
+    )
     assert (tmp_path / "log").read_text() == f"CRITICAL run second: {told} (log: log)\n"
 
 
@@ -148,13 +192,16 @@ def test_pauses_between_runs_and_short_runs_are_not_ended(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "end\n", "")
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux gives a process the children of its children")
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="only Linux gives a process the children of its children"
+)
 @pytest.mark.parametrize(
     "work",
     [
         "subprocess.Popen(['sleep', '600'], start_new_session=True)",
         # A daemon: its parent has ended, so nobody knows whose child it was.
-        "subprocess.run([sys.executable, '-c', 'import subprocess; subprocess.Popen([\"sleep\", \"600\"], start_new_session=True)'])",
+        "subprocess.run([sys.executable, '-c', 'import subprocess; subprocess.Popen([\"sleep\", "
+        '"600"], start_new_session=True)\'])',
     ],
 )
 def test_processes_left_behind_end_with_the_job(work, tmp_path):
@@ -176,7 +223,8 @@ FAULTS = {
     "raise ValueError('a\\x1b[31m\\r\\0b' + 'c' * 10**6)": r"ValueError: a\x1b[31m\r\x00bccc",
     "import subprocess; subprocess.Popen(['sleep', '600'], start_new_session=True)": watchdog.LEFT,
     "import os, time; os.fork() or time.sleep(600)": watchdog.LEFT,
-    "import multiprocessing as m, time; m.get_context('fork').Process(target=time.sleep, args=(600,)).start()": watchdog.LEFT,
+    "import multiprocessing as m, time; m.get_context('fork').Process(target=time.sleep, "
+    "args=(600,)).start()": watchdog.LEFT,
 }
 
 
@@ -209,13 +257,22 @@ UNREPEATABLE = {
 def test_run_that_cannot_be_repeated_is_refused(fault, tmp_path):
     given = job(tmp_path)
     file = tmp_path / "bend.py"
-    file.write_text(PLANNER.replace("    made.append", f"    {UNREPEATABLE[fault]}\n    made.append"))
-    with pytest.raises(RuntimeError, match=r"with the same generator its run has another (objective|length)"):
+    file.write_text(
+        PLANNER.replace("    made.append", f"    {UNREPEATABLE[fault]}\n    made.append")
+    )
+    with pytest.raises(
+        RuntimeError, match=r"with the same generator its run has another (objective|length)"
+    ):
         execution.run_chunk({"disc": PROBLEM}, given)
 
 
 def test_planner_that_is_not_deterministic_as_it_says_is_refused(tmp_path):
     given = job(tmp_path)
-    (tmp_path / "bend.py").write_text(PLANNER.replace("made = []", "deterministic = True\nmade = []"))
-    with pytest.raises(RuntimeError, match="deterministic = True, but with another generator its run has another objective"):
+    (tmp_path / "bend.py").write_text(
+        PLANNER.replace("made = []", "deterministic = True\nmade = []")
+    )
+    with pytest.raises(
+        RuntimeError,
+        match="deterministic = True, but with another generator its run has another objective",
+    ):
         execution.run_chunk({"disc": PROBLEM}, given)

@@ -1,4 +1,6 @@
-"""Expected running times, performance profiles and mean ranks over problems: small tables whose answers can be counted."""
+"""Expected running times, performance profiles and mean ranks over problems: small tables whose
+answers can be counted.
+"""
 
 import math
 
@@ -14,25 +16,41 @@ from panels import options_of, panels_of
 from bezierplan.analysis import metrics, running_time
 from bezierplan.analysis.results import Results
 from bezierplan.figures import sheet
-from bezierplan.figures.panels import Sources, critical_difference, expected_running_time, performance_profile
+from bezierplan.figures.panels import (
+    Sources,
+    critical_difference,
+    expected_running_time,
+    performance_profile,
+)
 
 
 def results(rows) -> Results:
-    """Runs (problem, method, length over the bound or None for a path that is not certified, evaluations), numbered within each method."""
+    """Runs (problem, method, length over the bound or None for a path that is not certified,
+    evaluations), numbered within each method.
+    """
     runs = pd.DataFrame(rows, columns=["condition", "method", "over", "evaluations"])
     runs["repeat"] = runs.groupby(["condition", "method"]).cumcount()
     runs["id"] = runs["condition"] + "/" + runs["method"] + "/" + runs["repeat"].map(str)
     runs["feasible"] = runs["over"].notna()
     # A path that is not certified can be as short as it likes.
     runs = runs.assign(
-        bound=10.0, length=10 * runs["over"].fillna(0.5), cpu_s=runs["evaluations"] / 100, experiment="e", problem=runs["condition"]
+        bound=10.0,
+        length=10 * runs["over"].fillna(0.5),
+        cpu_s=runs["evaluations"] / 100,
+        experiment="e",
+        problem=runs["condition"],
     )
     return Results(runs, {}, pd.DataFrame())
 
 
 TWO = results(
     [
-        *[("p", "good", 1.005, 100), ("p", "good", 1.03, 200), ("p", "good", None, 300), ("p", "good", 1.2, 400)],
+        *[
+            ("p", "good", 1.005, 100),
+            ("p", "good", 1.03, 200),
+            ("p", "good", None, 300),
+            ("p", "good", 1.2, 400),
+        ],
         *[("p", "bad", None, 50), ("p", "bad", 1.5, 50)],
         *[("q", "good", 1.0, 10), ("q", "good", 1.0, 10)],
         *[("q", "bad", 1.04, 20), ("q", "bad", 1.04, 20)],
@@ -42,16 +60,26 @@ TWO = results(
 
 def value(metric, condition, method):
     runs = TWO.runs
-    own = metrics.values(runs, metric, {})[(runs["condition"] == condition) & (runs["method"] == method)]
+    own = metrics.values(runs, metric, {})[
+        (runs["condition"] == condition) & (runs["method"] == method)
+    ]
     assert own.nunique() == 1, "it belongs to all runs of a method"
     return own.iloc[0]
 
 
 @pytest.mark.parametrize(
-    ("percent", "good", "bad"), [(1, 1000 / 1, math.inf), (2, 1000 / 1, math.inf), (5, 1000 / 2, math.inf), (10, 1000 / 2, math.inf)]
+    ("percent", "good", "bad"),
+    [
+        (1, 1000 / 1, math.inf),
+        (2, 1000 / 1, math.inf),
+        (5, 1000 / 2, math.inf),
+        (10, 1000 / 2, math.inf),
+    ],
 )
 def test_work_of_all_runs_over_those_that_get_there(percent, good, bad):
-    """Also of those that do not: 100 + 200 + 300 + 400 evaluations, of which one or two are enough."""
+    """Also of those that do not: 100 + 200 + 300 + 400 evaluations, of which one or two are
+    enough.
+    """
     assert value(f"evaluations_to_{percent}pct", "p", "good") == good
     assert value(f"evaluations_to_{percent}pct", "p", "bad") == bad
     assert value(f"cpu_s_to_{percent}pct", "p", "good") == pytest.approx(good / 100)
@@ -68,7 +96,9 @@ def test_a_path_that_is_not_certified_solves_nothing_however_short():
 
 @given(st.floats(0.05, 1), st.integers(0, 2**32 - 1))
 def test_restarts_cost_what_is_expected(chance, seed):
-    """Restarts until a success: the mean work of many is that of all their runs over their number, by the definition."""
+    """Restarts until a success: the mean work of many is that of all their runs over their number,
+    by the definition.
+    """
     rng = np.random.default_rng(seed)
     work, done, spent, restarts = rng.uniform(1, 9, 400), rng.random(400) < chance, 0.0, []
     for each, got in zip(work, done):
@@ -82,7 +112,9 @@ def test_restarts_cost_what_is_expected(chance, seed):
 
 def profile(**options):
     frame = performance_profile.data(TWO, options_of(performance_profile, **options))
-    return {method: list(zip(own["ratio"], own["share"])) for method, own in frame.groupby("method")}, frame.set_index("method")
+    return {
+        method: list(zip(own["ratio"], own["share"])) for method, own in frame.groupby("method")
+    }, frame.set_index("method")
 
 
 def test_profile_of_lengths_counts_the_median_run():
@@ -103,7 +135,13 @@ def test_profile_of_work_leaves_out_what_a_method_never_solves():
     assert counts["solved"].unique().tolist() == [1], "no method solves p"
 
 
-@given(st.lists(st.lists(st.one_of(st.just(math.inf), st.floats(0.01, 100)), min_size=3, max_size=3), min_size=1, max_size=8))
+@given(
+    st.lists(
+        st.lists(st.one_of(st.just(math.inf), st.floats(0.01, 100)), min_size=3, max_size=3),
+        min_size=1,
+        max_size=8,
+    )
+)
 def test_the_best_of_each_solved_problem_has_the_ratio_1(rows):
     found = running_time.ratios(pd.DataFrame(rows, columns=list("abc"))).to_numpy()
     values = np.array(rows)
@@ -114,16 +152,33 @@ def test_the_best_of_each_solved_problem_has_the_ratio_1(rows):
 
 
 def test_methods_need_shared_problems():
-    part = TWO._replace(runs=TWO.runs[(TWO.runs["method"] == "good") | (TWO.runs["condition"] == "p")])
+    part = TWO._replace(
+        runs=TWO.runs[(TWO.runs["method"] == "good") | (TWO.runs["condition"] == "p")]
+    )
     for panel in (performance_profile, expected_running_time):
         with pytest.raises(ValueError, match="bad has no run under q"):
-            panel.data(part, options_of(panel, cost="evaluations", **({"within": 0.05} if panel is performance_profile else {})))
+            panel.data(
+                part,
+                options_of(
+                    panel,
+                    cost="evaluations",
+                    **({"within": 0.05} if panel is performance_profile else {}),
+                ),
+            )
 
 
 def test_expected_running_times_of_one_problem_and_of_several():
-    frame = expected_running_time.data(TWO, options_of(expected_running_time, cost="evaluations")).set_index(["method", "within"])
+    frame = expected_running_time.data(
+        TWO, options_of(expected_running_time, cost="evaluations")
+    ).set_index(["method", "within"])
     row = frame.loc["good", 0.05]
-    assert (row["value"], row["problems"], row["reached"], row["runs"], row["successes"]) == (10, 2, 2, 6, 4), "the lower of 500 and 10"
+    assert (row["value"], row["problems"], row["reached"], row["runs"], row["successes"]) == (
+        10,
+        2,
+        2,
+        6,
+        4,
+    ), "the lower of 500 and 10"
     assert frame.loc[("bad", 0.05), "reached"] == 1
     assert frame.loc[("bad", 0.01), "value"] == math.inf
     of_p = TWO._replace(runs=TWO.runs[TWO.runs["condition"] == "p"])
@@ -137,7 +192,9 @@ def test_expected_running_times_of_one_problem_and_of_several():
 
 
 def test_intervals_cover_what_many_runs_give():
-    """Of experiments with 100 runs, which succeed 3 times in 10, about 95 in 100 intervals hold 1 / 0.3."""
+    """Of experiments with 100 runs, which succeed 3 times in 10, about 95 in 100 intervals hold 1 /
+    0.3.
+    """
     rng, held = np.random.default_rng(1), 0
     for _ in range(200):
         done = rng.random(100) < 0.3
@@ -153,7 +210,9 @@ def test_ranks_over_problems_are_those_of_the_median_run():
         for name, overs in {"a": (1.1, 3, 1.1), "b": (1.2, 1.2, 1), "c": (None, None, 1)}.items()
         for over in overs
     ]
-    frame = critical_difference.data(results(rows), options_of(critical_difference, metric="certified_length", unit="problem"))
+    frame = critical_difference.data(
+        results(rows), options_of(critical_difference, metric="certified_length", unit="problem")
+    )
     ranks = frame[frame["part"] == "rank"].set_index("method")["value"]
     assert ranks.to_dict() == {"a": 1, "b": 2, "c": 3}
     assert frame["units"].unique().tolist() == [5]
@@ -168,22 +227,37 @@ def test_profile_as_drawn(options, tmp_path):
 
 
 def test_running_times_as_drawn(tmp_path):
-    words = drawn({"kind": "expected_running_time", "experiment": "e", "cost": "evaluations"}, tmp_path)
+    words = drawn(
+        {"kind": "expected_running_time", "experiment": "e", "cost": "evaluations"}, tmp_path
+    )
     assert {"the good one", "bad", "expected evaluations", "never", "within 5 %"} <= set(words)
 
 
 def drawn(panel, folder):
     file = str(folder / "figure.csv")
     sheet.write_data(sheet.data(panels_of([panel]), Sources({"e": TWO})), file)
-    figure = sheet.draw(panels_of([panel]), sheet.read_data(file), sheet.Scene({"e": {}}, {}, {"good": "the good one"}, "m"), 1)
-    return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [figure.get_label()]
+    figure = sheet.draw(
+        panels_of([panel]),
+        sheet.read_data(file),
+        sheet.Scene({"e": {}}, {}, {"good": "the good one"}, "m"),
+        1,
+    )
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [
+        figure.get_label()
+    ]
 
 
 def test_a_profile_is_drawn_as_its_steps():
     frame, _ = performance_profile.data(TWO, options_of(performance_profile, cost="length")), None
     axes = Figure().add_subplot()
-    performance_profile.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(performance_profile, cost="length"))
-    (line,) = [line for line in axes.lines if line.get_drawstyle() == "steps-post" and len(line.get_xdata()) == 4]
+    performance_profile.draw(
+        axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(performance_profile, cost="length")
+    )
+    (line,) = [
+        line
+        for line in axes.lines
+        if line.get_drawstyle() == "steps-post" and len(line.get_xdata()) == 4
+    ]
     x, y = line.get_data()
     assert list(x[:3]) == pytest.approx([1, 1.04, 15 / 10.3])
     assert list(y) == [0, 0.5, 1, 1]

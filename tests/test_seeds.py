@@ -16,7 +16,10 @@ JOB = {
     "planner": "straight_line",
     "settings": {},
     # The first two have one layout in common.
-    "problems": {name: {"workspace": "w", "layout": layout} for name, layout in (("p", 3), ("q", 3), ("r", 4))},
+    "problems": {
+        name: {"workspace": "w", "layout": layout}
+        for name, layout in (("p", 3), ("q", 3), ("r", 4))
+    },
     "vary": {"x": [1, 2]},
     "presets": {},
     "repeats": [0, 3],
@@ -24,7 +27,9 @@ JOB = {
 
 
 def first_number(seeds, problem="p", x=1, repeat=0, **changes):
-    return execution.generator(JOB | {"seeds": seeds} | changes, execution.Condition(problem, {"x": x}), repeat).random()
+    return execution.generator(
+        JOB | {"seeds": seeds} | changes, execution.Condition(problem, {"x": x}), repeat
+    ).random()
 
 
 CHANGES = {
@@ -44,7 +49,11 @@ CHANGES = {
     ids=["own", "shared", "common"],
 )
 def test_a_seed_depends_on_what_its_rule_names_and_on_nothing_else(seeds, without):
-    same = {what for what, change in CHANGES.items() if first_number(seeds, **change) == first_number(seeds)}
+    same = {
+        what
+        for what, change in CHANGES.items()
+        if first_number(seeds, **change) == first_number(seeds)
+    }
     assert same == without
 
 
@@ -78,12 +87,20 @@ def job(tmp_path):
     return JOB | {"planner": str(tmp_path / "random_point.py"), "seeds": "own", "repeats": [4, 7]}
 
 
-PROBLEMS = {name: Problem(name, from_lines(["....", "...."], 1.0, "cell"), (0.5, 0.5), (3.5, 1.5)) for name in "pqr"}
+PROBLEMS = {
+    name: Problem(name, from_lines(["....", "...."], 1.0, "cell"), (0.5, 0.5), (3.5, 1.5))
+    for name in "pqr"
+}
 
 
 def test_a_chunk_is_every_condition_with_all_its_repeats(job):
     runs, times = (table.to_pandas() for table in execution.run_chunk(PROBLEMS, job))
-    expected = [f"paper/first/{problem},x={x}/mine/{repeat}" for problem in "pqr" for x in (1, 2) for repeat in (4, 5, 6)]
+    expected = [
+        f"paper/first/{problem},x={x}/mine/{repeat}"
+        for problem in "pqr"
+        for x in (1, 2)
+        for repeat in (4, 5, 6)
+    ]
     assert runs["id"].to_list() == times["id"].to_list() == expected
     assert runs["repeat"].to_list() == [4, 5, 6] * 6
     assert runs["generations"].to_list() == [2] * 18
@@ -94,7 +111,9 @@ def test_a_chunk_is_every_condition_with_all_its_repeats(job):
 
 
 def test_runs_that_repeat_exactly_are_done_once():
-    runs, times = (table.to_pandas() for table in execution.run_chunk(PROBLEMS, JOB | {"seeds": "own"}))
+    runs, times = (
+        table.to_pandas() for table in execution.run_chunk(PROBLEMS, JOB | {"seeds": "own"})
+    )
     assert runs["repeat"].to_list() == [0, 1, 2] * 6
     assert runs["length"].to_numpy() == pytest.approx(np.hypot(3, 1))
     assert runs["feasible"].all()

@@ -1,4 +1,6 @@
-"""Which verdicts depend on an alternative, and printed lengths below the exact bound: small tables by hand."""
+"""Which verdicts depend on an alternative, and printed lengths below the exact bound: small tables
+by hand.
+"""
 
 import pandas as pd
 import pytest
@@ -8,7 +10,14 @@ from bezierplan.analysis import audit, sensitivity
 
 def claims(**verdicts):
     rows = [
-        {"id": name, "primary": True, "statement": f"says {name}", "verdict": verdict, "holds": "1 of 1", "effect": 1.5}
+        {
+            "id": name,
+            "primary": True,
+            "statement": f"says {name}",
+            "verdict": verdict,
+            "holds": "1 of 1",
+            "effect": 1.5,
+        }
         for name, verdict in verdicts.items()
     ]
     return pd.DataFrame([*rows, rows[0] | {"primary": False, "verdict": "undecided"}])
@@ -17,17 +26,42 @@ def claims(**verdicts):
 def test_a_verdict_changes_where_the_alternative_has_another_one():
     in_force = claims(C1="supported", C2="contradicted", C3="no effect")
     described = {
-        "O2_8": {"study": "paper", "assumption": "O2", "detail": "neighbours", "setting": "k", "default": {"mine": 4}, "alternative": 8},
-        "O3_0": {"study": "paper", "assumption": "O3", "detail": "memory", "setting": "m", "default": 1, "alternative": 0},
+        "O2_8": {
+            "study": "paper",
+            "assumption": "O2",
+            "detail": "neighbours",
+            "setting": "k",
+            "default": {"mine": 4},
+            "alternative": 8,
+        },
+        "O3_0": {
+            "study": "paper",
+            "assumption": "O3",
+            "detail": "memory",
+            "setting": "m",
+            "default": 1,
+            "alternative": 0,
+        },
     }
     tried = {
         "O2_8": pd.DataFrame(
-            {"id": ["C1", "C2"], "verdict": ["supported", "partly"], "holds": ["1 of 1", "2 of 3"], "effect": [1.25, -2.0]}
+            {
+                "id": ["C1", "C2"],
+                "verdict": ["supported", "partly"],
+                "holds": ["1 of 1", "2 of 3"],
+                "effect": [1.25, -2.0],
+            }
         ),
-        "O3_0": pd.DataFrame({"id": ["C3"], "verdict": ["supported"], "holds": ["1 of 1"], "effect": [0.5]}),
+        "O3_0": pd.DataFrame(
+            {"id": ["C3"], "verdict": ["supported"], "holds": ["1 of 1"], "effect": [0.5]}
+        ),
     }
     table = sensitivity.sensitivity(in_force, tried, described)
-    assert table[["assumption", "alternative", "claim"]].to_numpy().tolist() == [["O2", 8, "C1"], ["O2", 8, "C2"], ["O3", 0, "C3"]]
+    assert table[["assumption", "alternative", "claim"]].to_numpy().tolist() == [
+        ["O2", 8, "C1"],
+        ["O2", 8, "C2"],
+        ["O3", 0, "C3"],
+    ]
     assert table["changed"].to_list() == [False, True, True]
     assert table["verdict"].to_list() == ["supported", "contradicted", "no effect"]
     assert table["verdict_alternative"].to_list() == ["supported", "partly", "supported"]
@@ -50,7 +84,9 @@ def test_a_verdict_changes_where_the_alternative_has_another_one():
         ("31", 30.0, True),
     ],
 )
-def test_a_printed_length_may_lie_below_the_bound_by_half_a_unit_of_its_last_digit(printed, bound, consistent, tmp_path):
+def test_a_printed_length_may_lie_below_the_bound_by_half_a_unit_of_its_last_digit(
+    printed, bound, consistent, tmp_path
+):
     file = tmp_path / "table1.csv"
     file.write_text(
         f"problem,method,metric,statistic,n,unit,value\nacross,plain,length,min,10,m,{printed}\nacross,plain,cpu_s,min,10,s,1\n"

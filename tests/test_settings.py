@@ -1,4 +1,6 @@
-"""Settings of planners: one declaration gives the signature, the checks, the texts and what kernels read."""
+"""Settings of planners: one declaration gives the signature, the checks, the texts and what kernels
+read.
+"""
 
 import inspect
 from enum import IntEnum
@@ -7,7 +9,16 @@ from typing import Annotated, Literal, NamedTuple
 import pytest
 
 from bezierplan.planners import known_planners, planner_module, planner_settings
-from bezierplan.planners.parts.settings import UNITS, About, Range, filled, in_cells, setting, setting_fault, with_settings
+from bezierplan.planners.parts.settings import (
+    UNITS,
+    About,
+    Range,
+    filled,
+    in_cells,
+    setting,
+    setting_fault,
+    with_settings,
+)
 from bezierplan.running.digest import _parsed
 
 Rule = IntEnum("Rule", "keep drop", start=0)
@@ -40,7 +51,9 @@ def test_settings_are_given_by_name_and_arrive_as_numbers():
     assert (further, start) == ((True,), "start")
 
 
-@pytest.mark.parametrize("values", [{"tries": 2}, {"tries": 2, "reach": 1.0, "rule": "keep", "exact": True, "speed": 1}])
+@pytest.mark.parametrize(
+    "values", [{"tries": 2}, {"tries": 2, "reach": 1.0, "rule": "keep", "exact": True, "speed": 1}]
+)
 def test_a_missing_or_unknown_setting_is_no_call(values):
     with pytest.raises(TypeError):
         plan(None, None, **values)
@@ -48,8 +61,19 @@ def test_a_missing_or_unknown_setting_is_no_call(values):
 
 def test_signature_and_documentation_follow_from_the_declaration():
     parameters = inspect.signature(plan).parameters.values()
-    assert [each.name for each in parameters] == ["problem", "rng", "start", "tries", "reach", "rule", "exact"]
-    assert [each.name for each in parameters if each.kind is each.KEYWORD_ONLY] == [*Settings._fields, *Further._fields]
+    assert [each.name for each in parameters] == [
+        "problem",
+        "rng",
+        "start",
+        "tries",
+        "reach",
+        "rule",
+        "exact",
+    ]
+    assert [each.name for each in parameters if each.kind is each.KEYWORD_ONLY] == [
+        *Settings._fields,
+        *Further._fields,
+    ]
     assert "tries : a whole number from 1 to 9\n    random points (paper, Table 1)" in plan.__doc__
     assert "rule : one of keep, drop\n    what happens to them (assumed)" in plan.__doc__
 
@@ -97,7 +121,12 @@ def test_every_setting_of_the_package_says_in_one_line_what_it_means_and_whence(
 
 
 def test_words_about_a_setting_run_no_job_again_but_its_unit_does():
-    texts = ['About("a", "b")', 'About("c", "d")', 'About("a", "b", UNITS)', 'About("c", unit=UNITS)']
+    texts = [
+        'About("a", "b")',
+        'About("c", "d")',
+        'About("a", "b", UNITS)',
+        'About("c", unit=UNITS)',
+    ]
     words, others, unit, named = (_parsed(text.encode()).tree for text in texts)
     assert words == others
     assert len({words, unit, named}) == 3

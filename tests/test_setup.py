@@ -35,7 +35,9 @@ TARGETS = {
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
     command = ["make", "--no-print-directory", *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+    return subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, timeout=60, check=False
+    )
 
 
 def executable(file: Path, text: str) -> Path:
@@ -64,7 +66,9 @@ def finished(tree):
 
 
 def missing_module(name: str) -> str:
-    """An interpreter like this one in which a module cannot be imported, as on a Debian without python3-venv."""
+    """An interpreter like this one in which a module cannot be imported, as on a Debian without
+    python3-venv.
+    """
     return f"""#!{sys.executable}
 import sys
 sys.modules["{name}"] = None
@@ -90,7 +94,10 @@ def test_make_alone_lists_every_target(tree):
 @pytest.mark.parametrize("target", ["reproduce", "smoke", "test", "lint", "benchmark"])
 def test_every_target_starts_with_the_set_up(tree, target):
     """The steps of set-up come first in what make would do."""
-    assert "Setting up .venv" in make(tree, "-n", target, f"PYTHON={sys.executable}").stdout.splitlines()[0]
+    assert (
+        "Setting up .venv"
+        in make(tree, "-n", target, f"PYTHON={sys.executable}").stdout.splitlines()[0]
+    )
 
 
 @pytest.mark.parametrize(
@@ -113,7 +120,10 @@ def test_no_fitting_python_ends_with_one_line_that_says_what_to_do(tree, tmp_pat
     assert answer.returncode != 0
     assert answer.stdout == ""
     assert len(answer.stderr.splitlines()) == 1
-    assert "bezierplan needs Python 3.11 to 3.13 with venv. On Debian or Ubuntu: sudo apt install python3 python3-venv" in answer.stderr
+    assert (
+        "bezierplan needs Python 3.11 to 3.13 with venv. On Debian or Ubuntu: sudo apt install "
+        "python3 python3-venv" in answer.stderr
+    )
     assert not (tree / ".venv").exists()
 
 
@@ -129,7 +139,10 @@ def test_a_folder_whose_name_is_a_command_is_refused(tree, name):
 
 def test_a_folder_with_blanks_is_no_matter(tree):
     tree = tree.rename(tree.parent / "a clone")
-    assert f"{sys.executable} -m venv .venv" in make(tree, "-n", "smoke", f"PYTHON={sys.executable}").stdout
+    assert (
+        f"{sys.executable} -m venv .venv"
+        in make(tree, "-n", "smoke", f"PYTHON={sys.executable}").stdout
+    )
 
 
 def test_the_first_fitting_python_is_taken(tree, tmp_path):
@@ -148,13 +161,22 @@ esac
 """
 
 
-@pytest.mark.parametrize(("code", "asked"), [(0, ["pip", "uv"]), (2, ["pip", "uv", "pip"])], ids=["uv", "uv fails"])
+@pytest.mark.parametrize(
+    ("code", "asked"), [(0, ["pip", "uv"]), (2, ["pip", "uv", "pip"])], ids=["uv", "uv fails"]
+)
 def test_uv_installs_what_is_locked_and_pip_where_uv_cannot(tree, tmp_path, code, asked):
-    answer = make(tree, ".venv/ready", f"PYTHON={executable(tmp_path / 'python', INSTALLER.format(code=code))}")
+    answer = make(
+        tree,
+        ".venv/ready",
+        f"PYTHON={executable(tmp_path / 'python', INSTALLER.format(code=code))}",
+    )
     assert answer.returncode == 0, answer.stderr
     lines = (tree / "installed.txt").read_text().splitlines()
     assert [line.split()[0] for line in lines] == asked
-    assert [line.split()[-1] for line in lines] == ["environment-build.txt", *["environment.txt"] * (len(asked) - 1)]
+    assert [line.split()[-1] for line in lines] == [
+        "environment-build.txt",
+        *["environment.txt"] * (len(asked) - 1),
+    ]
     assert all("--require-hashes --only-binary :all:" in line for line in lines)
     assert (tree / ".venv" / "ready").exists()
 

@@ -1,4 +1,6 @@
-"""Robots in worlds that change: motion, the exact check between steps, policies, and what a clairvoyant robot could reach."""
+"""Robots in worlds that change: motion, the exact check between steps, policies, and what a
+clairvoyant robot could reach.
+"""
 
 import math
 
@@ -20,7 +22,22 @@ from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
-BLIND = Policy("never", 1, False, False, "before", "positions", 0.0, (0.0,), 0.0, math.inf, False, 0.5, "position", 0.05)
+BLIND = Policy(
+    "never",
+    1,
+    False,
+    False,
+    "before",
+    "positions",
+    0.0,
+    (0.0,),
+    0.0,
+    math.inf,
+    False,
+    0.5,
+    "position",
+    0.05,
+)
 WAITS = BLIND._replace(waits=True, sees="after", brake=1.0)
 REPLANS = WAITS._replace(replan="when_blocked", check_margin=0.2, plan_margins=(0.5, 0.0))
 
@@ -29,7 +46,17 @@ def circles(*rows, pace=1.0, end=100):
     """A field of 20 x 20 with circles (x, y, radius, x velocity, y velocity)."""
     table = np.array(rows, dtype=float).reshape(-1, 5)
     square = (0.0, 20.0, 0.0, 20.0)
-    return MovingCircles(square, square, table[:, :2].copy(), table[:, 3:].copy(), table[:, 2].copy(), "circles", pace, end, "m")
+    return MovingCircles(
+        square,
+        square,
+        table[:, :2].copy(),
+        table[:, 3:].copy(),
+        table[:, 2].copy(),
+        "circles",
+        pace,
+        end,
+        "m",
+    )
 
 
 def across(world, start=(0.0, 10.0), target=(20.0, 10.0)):
@@ -44,9 +71,13 @@ def straight(problem, state):
 
 
 def round_about(problem, state):
-    """A planner that goes straight or, where a circle is in the way, through one of two points beside it."""
+    """A planner that goes straight or, where a circle is in the way, through one of two points
+    beside it.
+    """
     for middle in (10.0, 16.0, 4.0):
-        points = np.array([problem.start, ((problem.start[0] + problem.target[0]) / 2, middle), problem.target])
+        points = np.array(
+            [problem.start, ((problem.start[0] + problem.target[0]) / 2, middle), problem.target]
+        )
         bare = MovingCircles(
             problem.workspace.bounds,
             problem.workspace.bounds,
@@ -58,7 +89,9 @@ def round_about(problem, state):
             1,
             "m",
         )
-        if math.isnan(motion_check.check(Motion(points, np.array([0.0, 0.5, 1.0])), bare).collision_at):
+        if math.isnan(
+            motion_check.check(Motion(points, np.array([0.0, 0.5, 1.0])), bare).collision_at
+        ):
             return Plan(Path("polyline", points), 0.0, True, 1, np.zeros(1), "exact", {}), state
     return Plan(None, math.inf, False, 1, np.zeros(1), "none", {}), state
 
@@ -73,7 +106,9 @@ def test_a_circle_is_where_step_by_step_reflection_takes_it(x, velocity, steps):
         position += speed
         while not 0 <= position <= 10:
             position, speed = (-position, -speed) if position < 0 else (20 - position, -speed)
-    found = worlds.positions(np.array([[x, 5.0]]), np.array([[velocity, 0.0]]), np.array([0.0, 10.0, 0.0, 10.0]), steps)
+    found = worlds.positions(
+        np.array([[x, 5.0]]), np.array([[velocity, 0.0]]), np.array([0.0, 10.0, 0.0, 10.0]), steps
+    )
     assert found[0, 0] == pytest.approx(position, abs=1e-9)
     assert found[0, 1] == 5.0
 
@@ -85,7 +120,10 @@ def test_worlds_survive_their_files():
     assert (again.pace, again.end, again.bounds) == (0.5, 100, world.bounds)
     maps = tuple(from_lines(lines, 1.0, "m") for lines in (["..", ".."], ["#.", ".."]))
     changing = ChangingCells(maps, np.array([2.5]), 1.0, 9)
-    assert [worlds.from_json(worlds.to_json(changing)).workspace(time).occupied.sum() for time in (2.4, 2.5)] == [0, 1]
+    assert [
+        worlds.from_json(worlds.to_json(changing)).workspace(time).occupied.sum()
+        for time in (2.4, 2.5)
+    ] == [0, 1]
 
 
 # The exact check
@@ -94,7 +132,9 @@ def test_worlds_survive_their_files():
 @pytest.mark.parametrize(("excess", "hits"), [(-1e-6, True), (1e-6, False)])
 @pytest.mark.parametrize("at", [3.25, 3.5, 3.9])
 def test_grazing_collisions_between_steps_are_found(excess, hits, at):
-    """The robot drives to the right, and the circle to the left and upwards; they are closest at a time between two steps."""
+    """The robot drives to the right, and the circle to the left and upwards; they are closest at a
+    time between two steps.
+    """
     velocity, circle = np.array([1.0, 0.0]), np.array([-0.5, 0.8])
     relative = velocity - circle
     normal = np.array([-relative[1], relative[0]]) / np.hypot(*relative)
@@ -107,7 +147,9 @@ def test_grazing_collisions_between_steps_are_found(excess, hits, at):
     assert found.clearance[3] == pytest.approx(excess, abs=1e-9)
     if hits:
         # Where the quadratic first falls to the radius: half a chord before the closest approach.
-        assert found.collision_at == pytest.approx(at - math.sqrt(1 - (1 + excess) ** 2) / np.hypot(*relative), abs=1e-5)
+        assert found.collision_at == pytest.approx(
+            at - math.sqrt(1 - (1 + excess) ** 2) / np.hypot(*relative), abs=1e-5
+        )
 
 
 def test_a_waiting_robot_can_be_hit():
@@ -119,13 +161,18 @@ def test_a_waiting_robot_can_be_hit():
 
 def test_a_way_out_of_the_field_is_a_collision():
     world = circles()
-    found = motion_check.check(Motion(np.array([[1.0, 1.0], [1.0, 21.0], [1.0, 5.0]]), np.array([0.0, 4.0, 8.0])), world)
+    found = motion_check.check(
+        Motion(np.array([[1.0, 1.0], [1.0, 21.0], [1.0, 5.0]]), np.array([0.0, 4.0, 8.0])), world
+    )
     assert found.collision_at == 4.0
     assert found.depth == 1.0
 
 
 def test_cells_collide_only_while_they_are_occupied():
-    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", ".##.", "...."]))
+    maps = tuple(
+        from_lines(lines, 1.0, "m")
+        for lines in (["....", "....", "...."], ["....", ".##.", "...."])
+    )
     world = ChangingCells(maps, np.array([2.0]), 1.0, 9)
     line = np.array([[0.5, 1.5], [3.5, 1.5]])
     early, late = (Motion(line, np.array(times)) for times in ([0.0, 2.0], [1.5, 3.0]))
@@ -133,7 +180,9 @@ def test_cells_collide_only_while_they_are_occupied():
     # At the change it stands at x = 1.5, in a cell that becomes occupied.
     assert motion_check.check(late, world).collision_at == pytest.approx(2.0)
     # One cell is occupied when it comes.
-    assert motion_check.check(Motion(line, np.array([1.8, 4.8])), world).collision_at == pytest.approx(2.3)
+    assert motion_check.check(
+        Motion(line, np.array([1.8, 4.8])), world
+    ).collision_at == pytest.approx(2.3)
 
 
 # Policies
@@ -163,19 +212,31 @@ def test_a_robot_that_plans_again_drives_round_a_circle_that_comes_into_its_way(
 
 def test_a_robot_without_a_plan_waits_until_the_world_ends():
     world = circles(end=7)
-    ride = drive(world, across(world), REPLANS, lambda problem, state: (straight(problem, state)[0]._replace(path=None), state))
+    ride = drive(
+        world,
+        across(world),
+        REPLANS,
+        lambda problem, state: (straight(problem, state)[0]._replace(path=None), state),
+    )
     assert not ride.arrived
     assert (ride.waited, ride.motion.times[-1]) == (7.0, 7.0)
 
 
 def test_a_robot_that_looks_ahead_ignores_a_circle_that_will_have_passed():
-    world = circles((15, 5, 1, 0, 0.9))  # on the way at step 5, and far above it when the robot comes at step 15
-    near, ahead = (drive(world, across(world), REPLANS._replace(knows=knows), round_about) for knows in ("positions", "velocities"))
+    world = circles(
+        (15, 5, 1, 0, 0.9)
+    )  # on the way at step 5, and far above it when the robot comes at step 15
+    near, ahead = (
+        drive(world, across(world), REPLANS._replace(knows=knows), round_about)
+        for knows in ("positions", "velocities")
+    )
     assert (near.replans > 0, ahead.replans) == (True, 0)
 
 
 def clearances(points, at, begin, end, centres, drift, pace):
-    """Least distance of each circle's centre to a drive between two lengths of way, chord by chord."""
+    """Least distance of each circle's centre to a drive between two lengths of way, chord by
+    chord.
+    """
     lengths = np.concatenate([[begin], at[(at > begin) & (at < end)], [end]])
     places = np.column_stack([np.interp(lengths, at, points[:, axis]) for axis in range(2)])
     relative = places - centres[:, None] - drift[:, None] * ((lengths - begin) / pace)[:, None]
@@ -204,27 +265,39 @@ def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
 
 
 def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
-    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."]))
+    maps = tuple(
+        from_lines(lines, 1.0, "m")
+        for lines in (["....", "....", "...."], ["....", "..#.", "...."])
+    )
     motion = Motion(np.array([[0.5, 1.5], [2.5, 1.5]]), np.array([0.0, 2.0]))
     back = cells.way_to_start(motion, maps[1], "centre")
     assert back[0].tolist() == [2.5, 1.5]
     assert back[-1].tolist() == [1.5, 1.5]
     assert cells.way_to_start(motion, maps[0], "centre").tolist() == [[2.5, 1.5], [2.5, 1.5]]
     # A plan may begin anywhere outside the cell.
-    assert cells.way_to_start(motion, maps[1], "position")[-1] == pytest.approx([2.0, 1.5], abs=0.01)
+    assert cells.way_to_start(motion, maps[1], "position")[-1] == pytest.approx(
+        [2.0, 1.5], abs=0.01
+    )
     assert cells.way_to_start(motion, maps[0], "position").tolist() == [[2.5, 1.5], [2.5, 1.5]]
 
 
 def around(problem, state):
     """A planner that goes through the upper row of cells."""
-    points = np.array([problem.start, (problem.start[0], 2.5), (problem.target[0], 2.5), problem.target])
+    points = np.array(
+        [problem.start, (problem.start[0], 2.5), (problem.target[0], 2.5), problem.target]
+    )
     length = float(np.hypot(*np.diff(points, axis=0).T).sum())
     return Plan(Path("polyline", points), length, True, 1, np.array([length]), "exact", {}), state
 
 
 def change_on_the_spot():
-    """A robot that drives straight is in the middle of a cell when that becomes occupied, at step 2, after it drove without a pause."""
-    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."]))
+    """A robot that drives straight is in the middle of a cell when that becomes occupied, at step
+    2, after it drove without a pause.
+    """
+    maps = tuple(
+        from_lines(lines, 1.0, "m")
+        for lines in (["....", "....", "...."], ["....", "..#.", "...."])
+    )
     world = ChangingCells(maps, np.array([2.0]), 1.0, 30)
     return world, Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5))
 
@@ -238,7 +311,9 @@ def first_straight(problem, state):
 @pytest.mark.parametrize("waits", [True, False])
 def test_a_robot_that_a_cell_hits_drives_back_and_arrives(replan, start, waits):
     world, problem = change_on_the_spot()
-    ride = drive(world, problem, BLIND._replace(replan=replan, start=start, waits=waits), first_straight)
+    ride = drive(
+        world, problem, BLIND._replace(replan=replan, start=start, waits=waits), first_straight
+    )
     assert ride.arrived
     assert ride.waited == 0
     back = np.interp(2.5, ride.motion.times, ride.motion.points[:, 0])
@@ -248,19 +323,28 @@ def test_a_robot_that_a_cell_hits_drives_back_and_arrives(replan, start, waits):
 
 def test_a_way_out_of_an_occupied_cell_ends_at_its_border():
     grid = from_lines(["....", "..#.", "...."], 1.0, "m")
-    assert cells.way_out(grid, way(np.array([[2.5, 1.5], [1.5, 1.5], [0.5, 1.5]]))) == pytest.approx(0.5)
+    assert cells.way_out(
+        grid, way(np.array([[2.5, 1.5], [1.5, 1.5], [0.5, 1.5]]))
+    ) == pytest.approx(0.5)
     assert cells.way_out(grid, way(np.array([[0.5, 1.5], [3.5, 1.5]]))) == 0.0
     # Touching is no way out that is needed.
     assert cells.way_out(grid, way(np.array([[2.0, 1.5], [3.5, 1.5]]))) == 0.0
     assert cells.way_out(grid, way(np.array([[2.5, 1.5], [2.6, 1.6]]))) == 0.0
 
 
-@pytest.mark.parametrize(("replan", "replans"), [("never", 0), ("when_blocked", 0), ("when_changed", 2)])
+@pytest.mark.parametrize(
+    ("replan", "replans"), [("never", 0), ("when_blocked", 0), ("when_changed", 2)]
+)
 def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, replans):
     lines = (["....", "....", "...."], ["#...", "....", "...."], ["....", "....", "...."])
     maps = tuple(from_lines(each, 1.0, "m") for each in lines)
     world = ChangingCells(maps, np.array([0.8, 2.0]), 1.0, 30)
-    ride = drive(world, Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5)), BLIND._replace(replan=replan, waits=True), straight)
+    ride = drive(
+        world,
+        Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5)),
+        BLIND._replace(replan=replan, waits=True),
+        straight,
+    )
     assert (ride.arrived, ride.replans) == (True, replans)
     assert [plan.time for plan in ride.plans[1:]] == [0.8, 2.0][:replans]
 
@@ -274,11 +358,15 @@ def test_circles_that_move_change_the_world_at_every_step(velocity, replans):
 
 def rounded(problem, state):
     """A planner whose curves touch what they pass."""
-    return rounded_shortest_path.plan(problem, np.random.default_rng(0), turning_radius=1.0, offset=0.0), state
+    return rounded_shortest_path.plan(
+        problem, np.random.default_rng(0), turning_radius=1.0, offset=0.0
+    ), state
 
 
 @pytest.mark.parametrize("replan", ["never", "when_blocked", "every_step"])
-@pytest.mark.parametrize("planner", [rounded, lambda problem, state: (shortest_path.plan(problem, None), state)])
+@pytest.mark.parametrize(
+    "planner", [rounded, lambda problem, state: (shortest_path.plan(problem, None), state)]
+)
 def test_a_robot_drives_along_a_plan_that_touches_a_circle(planner, replan):
     world = circles((10, 10.3, 2, 0, 0))
     ride = drive(world, across(world), WAITS._replace(replan=replan), planner)
@@ -290,7 +378,12 @@ def test_a_robot_drives_along_a_plan_that_touches_a_circle(planner, replan):
 def test_a_robot_drives_along_a_curve_that_touches_a_cell(replan):
     grid = from_lines([".........", ".........", "....#....", ".........", "........."], 1.0, "m")
     world = ChangingCells((grid,), np.empty(0), 1.0, 60)
-    ride = drive(world, Problem("across", grid, (0.5, 2.5), (8.5, 2.5)), BLIND._replace(replan=replan, waits=True), rounded)
+    ride = drive(
+        world,
+        Problem("across", grid, (0.5, 2.5), (8.5, 2.5)),
+        BLIND._replace(replan=replan, waits=True),
+        rounded,
+    )
     assert (ride.arrived, ride.waited) == (True, 0.0)
     assert math.isnan(motion_check.check(ride.motion, world).collision_at)
 
@@ -298,14 +391,17 @@ def test_a_robot_drives_along_a_curve_that_touches_a_cell(replan):
 def test_chords_of_a_curve_that_enters_an_obstacle_stay():
     """Only what touches is cut finer: a curve that enters would be cut without end."""
     path = Path("bezier", np.array([[0.0, 10.0], [10.0, 12.0], [20.0, 10.0]]))
-    enters, passes = (region(circles((10, 10.5, radius, 0, 0)).obstacles(0)) for radius in (2.0, 0.1))
+    enters, passes = (
+        region(circles((10, 10.5, radius, 0, 0)).obstacles(0)) for radius in (2.0, 0.1)
+    )
     assert len(drivable(path, 0.5, passes)) <= len(drivable(path, 0.5, enters)) < 150
 
 
 def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
     grid = from_lines(["....", ".##.", "...."], 1.0, "m")
     motion = Motion(np.array([[0.5, 0.5], [0.5, 1.75]]), np.array([0.0, 1.25]))
-    # To (0.5, 1.5), then past the corner at (1, 2), where all centres lie on one side of the straight way, or through (1.5, 2.5).
+    # To (0.5, 1.5), then past the corner at (1, 2), where all centres lie on one side of the
+    # straight way, or through (1.5, 2.5).
     expected = 0.25 + math.dist((0.5, 1.5), (1.5, 2.5)) + math.dist((1.5, 2.5), (2.5, 2.5)) + 1.0
     assert cells.least_plan(motion, grid, (3.5, 2.5)) == pytest.approx(expected)
     assert math.isnan(cells.least_plan(motion, grid, (3.4, 2.5)))
@@ -349,7 +445,9 @@ def test_a_schedule_found_is_free_and_not_before_the_bound(seed):
     search = clairvoyant._search(world, problem)
     lattice = clairvoyant._on_lattice(*search, world.end, True)
     on_lattice = lattice[1].sum() + np.hypot(*np.diff(lattice[0], axis=0).T).sum()
-    points, waits = clairvoyant._pulled(*lattice, search.centres, world.radii, np.array(world.bounds), world.pace)
+    points, waits = clairvoyant._pulled(
+        *lattice, search.centres, world.radii, np.array(world.bounds), world.pace
+    )
     legs = np.hypot(*np.diff(points, axis=0).T)
     times = np.cumsum(np.column_stack([waits[:-1], legs]).ravel())
     motion = Motion(np.repeat(points, 2, axis=0)[:-1], np.concatenate([[0.0], times]))
@@ -364,7 +462,11 @@ def test_no_way_over_two_points_is_much_earlier_than_what_is_found(seed):
     problem = across(world, start=(0.0, 0.0), target=(20.0, 20.0))
     rng, found = np.random.default_rng(seed), clairvoyant.earliest(world, problem).arrival
     for _ in range(1000):
-        middle = np.sort(rng.uniform(0, 20, (2, 2)), axis=0) if rng.random() < 0.5 else rng.uniform(0, 20, (1, 2))
+        middle = (
+            np.sort(rng.uniform(0, 20, (2, 2)), axis=0)
+            if rng.random() < 0.5
+            else rng.uniform(0, 20, (1, 2))
+        )
         points = np.concatenate([[problem.start], middle, [problem.target]])
         times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
         if times[-1] < found * 0.999:
@@ -378,7 +480,10 @@ def test_beside_a_circle_that_stands_still_it_is_nearly_as_early_as_the_bound():
 
 
 def test_a_wall_that_opens_makes_it_wait_and_one_that_closes_makes_it_hurry():
-    open_, shut = (from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], [".#..", ".#..", ".#.."]))
+    open_, shut = (
+        from_lines(lines, 1.0, "m")
+        for lines in (["....", "....", "...."], [".#..", ".#..", ".#.."])
+    )
     start, target = (0.5, 1.5), (3.5, 1.5)
     opens = ChangingCells((shut, open_), np.array([5.0]), 1.0, 20)
     problem = Problem("gate", shut, start, target)
@@ -400,7 +505,9 @@ def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_pass
     assert math.dist(aside, place) == pytest.approx(1.0)
     assert aside[1] > 9.0
     passing = circles((10, 6.0, 2, 0.5, -0.2))
-    assert np.array_equal(evasion.refuge(passing, place, 0, REPLANS._replace(knows="velocities")), place)
+    assert np.array_equal(
+        evasion.refuge(passing, place, 0, REPLANS._replace(knows="velocities")), place
+    )
 
 
 def test_a_robot_leaves_the_way_of_a_circle_from_which_it_could_flee_for_a_while():
@@ -414,7 +521,10 @@ def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
     """No plan leads on, so both stay, and a circle comes."""
     world = circles((0.5, 3, 2, 0, 0.5), end=30)
     none = lambda problem, state: (straight(problem, state)[0]._replace(path=None), state)  # noqa: E731
-    waiting, evading = (drive(world, across(world), REPLANS._replace(evades=evades), none) for evades in (False, True))
+    waiting, evading = (
+        drive(world, across(world), REPLANS._replace(evades=evades), none)
+        for evades in (False, True)
+    )
     hit = motion_check.check(waiting.motion, world)
     assert hit.collision_at > 0
     assert math.isnan(motion_check.check(evading.motion, world).collision_at)
@@ -447,11 +557,18 @@ def test_a_robot_shut_in_could_not_avoid_its_collision():
 
 
 def test_among_cells_a_change_on_the_spot_could_not_be_known_and_a_blind_drive_could():
-    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", ".##.", "...."]))
+    maps = tuple(
+        from_lines(lines, 1.0, "m")
+        for lines in (["....", "....", "...."], ["....", ".##.", "...."])
+    )
     world = ChangingCells(maps, np.array([2.0]), 1.0, 90)
     line = np.array([[0.5, 1.5], [3.5, 1.5]])
     on_the_spot, blind = Motion(line, np.array([1.0, 4.0])), Motion(line, np.array([1.8, 4.8]))
-    assert math.isnan(hindsight.known_at(on_the_spot, motion_check.check(on_the_spot, world).collision_at, world, WAITS))
+    assert math.isnan(
+        hindsight.known_at(
+            on_the_spot, motion_check.check(on_the_spot, world).collision_at, world, WAITS
+        )
+    )
     since = hindsight.known_at(blind, motion_check.check(blind, world).collision_at, world, WAITS)
     assert since == 2.0
     problem = Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5))
@@ -460,7 +577,10 @@ def test_among_cells_a_change_on_the_spot_could_not_be_known_and_a_blind_drive_c
 
 def test_a_robot_checks_no_farther_than_its_horizon():
     world = circles((15, 10, 2, 0, 0))
-    seen, unseen = (drive(world, across(world), REPLANS._replace(horizon=horizon), straight) for horizon in (math.inf, 3.0))
+    seen, unseen = (
+        drive(world, across(world), REPLANS._replace(horizon=horizon), straight)
+        for horizon in (math.inf, 3.0)
+    )
     assert seen.replans > unseen.replans
 
 
@@ -469,10 +589,17 @@ coordinates = st.floats(0.0, 12.0) | st.integers(0, 12).map(float)
 
 @given(st.tuples(coordinates, coordinates), st.tuples(coordinates, coordinates))
 def test_crossings_are_where_a_segment_meets_a_grid_line(one, other):
-    """Each line strictly between both ends, in each direction; those met at a grid point count once."""
+    """Each line strictly between both ends, in each direction; those met at a grid point count
+    once.
+    """
     cuts = np.empty(40)
     count = clairvoyant._write_crossings(np.array(one), np.array(other), cuts)
-    lines = [(line - a) / (b - a) for a, b in zip(one, other) for line in range(13) if min(a, b) < line < max(a, b)]
+    lines = [
+        (line - a) / (b - a)
+        for a, b in zip(one, other)
+        for line in range(13)
+        if min(a, b) < line < max(a, b)
+    ]
     assert cuts[:count].tolist() == np.unique([0.0, 1.0, *lines]).tolist()
 
 

@@ -1,4 +1,6 @@
-"""Paths among spheres: the exact check, lengths and bounds against closed forms and the plane; the swarm; the panel and its faults."""
+"""Paths among spheres: the exact check, lengths and bounds against closed forms and the plane; the
+swarm; the panel and its faults.
+"""
 
 import math
 
@@ -26,14 +28,20 @@ from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.spheres import Spheres
 
 BOX = (-10.0, 10.0, -10.0, 10.0, -10.0, 10.0)
-SETTINGS = study("tharwat2018").resolved("pso") | {"inertia_damping": 0.98, "velocity_limit": 0.1, "stall_limit": 0}
+SETTINGS = study("tharwat2018").resolved("pso") | {
+    "inertia_damping": 0.98,
+    "velocity_limit": 0.1,
+    "stall_limit": 0,
+}
 
 # Fractions of powers of two, so that curves can touch obstacles exactly.
 number = st.integers(-64, 64).map(lambda n: n / 16)
 
 
 def points(count, dimensions=3):
-    return st.lists(st.lists(number, min_size=dimensions, max_size=dimensions), min_size=count, max_size=count).map(np.array)
+    return st.lists(
+        st.lists(number, min_size=dimensions, max_size=dimensions), min_size=count, max_size=count
+    ).map(np.array)
 
 
 def among(*table):
@@ -56,15 +64,30 @@ def turned(draw):
 
 
 @pytest.mark.parametrize(
-    ("height", "free"), [(1.0, True), (1 - 5e-10, True), (1 - 2.5e-9, False), (1 - 1e-6, False), (0.0, False), (1 + 1e-6, True)]
+    ("height", "free"),
+    [
+        (1.0, True),
+        (1 - 5e-10, True),
+        (1 - 2.5e-9, False),
+        (1 - 1e-6, False),
+        (0.0, False),
+        (1 + 1e-6, True),
+    ],
 )
 def test_a_line_over_a_sphere_is_free_down_to_the_tolerance(height, free):
-    assert spheres.is_free(line((-3, 0.125, height), (5, 0.125, height)), among((0.3, 0.125, 0, 1))) is free
+    assert (
+        spheres.is_free(line((-3, 0.125, height), (5, 0.125, height)), among((0.3, 0.125, 0, 1)))
+        is free
+    )
 
 
 def test_a_dip_between_the_planners_samples_is_found():
-    """A parabola whose lowest point lies 1e-6 in a sphere whose size is a thousandth of the distance of its samples."""
-    parabola = np.array([[[-1, 0, 1], [0, 0, -1], [1, 0, 1.0]]])  # z = (x^2 + 1) / 2 - 1/2 at its middle: 0
+    """A parabola whose lowest point lies 1e-6 in a sphere whose size is a thousandth of the
+    distance of its samples.
+    """
+    parabola = np.array(
+        [[[-1, 0, 1], [0, 0, -1], [1, 0, 1.0]]]
+    )  # z = (x^2 + 1) / 2 - 1/2 at its middle: 0
     for below, free in ((1e-6, False), (-1e-6, True)):
         assert spheres.is_free(parabola, among((0, 0, below - 1e-3, 1e-3))) is free
 
@@ -84,11 +107,19 @@ def test_a_curve_may_touch_the_walls_and_not_leave(axis, side):
 def test_in_a_plane_the_verdict_is_that_of_the_checker_in_two_dimensions(control, table, turn):
     """Circles in a tilted plane, as the equators of spheres."""
     flat, circles = control[:, :2], table + np.array([0, 0, 0.25])
-    check = checker.check(flat[None], region(Circles((-50.0, 50.0, -50.0, 50.0), circles[:, :2], circles[:, 2], "unit")))
-    assume((check.clearance if check.feasible else check.depth) > 1e-6)  # turning rounds, so nothing may graze
+    check = checker.check(
+        flat[None],
+        region(Circles((-50.0, 50.0, -50.0, 50.0), circles[:, :2], circles[:, 2], "unit")),
+    )
+    assume(
+        (check.clearance if check.feasible else check.depth) > 1e-6
+    )  # turning rounds, so nothing may graze
     lifted = np.pad(flat, ((0, 0), (0, 1))) @ turn
     centres = np.pad(circles[:, :2], ((0, 0), (0, 1))) @ turn
-    assert spheres.is_free(lifted[None], Spheres((-50.0, 50.0) * 3, centres, circles[:, 2], "unit")) == check.feasible
+    assert (
+        spheres.is_free(lifted[None], Spheres((-50.0, 50.0) * 3, centres, circles[:, 2], "unit"))
+        == check.feasible
+    )
 
 
 @given(points(5), points(1), number.map(lambda n: abs(n) + 0.25))
@@ -98,11 +129,19 @@ def test_the_verdict_agrees_with_the_roots_of_the_distance(control, centre, radi
     for axis in range(3):
         coordinate = np.zeros(1)
         for k, value in enumerate(control[:, axis] - centre[0, axis]):
-            one = np.polynomial.Polynomial([0, 1]) ** k * np.polynomial.Polynomial([1, -1]) ** (4 - k) * math.comb(4, k)
+            one = (
+                np.polynomial.Polynomial([0, 1]) ** k
+                * np.polynomial.Polynomial([1, -1]) ** (4 - k)
+                * math.comb(4, k)
+            )
             coordinate = np.polynomial.polynomial.polyadd(coordinate, value * one.coef)
-        power = np.polynomial.polynomial.polyadd(power, np.polynomial.polynomial.polymul(coordinate, coordinate))
+        power = np.polynomial.polynomial.polyadd(
+            power, np.polynomial.polynomial.polymul(coordinate, coordinate)
+        )
     roots = np.polynomial.Polynomial(power).deriv().roots()
-    places = np.clip([0.0, 1.0, *roots.real], 0, 1)  # every place is a valid witness; among them is the lowest
+    places = np.clip(
+        [0.0, 1.0, *roots.real], 0, 1
+    )  # every place is a valid witness; among them is the lowest
     least = math.sqrt(max(np.polynomial.polynomial.polyval(places, power).min(), 0.0))
     assume(abs(least - radius) > 1e-5)
     assert spheres.is_free(control[None], among((*centre[0], radius))) == (least > radius)
@@ -116,7 +155,9 @@ def test_the_shortest_path_around_a_sphere_has_a_closed_form():
     found = spheres.shortest_around((-2, 0, 0), (2, 0, 0), (0, 0, 0), 1.0)
     assert found == pytest.approx(2 * math.sqrt(3) + math.pi / 3, rel=1e-14)
     assert spheres.shortest_around((-2, 0, 1), (2, 0, 1), (0, 0, 0), 1.0) == 4.0
-    assert spheres.shortest_around((1, 0, 0), (0, 0, 1), (0, 0, 0), 1.0) == pytest.approx(math.pi / 2, rel=1e-14)
+    assert spheres.shortest_around((1, 0, 0), (0, 0, 1), (0, 0, 0), 1.0) == pytest.approx(
+        math.pi / 2, rel=1e-14
+    )
 
 
 @given(points(3, 2), number.map(lambda n: abs(n) / 4 + 0.25), turned())
@@ -124,7 +165,9 @@ def test_it_is_that_around_a_circle_in_its_plane(ends, radius, turn):
     start, target, centre = ends
     assume(min(math.dist(start, centre), math.dist(target, centre)) > radius + 1e-6)
     circle = Circles((-50.0, 50.0, -50.0, 50.0), centre[None], np.array([radius]), "unit")
-    flat = shortest_paths.shortest_path(Problem("", circle, tuple(start.tolist()), tuple(target.tolist()))).length
+    flat = shortest_paths.shortest_path(
+        Problem("", circle, tuple(start.tolist()), tuple(target.tolist()))
+    ).length
     lifted = np.pad(ends, ((0, 0), (0, 1))) @ turn
     assert spheres.shortest_around(*lifted, radius) == pytest.approx(flat, rel=1e-9, abs=1e-9)
 
@@ -132,13 +175,17 @@ def test_it_is_that_around_a_circle_in_its_plane(ends, radius, turn):
 @given(points(4, 2), turned())
 def test_the_length_of_a_curve_is_that_in_its_plane(control, turn):
     lifted = np.pad(control, ((0, 0), (0, 1))) @ turn
-    assert spheres.length(lifted[None]) == pytest.approx(curves.length(Path("bezier", control)), rel=1e-8, abs=1e-8)
+    assert spheres.length(lifted[None]) == pytest.approx(
+        curves.length(Path("bezier", control)), rel=1e-8, abs=1e-8
+    )
 
 
 def test_the_bound_is_the_longest_way_around_one_sphere():
     small, large = (-4, 0, 0, 0.5), (0, 0, 0, 2)
     ends = (-8.0, 0.0, 0.0), (8.0, 0.0, 0.0)
-    assert spheres.least_length(among(small, large), *ends) == spheres.shortest_around(*ends, (0, 0, 0), 2.0)
+    assert spheres.least_length(among(small, large), *ends) == spheres.shortest_around(
+        *ends, (0, 0, 0), 2.0
+    )
     assert spheres.least_length(among(), *ends) == 16.0
 
 
@@ -149,12 +196,25 @@ def test_the_bound_is_the_longest_way_around_one_sphere():
 def test_in_the_plane_objectives_are_equal_to_the_last_bit(free, table):
     """Three dimensions add terms that are zero."""
     circles = table + np.array([0, 0, 0.25])
-    flat = Problem("", Circles(BOX[:4], circles[:, :2], circles[:, 2], "unit"), (-4.0, 0.0), (4.0, 1.0))
-    lifted = Problem("", Spheres(BOX, np.insert(circles[:, :2], 2, 0.0, axis=1), circles[:, 2], "unit"), (-4.0, 0.0, 0.0), (4.0, 1.0, 0.0))
+    flat = Problem(
+        "", Circles(BOX[:4], circles[:, :2], circles[:, 2], "unit"), (-4.0, 0.0), (4.0, 1.0)
+    )
+    lifted = Problem(
+        "",
+        Spheres(BOX, np.insert(circles[:, :2], 2, 0.0, axis=1), circles[:, 2], "unit"),
+        (-4.0, 0.0, 0.0),
+        (4.0, 1.0, 0.0),
+    )
     found = []
-    for task, position in ((flat, free.T.ravel()), (lifted, np.append(free.T.ravel(), np.zeros(3)))):
+    for task, position in (
+        (flat, free.T.ravel()),
+        (lifted, np.append(free.T.ravel(), np.zeros(3))),
+    ):
         objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS))
-        curve, scratch = np.empty((len(task.start), SETTINGS["samples"])), np.empty(SETTINGS["samples"])
+        curve, scratch = (
+            np.empty((len(task.start), SETTINGS["samples"])),
+            np.empty(SETTINGS["samples"]),
+        )
         length = penalised.length(position, objective, curve, scratch)
         found.append((length, *penalised.violation(curve, objective, scratch)))
     assert found[0] == found[1]
@@ -165,7 +225,10 @@ def test_the_violation_of_a_sphere_is_the_mean_depth_as_a_share_of_its_radius():
     task = Problem("", among((0, 0, 0, 2)), (-4.0, 0.0, 0.0), (4.0, 0.0, 0.0))
     objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS))
     curve = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 2], [0, 0, 3.0]]).T.copy()
-    assert penalised.violation(curve, objective, np.empty(6)) == (pytest.approx((1 + 3 * 0.5) / 6), 4)
+    assert penalised.violation(curve, objective, np.empty(6)) == (
+        pytest.approx((1 + 3 * 0.5) / 6),
+        4,
+    )
 
 
 def test_the_swarm_comes_close_to_the_exact_way_around_a_sphere():
@@ -179,14 +242,19 @@ def test_the_swarm_comes_close_to_the_exact_way_around_a_sphere():
         lengths.append(spheres.length(pieces))
         assert lengths[-1] == pytest.approx(found.objective, rel=1e-3)
         np.testing.assert_array_equal(
-            chaotic_pso.track(task, np.random.default_rng(seed), **SETTINGS | {"d_min": 0.01})[-1], found.path.points
+            chaotic_pso.track(task, np.random.default_rng(seed), **SETTINGS | {"d_min": 0.01})[-1],
+            found.path.points,
         )
     assert bound < min(lengths) < 1.02 * bound
 
 
 def test_a_free_straight_line_is_the_best_path():
     task = Problem("", among((0, 0, 5, 2)), (-4.0, 0.0, 0.0), (4.0, 6.0, 0.5))
-    found = chaotic_pso.plan(task, np.random.default_rng(0), **SETTINGS | {"straight_line_particle": True, "iterations": 5})
+    found = chaotic_pso.plan(
+        task,
+        np.random.default_rng(0),
+        **SETTINGS | {"straight_line_particle": True, "iterations": 5},
+    )
     assert found.objective == pytest.approx(math.dist(task.start, task.target), rel=1e-12)
 
 
@@ -200,7 +268,10 @@ def job():
 def test_the_figure_shows_what_its_runs_are():
     described = job()
     panels = panels_of(described["spec"]["panels"])
-    bare = {name: files.load(each, study("tharwat2018").folder) for name, each in described["workspaces"].items()}
+    bare = {
+        name: files.load(each, study("tharwat2018").folder)
+        for name, each in described["workspaces"].items()
+    }
     frame = sheet.data(panels, Sources(workspaces=bare, study=described["study"]))
     for _, own in frame.groupby("panel"):
         runs = own[own["part"] == "run"]
@@ -209,10 +280,21 @@ def test_the_figure_shows_what_its_runs_are():
         assert 0 < len(free) < runs["claimed_feasible"].sum()  # samples miss what lies between them
         control = own[own["part"] == "control"][["x", "y", "z"]].to_numpy()
         assert spheres.is_free(control[None], bare["spheres"])
-        assert own["straight_line"].iloc[0] < own["bound"].iloc[0] < spheres.length(control[None]) == free["length"].min()
+        assert (
+            own["straight_line"].iloc[0]
+            < own["bound"].iloc[0]
+            < spheres.length(control[None])
+            == free["length"].min()
+        )
     axes = sheet.draw(panels, frame, sheet.Scene({}, bare, {}, "unit"), 2).axes[:2]
-    assert [(each.get_xlabel(), each.get_ylabel()) for each in axes] == [("x (unit)", "y (unit)"), ("x (unit)", "z (unit)")]
-    drawn = [next(line for line in each.lines if line.get_label() == "control points").get_xydata() for each in axes]
+    assert [(each.get_xlabel(), each.get_ylabel()) for each in axes] == [
+        ("x (unit)", "y (unit)"),
+        ("x (unit)", "z (unit)"),
+    ]
+    drawn = [
+        next(line for line in each.lines if line.get_label() == "control points").get_xydata()
+        for each in axes
+    ]
     np.testing.assert_array_equal(drawn[0], control[:, [0, 1]])
     np.testing.assert_array_equal(drawn[1], control[:, [0, 2]])
 
@@ -235,7 +317,15 @@ EXPERIMENTS = {
         }
     },
 }
-PANEL = {"kind": "spheres", "workspace": "ball", "start": [-4, 0, 0], "target": [4, 0, 1], "method": "swarm", "runs": 1, "plane": "xz"}
+PANEL = {
+    "kind": "spheres",
+    "workspace": "ball",
+    "start": [-4, 0, 0],
+    "target": [4, 0, 1],
+    "method": "swarm",
+    "runs": 1,
+    "plane": "xz",
+}
 
 
 @pytest.fixture
@@ -243,9 +333,13 @@ def folder(tmp_path):
     """A reader's own study with spheres."""
     (tmp_path / "mine").mkdir()
     # Flow style on one line, so that faults can replace words.
-    (tmp_path / "mine" / "experiments.yaml").write_text(yaml.safe_dump(EXPERIMENTS, default_flow_style=True, width=10_000))
+    (tmp_path / "mine" / "experiments.yaml").write_text(
+        yaml.safe_dump(EXPERIMENTS, default_flow_style=True, width=10_000)
+    )
     artefacts = {"figures": {"ball": {"title": "My ball", "columns": 1, "panels": [PANEL]}}}
-    (tmp_path / "mine" / "artefacts.yaml").write_text(yaml.safe_dump(artefacts, default_flow_style=True, width=10_000))
+    (tmp_path / "mine" / "artefacts.yaml").write_text(
+        yaml.safe_dump(artefacts, default_flow_style=True, width=10_000)
+    )
     return tmp_path / "mine"
 
 
@@ -261,12 +355,42 @@ def test_a_reader_declares_spheres_in_a_few_lines(folder):
 @pytest.mark.parametrize(
     ("file", "old", "new", "expected"),
     [
-        ("experiments", "[0, 0, 0, 2]", "[0, 0, 2]", "workspaces: ball: spheres: 0: [0, 0, 2]: expected [x, y, z, radius]"),
-        ("experiments", "[0, 0, 0, 2]", "[0, 0, 0, -2]", "workspaces: ball: spheres: sphere 0: radius -2; expected at least 1e-06"),
-        ("experiments", "[0, 0, 0, 2]", "[0, 0, 1e+7, 2]", "workspaces: ball: spheres: 1e+07 is not a coordinate"),
-        ("experiments", "[-10.0, 10.0, -10.0, 10.0, -10.0, 10.0]", "[-10, 10, -10, 10]", "workspaces: ball: bounds: "),
-        ("experiments", "10.0, -10.0, 10.0], kind: spheres", "10.0, 10.0, -10.0], kind: spheres", "with low below high"),
-        ("experiments", "workspace: field", "workspace: ball", "problems: across: workspace: ball: has three dimensions"),
+        (
+            "experiments",
+            "[0, 0, 0, 2]",
+            "[0, 0, 2]",
+            "workspaces: ball: spheres: 0: [0, 0, 2]: expected [x, y, z, radius]",
+        ),
+        (
+            "experiments",
+            "[0, 0, 0, 2]",
+            "[0, 0, 0, -2]",
+            "workspaces: ball: spheres: sphere 0: radius -2; expected at least 1e-06",
+        ),
+        (
+            "experiments",
+            "[0, 0, 0, 2]",
+            "[0, 0, 1e+7, 2]",
+            "workspaces: ball: spheres: 1e+07 is not a coordinate",
+        ),
+        (
+            "experiments",
+            "[-10.0, 10.0, -10.0, 10.0, -10.0, 10.0]",
+            "[-10, 10, -10, 10]",
+            "workspaces: ball: bounds: ",
+        ),
+        (
+            "experiments",
+            "10.0, -10.0, 10.0], kind: spheres",
+            "10.0, 10.0, -10.0], kind: spheres",
+            "with low below high",
+        ),
+        (
+            "experiments",
+            "workspace: field",
+            "workspace: ball",
+            "problems: across: workspace: ball: has three dimensions",
+        ),
         (
             "artefacts",
             "workspace: ball",
@@ -275,13 +399,38 @@ def test_a_reader_declares_spheres_in_a_few_lines(folder):
         ),
         ("artefacts", "workspace: ball", "workspace: bell", "panels: 0: workspace: bell: unknown"),
         ("artefacts", "[-4, 0, 0]", "[-4, 0]", "panels: 0: start: [-4, 0]: expected [x, y, z]"),
-        ("artefacts", "[4, 0, 1]", "[1, 0, 1]", "panels: 0: target: [1.0, 0.0, 1.0]: in a sphere or outside the box"),
-        ("artefacts", "[4, 0, 1]", "[4, 0, 11]", "panels: 0: target: [4.0, 0.0, 11.0]: in a sphere or outside the box"),
+        (
+            "artefacts",
+            "[4, 0, 1]",
+            "[1, 0, 1]",
+            "panels: 0: target: [1.0, 0.0, 1.0]: in a sphere or outside the box",
+        ),
+        (
+            "artefacts",
+            "[4, 0, 1]",
+            "[4, 0, 11]",
+            "panels: 0: target: [4.0, 0.0, 11.0]: in a sphere or outside the box",
+        ),
         ("artefacts", "method: swarm", "method: swamr", "panels: 0: method: swamr: unknown"),
-        ("artefacts", "method: swarm", "method: line", "panels: 0: method: line: its planner cannot plan among spheres"),
+        (
+            "artefacts",
+            "method: swarm",
+            "method: line",
+            "panels: 0: method: line: its planner cannot plan among spheres",
+        ),
         ("artefacts", "plane: xz", "plane: zx", "panels: 0: plane: zx: unknown"),
-        ("artefacts", "runs: 1", "runs: 1, settings: {particle: 3}", "panels: 0: settings: particle: unknown"),
-        ("artefacts", "runs: 1", "runs: 1, settings: {particles: 0}", "panels: 0: settings: particles: 0; expected"),
+        (
+            "artefacts",
+            "runs: 1",
+            "runs: 1, settings: {particle: 3}",
+            "panels: 0: settings: particle: unknown",
+        ),
+        (
+            "artefacts",
+            "runs: 1",
+            "runs: 1, settings: {particles: 0}",
+            "panels: 0: settings: particles: 0; expected",
+        ),
     ],
 )
 def test_faults_are_reported_in_one_line(file, old, new, expected, folder):
@@ -291,6 +440,12 @@ def test_faults_are_reported_in_one_line(file, old, new, expected, folder):
 
 
 def test_no_other_panel_shows_spheres(folder):
-    whole = "kind: spheres, method: swarm, plane: xz, runs: 1, start: [-4, 0, 0], target: [4, 0, 1], workspace: ball"
+    whole = (
+        "kind: spheres, method: swarm, plane: xz, runs: 1, start: [-4, 0, 0], target: [4, 0, "
+        "1], workspace: ball"
+    )
     message = told(folder / "artefacts.yaml", whole, "kind: workspace, workspace: ball", folder)
-    assert "panels: 0: workspace: ball: a workspace of kind spheres; expected one in the plane" in message
+    assert (
+        "panels: 0: workspace: ball: a workspace of kind spheres; expected one in the plane"
+        in message
+    )

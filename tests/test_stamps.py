@@ -29,7 +29,9 @@ def study(tmp_path, monkeypatch):
 def checks(monkeypatch):
     """Keys of the studies that were checked."""
     checked, check = [], study_checks.check
-    monkeypatch.setattr(study_checks, "check", lambda study: (checked.append(study.key), check(study)))
+    monkeypatch.setattr(
+        study_checks, "check", lambda study: (checked.append(study.key), check(study))
+    )
     return checked
 
 
@@ -41,7 +43,8 @@ def test_equal_content_is_checked_once(study, checks):
     assert told == [[]], "to be told before the check, and of this one alone"
 
 
-# What jobs need and a start does not: to import it would take as long as all else that a start does.
+# What jobs need and a start does not: to import it would take as long as all else that a start
+# does.
 HEAVY = {"matplotlib", "numba", "pandas", "pyarrow", "scipy", "seaborn", "shapely"}
 START = """
 import sys
@@ -54,7 +57,13 @@ print(*sys.modules)
 
 def test_a_start_imports_nothing_that_only_jobs_need():
     reading.load(reading.read_config({}))
-    done = subprocess.run([sys.executable, "-c", START], cwd=SONG2016.parents[2], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", START],
+        cwd=SONG2016.parents[2],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert not HEAVY & {*done.stdout.split()}
 
 
@@ -110,7 +119,9 @@ def test_stamps_that_cannot_be_written_do_no_harm(study, checks, monkeypatch, tm
     assert checks == ["song2016"] * 2
 
 
-def test_a_study_that_was_remembered_is_the_same_wherever_it_lies(study, checks, monkeypatch, tmp_path):
+def test_a_study_that_was_remembered_is_the_same_wherever_it_lies(
+    study, checks, monkeypatch, tmp_path
+):
     first = reading.load([study])["song2016"]
     moved = Path(shutil.move(study, tmp_path / "elsewhere" / "song2016"))
     monkeypatch.setattr(reading, "read_study", None)
@@ -127,7 +138,10 @@ def test_a_damaged_stamp_counts_as_none(study, checks, length):
 
 
 def test_a_stamp_knows_what_a_configuration_changes(study):
-    assert stamps.stamp_of(study, "settings") not in (stamps.stamp_of(study), stamps.stamp_of(study, "other settings"))
+    assert stamps.stamp_of(study, "settings") not in (
+        stamps.stamp_of(study),
+        stamps.stamp_of(study, "other settings"),
+    )
 
 
 class Call:
@@ -154,7 +168,15 @@ def test_a_stamp_calls_nothing(study, checks, tmp_path):
     assert not (tmp_path / "called").exists()
 
 
-@pytest.mark.parametrize("name", ["bezierplan.running.digest os.mkdir", "bezierplan.study.stamps remember", "builtins eval", "os mkdir"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "bezierplan.running.digest os.mkdir",
+        "bezierplan.study.stamps remember",
+        "builtins eval",
+        "os mkdir",
+    ],
+)
 def test_a_stamp_is_made_of_models_alone(name):
     with pytest.raises(pickle.UnpicklingError, match="no part of a study"):
         stamps._Unpickler(io.BytesIO()).find_class(*name.split())

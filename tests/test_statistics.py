@@ -1,4 +1,6 @@
-"""Statistics, bootstrap intervals, and prediction intervals: closed forms, and how often they are right on known distributions."""
+"""Statistics, bootstrap intervals, and prediction intervals: closed forms, and how often they are
+right on known distributions.
+"""
 
 import math
 
@@ -8,7 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, interval, predicted, prediction, resampled, scaled, statistic
+from bezierplan.analysis.statistics import (
+    LEAST_RUNS,
+    STATISTICS,
+    interval,
+    predicted,
+    prediction,
+    resampled,
+    scaled,
+    statistic,
+)
 from bezierplan.workspaces.seeds import generator
 
 samples = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30).map(np.array)
@@ -63,7 +74,9 @@ def test_median_with_infinite_values():
 @given(samples)
 def test_quantiles_are_those_of_numpy(values):
     for name, share in [("quartile1", 0.25), ("median", 0.5), ("quartile3", 0.75)]:
-        assert statistic(name, values) == pytest.approx(np.quantile(values, share), rel=1e-12, abs=1e-9)
+        assert statistic(name, values) == pytest.approx(
+            np.quantile(values, share), rel=1e-12, abs=1e-9
+        )
 
 
 @pytest.mark.parametrize("name", STATISTICS)
@@ -109,7 +122,9 @@ def test_interval_of_many_values_is_nearly_that_of_the_bootstrap(name, monkeypat
     values = (values > 3).astype(float) if name in ("count", "share") else values
     low, high = interval(name, values, generator("many"))
     monkeypatch.setattr(statistics, "MOST_RESAMPLED", 1000)
-    assert (low, high) == pytest.approx(interval(name, values, generator("many")), abs=0.2 * (high - low))
+    assert (low, high) == pytest.approx(
+        interval(name, values, generator("many")), abs=0.2 * (high - low)
+    )
     assert low < statistic(name, values) < high
 
 
@@ -118,7 +133,9 @@ def test_interval_of_many_values_with_infinite_ones_is_resampled():
     assert all(map(math.isfinite, interval("median", values, generator("infinite"))))
 
 
-@pytest.mark.parametrize(("name", "count"), [("mean", 0), ("mean", 1), ("min", 10), ("max", 10), ("range", 10)])
+@pytest.mark.parametrize(
+    ("name", "count"), [("mean", 0), ("mean", 1), ("min", 10), ("max", 10), ("range", 10)]
+)
 def test_interval_is_empty_where_it_would_say_nothing(name, count):
     assert all(math.isnan(end) for end in interval(name, np.arange(float(count)), generator("a")))
 
@@ -129,11 +146,18 @@ def test_interval_is_ordered(values, name):
     assert math.isnan(low) or low <= high
 
 
-@given(st.floats(-1e6, 1e6), st.integers(1, 30), st.integers(1, 30), st.sampled_from(sorted(STATISTICS)))
+@given(
+    st.floats(-1e6, 1e6),
+    st.integers(1, 30),
+    st.integers(1, 30),
+    st.sampled_from(sorted(STATISTICS)),
+)
 def test_draws_from_equal_values_are_the_statistic_of_as_many(value, runs, size, name):
     drawn = resampled(name, np.full(runs, value), size, generator("equal"))
     assert drawn.shape == (statistics.DRAWS,)
-    assert np.array_equal(drawn, np.full(statistics.DRAWS, statistic(name, np.full(size, value))), equal_nan=True)
+    assert np.array_equal(
+        drawn, np.full(statistics.DRAWS, statistic(name, np.full(size, value))), equal_nan=True
+    )
 
 
 OURS = np.random.default_rng(3).normal(100, 5, size=60)
@@ -147,7 +171,9 @@ def test_value_far_outside_is_out_of_range(size, published, quantile):
 
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
 def test_value_in_the_middle_is_in_range(size):
-    quantile, in_range, *_ = prediction("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
+    quantile, in_range, *_ = prediction(
+        "mean", OURS, float(np.median(OURS)), size, 2, generator("middle")
+    )
     assert in_range
     assert 0.2 < quantile < 0.8
 
@@ -160,7 +186,10 @@ def test_size_of_the_papers_experiment_matters():
 
 
 def test_ties_count_for_it():
-    assert prediction("median", np.full(20, 64.0), 64.0, None, 0, generator("ties"))[:2] == (0.5, True)
+    assert prediction("median", np.full(20, 64.0), 64.0, None, 0, generator("ties"))[:2] == (
+        0.5,
+        True,
+    )
 
 
 def test_ours_are_rounded_like_the_printed_number():
@@ -170,7 +199,10 @@ def test_ours_are_rounded_like_the_printed_number():
 
 
 def test_too_few_runs_are_not_judged():
-    assert prediction("mean", OURS[: LEAST_RUNS - 1], 0.0, 10, 2, generator("few"))[:2] == (0.0, None)
+    assert prediction("mean", OURS[: LEAST_RUNS - 1], 0.0, 10, 2, generator("few"))[:2] == (
+        0.0,
+        None,
+    )
 
 
 @pytest.mark.parametrize(("values", "published"), [(np.array([]), 1.0), (OURS, math.nan)])
@@ -182,7 +214,11 @@ def test_nothing_to_judge(values, published):
 
 def _drawn(name: str, size: int, rng: np.random.Generator) -> np.ndarray:
     """Truths for counts and shares, else skewed numbers."""
-    return (rng.random(size) < 0.85).astype(float) if name in ("count", "share") else rng.gamma(5, size=size)
+    return (
+        (rng.random(size) < 0.85).astype(float)
+        if name in ("count", "share")
+        else rng.gamma(5, size=size)
+    )
 
 
 @pytest.mark.parametrize("name", ["mean", "median", "min", "max", "count", "share"])
@@ -192,7 +228,9 @@ def test_prediction_refuses_few_true_numbers(name, ours, theirs):
     refused = 0
     for repeat in range(300):
         values, published = _drawn(name, ours, rng), statistic(name, _drawn(name, theirs, rng))
-        refused += not prediction(name, values, published, theirs, None, generator(f"true {repeat}"))[1]
+        refused += not prediction(
+            name, values, published, theirs, None, generator(f"true {repeat}")
+        )[1]
     assert refused / 300 <= 0.08
 
 
@@ -202,27 +240,45 @@ def test_resampling_alone_would_refuse_many(runs):
     rng = np.random.default_rng(5)
     refused = 0
     for repeat in range(300):
-        draws, published = resampled("mean", rng.normal(size=runs), runs, generator(f"alone {repeat}")), rng.normal(size=runs).mean()
+        draws, published = (
+            resampled("mean", rng.normal(size=runs), runs, generator(f"alone {repeat}")),
+            rng.normal(size=runs).mean(),
+        )
         low, high = np.quantile(draws, [statistics.TAIL, 1 - statistics.TAIL])
         refused += not low <= published <= high
     assert 0.14 <= refused / 300 <= 0.28
 
 
-@pytest.mark.parametrize(("name", "away"), [("mean", 1.0), ("median", 1.3), ("min", 3.0), ("share", 0.7)])
+@pytest.mark.parametrize(
+    ("name", "away"), [("mean", 1.0), ("median", 1.3), ("min", 3.0), ("share", 0.7)]
+)
 def test_prediction_refuses_what_is_far_off(name, away):
     rng = np.random.default_rng(6)
     values = np.ones(30) if name == "share" else rng.normal(size=30)
-    assert not prediction(name, values, statistic(name, values) + (away if name != "share" else -away), 30, None, generator("far"))[1]
+    assert not prediction(
+        name,
+        values,
+        statistic(name, values) + (away if name != "share" else -away),
+        30,
+        None,
+        generator("far"),
+    )[1]
 
 
 @pytest.mark.parametrize(("ours", "theirs"), [(10, 10), (30, 30), (10, 40), (200, 10)])
-@pytest.mark.parametrize(("shape", "most"), [("normal", 0.08), ("gamma", 0.12), ("exponential", 0.2)])
+@pytest.mark.parametrize(
+    ("shape", "most"), [("normal", 0.08), ("gamma", 0.12), ("exponential", 0.2)]
+)
 def test_prediction_refuses_few_true_standard_deviations(shape, most, ours, theirs):
-    """Draws from resamples would refuse up to a quarter of those of a normal sample, and more of skewed ones."""
+    """Draws from resamples would refuse up to a quarter of those of a normal sample, and more of
+    skewed ones.
+    """
     rng = np.random.default_rng(9)
-    draw = {"normal": rng.normal, "gamma": lambda size: rng.gamma(5, size=size), "exponential": lambda size: rng.exponential(size=size)}[
-        shape
-    ]
+    draw = {
+        "normal": rng.normal,
+        "gamma": lambda size: rng.gamma(5, size=size),
+        "exponential": lambda size: rng.exponential(size=size),
+    }[shape]
     refused = 0
     for _ in range(400):
         values, published = draw(size=ours), statistic("std", draw(size=theirs))
@@ -232,7 +288,9 @@ def test_prediction_refuses_few_true_standard_deviations(shape, most, ours, thei
 
 def test_standard_deviation_far_off_is_refused():
     for factor in (0.4, 2.5):
-        assert not prediction("std", OURS, factor * statistic("std", OURS), 30, None, generator("far"))[1]
+        assert not prediction(
+            "std", OURS, factor * statistic("std", OURS), 30, None, generator("far")
+        )[1]
     assert prediction("std", np.full(30, 5.0), 0.0, 30, None, generator("same"))[:2] == (0.5, True)
 
 
@@ -301,9 +359,16 @@ def test_prediction_interval_is_what_the_quantile_accepts():
     for name in ("mean", "median", "min"):
         *_, low, high = prediction(name, values, 10.0, 10, None, generator(name))
         assert low < statistics.statistic(name, values) < high or name == "min"
-        for published, within in ((low + 1e-6, True), (high - 1e-6, True), (low - 0.05, False), (high + 0.05, False)):
+        for published, within in (
+            (low + 1e-6, True),
+            (high - 1e-6, True),
+            (low - 0.05, False),
+            (high + 0.05, False),
+        ):
             if np.isfinite(published):
-                assert prediction(name, values, published, 10, None, generator(name))[1] == within, (
+                assert (
+                    prediction(name, values, published, 10, None, generator(name))[1] == within
+                ), (
                     name,
                     published,
                 )
@@ -311,49 +376,65 @@ def test_prediction_interval_is_what_the_quantile_accepts():
 
 
 def test_holm_against_a_worked_example():
-    """Times 4, 3, 2 and 1 from the least p on, never below the one before, and at most 1 (Holm 1979)."""
-    assert statistics.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    """Times 4, 3, 2 and 1 from the least p on, never below the one before, and at most 1 (Holm
+    1979).
+    """
+    assert statistics.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx(
+        [0.03, 0.06, 0.06, 0.02]
+    )
     assert statistics.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
     assert len(statistics.holm(np.array([]))) == 0
 
 
 def test_experiments_within_one_group_vary_as_the_groups_do():
-    """Runs in one layout are alike: the mean of ten of them is that of a layout, not that of all layouts together."""
+    """Runs in one layout are alike: the mean of ten of them is that of a layout, not that of all
+    layouts together.
+    """
     groups = [np.full(10, float(layout)) for layout in range(8)]
     drawn = statistics.predicted_within("mean", groups, 10, generator("within"))
     assert set(drawn) == set(map(float, range(8)))
     together = np.concatenate(groups)
-    quantile, in_range, *_ = prediction("mean", together, 7.0, 10, None, generator("within"), groups=groups)
+    quantile, in_range, *_ = prediction(
+        "mean", together, 7.0, 10, None, generator("within"), groups=groups
+    )
     assert in_range
     assert quantile == pytest.approx(1 - 1 / 16, abs=0.03)
     assert prediction("mean", together, 7.0, 10, None, generator("within"))[1] is False
 
 
 def test_predictions_within_groups_are_right_as_often_as_stated():
-    """A layout's own mean is normal, its runs are normal around it: 95 % of new experiments lie within the prediction interval."""
+    """A layout's own mean is normal, its runs are normal around it: 95 % of new experiments lie
+    within the prediction interval.
+    """
     rng = generator("groups")
     inside = []
     for _ in range(500):
         groups = [rng.normal(centre, 1.0, 10) for centre in rng.normal(0.0, 2.0, 50)]
         new = rng.normal(rng.normal(0.0, 2.0), 1.0, 10).mean()
-        *_, low, high = prediction("mean", np.concatenate(groups), new, 10, None, rng, groups=groups)
+        *_, low, high = prediction(
+            "mean", np.concatenate(groups), new, 10, None, rng, groups=groups
+        )
         inside.append(low <= new <= high)
     assert 0.92 <= np.mean(inside) <= 0.98
 
 
 def test_a_quantiles_influence_is_a_worked_example():
-    """Of 0 to 100, the 95 % interval of the median has its ends 0.098 away in share and 9.8 in value. Cubed, because the slope of squares
-    around their middle is the same over every interval.
+    """Of 0 to 100, the 95 % interval of the median has its ends 0.098 away in share and 9.8 in
+    value. Cubed, because the slope of squares around their middle is the same over every interval.
     """
     values = np.arange(101.0) ** 3
     reach = 1.96 * 0.5 / math.sqrt(101)
     low, high = np.quantile(values, [0.5 - reach, 0.5 + reach])
     slope = (high - low) / (2 * reach)
     found = statistics.influence("median", values)
-    assert found[[0, 50, 51, 100]] == pytest.approx([-0.5 * slope, -0.5 * slope, 0.5 * slope, 0.5 * slope])
+    assert found[[0, 50, 51, 100]] == pytest.approx(
+        [-0.5 * slope, -0.5 * slope, 0.5 * slope, 0.5 * slope]
+    )
 
 
 def test_a_predicted_share_is_drawn_from_jeffreys_posterior():
-    """Of 0 true values in 3, the mean share is that of Beta(0.5, 3.5): 1 in 8; a uniform prior would say 1 in 5."""
+    """Of 0 true values in 3, the mean share is that of Beta(0.5, 3.5): 1 in 8; a uniform prior
+    would say 1 in 5.
+    """
     found = predicted("share", np.zeros(3, dtype=bool), 1000, generator("prior"))
     assert found.mean() == pytest.approx(0.125, abs=0.02)

@@ -1,4 +1,6 @@
-"""What only one study needs: its functions for claims, its data for figures, and its audit; and that its files name what exists."""
+"""What only one study needs: its functions for claims, its data for figures, and its audit; and
+that its files name what exists.
+"""
 
 import math
 from types import SimpleNamespace
@@ -34,7 +36,11 @@ def published(study):
 def problem(name):
     """A problem of tharwat2018 in a fixed workspace."""
     described = THARWAT["problems"][name]
-    return problems.build(name, described, files.load(THARWAT["workspaces"][described["workspace"]], STUDIES / "tharwat2018"))
+    return problems.build(
+        name,
+        described,
+        files.load(THARWAT["workspaces"][described["workspace"]], STUDIES / "tharwat2018"),
+    )
 
 
 def faults(rows):
@@ -56,11 +62,17 @@ def test_audit_of_song2016():
     assert len(rows) == 8
     assert not faults(rows)
     late = published("song2016")["table1"].replace({"value": {26.0: 101.0}})
-    assert len(faults(song2016.audit(published("song2016") | {"table1": late}))) == (late["value"] == 101).sum() > 0
+    assert (
+        len(faults(song2016.audit(published("song2016") | {"table1": late})))
+        == (late["value"] == 101).sum()
+        > 0
+    )
 
 
 def test_chaotic_sequences():
-    parameters = chaotic_maps.Parameters(**{name: SEQUENCES[name] for name in chaotic_maps.Parameters._fields})
+    parameters = chaotic_maps.Parameters(
+        **{name: SEQUENCES[name] for name in chaotic_maps.Parameters._fields}
+    )
     table = tharwat2018.chaotic_sequences(**SEQUENCES)
     assert table.groupby("map").size().to_dict() == dict.fromkeys(tharwat2018.CHAOTIC, 500)
     assert table["value"].between(0, 1).all()
@@ -71,7 +83,9 @@ def test_chaotic_sequences():
 
 
 def test_parameters_of_the_maps_are_those_in_force():
-    assert all(SEQUENCES[name] == THARWAT["settings"][name] for name in chaotic_maps.Parameters._fields)
+    assert all(
+        SEQUENCES[name] == THARWAT["settings"][name] for name in chaotic_maps.Parameters._fields
+    )
 
 
 def test_gauss_above():
@@ -98,35 +112,53 @@ FIXED = {
 def test_fitness(name, world, column):
     x, y, *_ = FIXED[name]
     path = np.array([[(0, 0), *zip(x, y), (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(FIXED[name][column], abs=2e-6)
+    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
+        FIXED[name][column], abs=2e-6
+    )
 
 
 def test_fitness_is_that_of_the_planner():
     settings = THARWAT["settings"] | {"chaotic_term": "none"}
     for seed in range(5):
-        plan = chaotic_pso.plan(problem("equal"), np.random.default_rng(seed), **settings | {"particles": 5, "iterations": 2})
-        assert tharwat2018.fitness(plan.path.points[None], problem("equal"), SAMPLES, BETA)[0] == pytest.approx(plan.objective, rel=1e-12)
+        plan = chaotic_pso.plan(
+            problem("equal"),
+            np.random.default_rng(seed),
+            **settings | {"particles": 5, "iterations": 2},
+        )
+        assert tharwat2018.fitness(plan.path.points[None], problem("equal"), SAMPLES, BETA)[
+            0
+        ] == pytest.approx(plan.objective, rel=1e-12)
 
 
 @pytest.mark.parametrize(("world", "best"), [("equal", 7.7263), ("public", 7.5182)])
 def test_best_known_curves(world, best):
     path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN[world], (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(best, abs=3e-4)  # their coordinates are rounded
+    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
+        best, abs=3e-4
+    )  # their coordinates are rounded
 
 
 @pytest.mark.parametrize("world", ["equal", "public"])
 def test_references_are_what_a_search_finds(world):
-    """The reference length of a problem, and the control points behind it, cannot be improved by a search from many starts."""
+    """The reference length of a problem, and the control points behind it, cannot be improved by a
+    search from many starts.
+    """
     length, points = tharwat2018.best_curve(problem(world), 3, SAMPLES)
     assert length == pytest.approx(THARWAT["problems"][world]["reference"], abs=1e-4)
-    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, 0.0)[0] == pytest.approx(length)
-    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, BETA)[0] == pytest.approx(length, abs=1e-4), "it is free"
+    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, 0.0)[0] == pytest.approx(
+        length
+    )
+    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, BETA)[0] == pytest.approx(
+        length, abs=1e-4
+    ), "it is free"
 
 
 def test_no_free_curve_is_told():
     """One control point cannot lead round circles that all but close the way."""
     walls = np.array([[2.0, y] for y in np.arange(-10, 10.1, 1.0)])
-    closed = problem("equal")._replace(workspace=Circles((-10.0, 10.0, -10.0, 10.0), walls, np.full(len(walls), 0.9), "unit"))
+    closed = problem("equal")._replace(
+        workspace=Circles((-10.0, 10.0, -10.0, 10.0), walls, np.full(len(walls), 0.9), "unit")
+    )
     with pytest.raises(ValueError, match="no free curve of 1 control points found from 40 starts"):
         tharwat2018.best_curve(closed, 1, SAMPLES)
 
@@ -134,12 +166,17 @@ def test_no_free_curve_is_told():
 def test_local_minima():
     bowl = np.add.outer(np.arange(-4, 5) ** 2, np.arange(-3, 6) ** 2)
     assert np.argwhere(tharwat2018.local_minima(bowl)).tolist() == [[4, 3]]
-    assert tharwat2018.local_minima(-np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)).sum() == 4
+    assert (
+        tharwat2018.local_minima(-np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)).sum()
+        == 4
+    )
     assert not tharwat2018.local_minima(np.zeros((5, 5))).any(), "not strict"
 
 
 def test_nodes_of_one_valley_are_one_minimum():
-    """A narrow valley oblique to the grid has many local minima, two wells that a ridge parts are two."""
+    """A narrow valley oblique to the grid has many local minima, two wells that a ridge parts are
+    two.
+    """
     x, y = np.meshgrid(np.linspace(-1, 1, 81), np.linspace(-1, 1, 81), indexing="ij")
     valley = 10 + np.abs(y - 0.37 * x) + 0.01 * x**2
     assert tharwat2018.local_minima(valley).sum() > 1
@@ -147,7 +184,9 @@ def test_nodes_of_one_valley_are_one_minimum():
     assert tharwat2018.valleys(valley).sum() == 1
     wells = 10 + np.minimum((x - 0.5) ** 2, 0.1 + (x + 0.5) ** 2) + y**2
     assert np.argwhere(tharwat2018.valleys(wells)).tolist() == [[20, 40], [60, 40]]
-    assert not tharwat2018.local_minima(np.add.outer(np.arange(5), np.arange(5))).any(), "at the edge"
+    assert not tharwat2018.local_minima(np.add.outer(np.arange(5), np.arange(5))).any(), (
+        "at the edge"
+    )
 
 
 def surface_of(values):
@@ -161,9 +200,13 @@ def on_maps(where):
     return SimpleNamespace(experiment="maps", where=where)
 
 
-@pytest.mark.parametrize(("world", "minima", "correlation"), [("equal", 7, -0.30), ("public", 5, -0.15)])
+@pytest.mark.parametrize(
+    ("world", "minima", "correlation"), [("equal", 7, -0.30), ("public", 5, -0.15)]
+)
 def test_landscape(world, minima, correlation):
-    """Numbers of an independent computation; the correlation is that of `bowl_with_local_minima`."""
+    """Numbers of an independent computation; the correlation is that of
+    `bowl_with_local_minima`.
+    """
     surface = tharwat2018.landscape(problem(world), world, SAMPLES, BETA)
     side = tharwat2018.GRID
     assert len(surface) == side**2
@@ -174,15 +217,32 @@ def test_landscape(world, minima, correlation):
     points = np.array(tharwat2018.BEST_KNOWN[world])
     points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
     path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
-    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(place["fitness"].iloc[0], rel=1e-12)
-    runs = pd.DataFrame([{"planner": "chaotic_pso", "problem": world, "workspace": world, "samples": SAMPLES, "beta": BETA}])
+    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
+        place["fitness"].iloc[0], rel=1e-12
+    )
+    runs = pd.DataFrame(
+        [
+            {
+                "planner": "chaotic_pso",
+                "problem": world,
+                "workspace": world,
+                "samples": SAMPLES,
+                "beta": BETA,
+            }
+        ]
+    )
     check = on_maps({"workspace": world})
     found = Results(runs, {world: problem(world)}, pd.DataFrame())
     mark, effect, interval, nodes = tharwat2018.bowl_with_local_minima(check, {"maps": found}, {})
     assert (mark, interval, nodes) == ("-", None, side**2)
     assert effect == pytest.approx(correlation, abs=0.01)
     drawn = tharwat2018.fitness_landscape(found)
-    assert drawn["part"].value_counts().to_dict() == {"node": side**2, "minimum": 3, "lowest": 1, "fixed": 2}
+    assert drawn["part"].value_counts().to_dict() == {
+        "node": side**2,
+        "minimum": 3,
+        "lowest": 1,
+        "fixed": 2,
+    }
     shown = drawn[drawn["part"] == "minimum"].set_index(["x", "y"]).index
     lowest = surface[tharwat2018.local_minima(values).ravel()].set_index(["x", "y"]).index
     assert shown.isin(lowest).all()
@@ -194,25 +254,52 @@ def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
     side = np.linspace(-10, 10, tharwat2018.GRID)
     values = np.add.outer(side**2 - waves * np.cos(3 * side), side**2)
     monkeypatch.setattr(tharwat2018, "landscape", lambda *given: surface_of(values))
-    runs = pd.DataFrame([{"planner": "chaotic_pso", "problem": "p", "workspace": "p", "samples": SAMPLES, "beta": BETA}])
-    answer = tharwat2018.bowl_with_local_minima(on_maps({}), {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {})
+    runs = pd.DataFrame(
+        [
+            {
+                "planner": "chaotic_pso",
+                "problem": "p",
+                "workspace": "p",
+                "samples": SAMPLES,
+                "beta": BETA,
+            }
+        ]
+    )
+    answer = tharwat2018.bowl_with_local_minima(
+        on_maps({}), {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {}
+    )
     assert answer[0] == mark
     assert answer[1] > 0.5
 
 
-# Round the circles of the workspace `equal`: above all, below all, and between them as the best known one.
-WAYS = {"above": [(-4, 2), (-2, 8), (2, 8)], "below": [(6, 0), (6, 3), (6, 6)], "between": list(tharwat2018.BEST_KNOWN["equal"])}
+# Round the circles of the workspace `equal`: above all, below all, and between them as the best
+# known one.
+WAYS = {
+    "above": [(-4, 2), (-2, 8), (2, 8)],
+    "below": [(6, 0), (6, 3), (6, 6)],
+    "between": list(tharwat2018.BEST_KNOWN["equal"]),
+}
 
 
 def run(way, feasible=True, curve="bezier", length=8.0):
     points = [(0, 0), *WAYS[way], (4, 6)]
     flat = [float(number) for point in points for number in point]
-    return {"problem": "equal", "feasible": feasible, "path_curve": curve, "path_points": flat, "length": length}
+    return {
+        "problem": "equal",
+        "feasible": feasible,
+        "path_curve": curve,
+        "path_points": flat,
+        "length": length,
+    }
 
 
 def test_homotopy_class():
-    """A circle to the left of the path is swept counterclockwise. Circle 0 is the upper one, 1 the right one, 2 the one near the start."""
-    found = metrics.values(pd.DataFrame([run(way) for way in WAYS]), "homotopy", {"equal": problem("equal")})
+    """A circle to the left of the path is swept counterclockwise. Circle 0 is the upper one, 1 the
+    right one, 2 the one near the start.
+    """
+    found = metrics.values(
+        pd.DataFrame([run(way) for way in WAYS]), "homotopy", {"equal": problem("equal")}
+    )
     assert dict(zip(WAYS, found)) == {"above": 0, "below": 7, "between": 1}
     made = pd.DataFrame([run("between"), run("above"), run("between", feasible=False)])
     made["bound_path"] = [np.ravel([(0, 0), *WAYS["between"], (4, 6)])] * 3
@@ -225,29 +312,46 @@ def test_homotopy_class():
         ([run("above"), run("above")], "?", 1, 2),
         ([run("above")] * 59, "-", 1, 59),
         ([run("above"), run("below"), run("between"), run("above"), run("below")], "+", 2, 5),
-        ([run("above"), run("above", feasible=False), run("below"), run("below", length=8.2)], "?", 0, 3),
+        (
+            [run("above"), run("above", feasible=False), run("below"), run("below", length=8.2)],
+            "?",
+            0,
+            3,
+        ),
     ],
 )
 def test_several_homotopy_classes(runs, mark, classes, counted):
     check = on_maps({"feasible": True})
     found = Results(pd.DataFrame(runs), {"equal": problem("equal")}, pd.DataFrame())
-    assert tharwat2018.several_homotopy_classes(check, {"maps": found}, {}) == (mark, classes, None, counted)
+    assert tharwat2018.several_homotopy_classes(check, {"maps": found}, {}) == (
+        mark,
+        classes,
+        None,
+        counted,
+    )
 
 
 def test_ends_are_those_of_the_problems():
-    marks = tharwat2018.ends(problem("equal").workspace, **arguments("tharwat2018", "ends")).set_index("role")[["x", "y"]]
+    marks = tharwat2018.ends(
+        problem("equal").workspace, **arguments("tharwat2018", "ends")
+    ).set_index("role")[["x", "y"]]
     for described in THARWAT["problems"].values():
         assert marks.loc["start"].to_list() == described["start"]
         assert marks.loc["target"].to_list() == described["target"]
 
 
 def test_movement_follows_equation_8():
-    """The parts of each velocity join head to tail from the particle's place to its next one; C1 and C2 are those in force."""
+    """The parts of each velocity join head to tail from the particle's place to its next one; C1
+    and C2 are those in force.
+    """
     given = arguments("tharwat2018", "movement")
     assert all(given[name] == THARWAT["settings"][name] for name in ("inertia", "c1", "c2"))
     marks = tharwat2018.movement(**given)
     for number, (x, v, p, r1, r2) in enumerate(given["particles"]):
-        arrows = [marks[marks["group"] == f"{part} {number}"]["x"].to_list() for part in ("inertia", "cognition", "social part")]
+        arrows = [
+            marks[marks["group"] == f"{part} {number}"]["x"].to_list()
+            for part in ("inertia", "cognition", "social part")
+        ]
         assert arrows[0][0] == x
         assert [head for _, head in arrows[:-1]] == [tail for tail, _ in arrows[1:]]
         moved = x + v + 1.5 * r1 * (p - x) + 1.5 * r2 * (given["best"] - x)
@@ -262,7 +366,9 @@ def test_flow_chart_has_a_box_around_every_step():
     assert boxes[["x", "y"]].to_numpy().tolist() == words[["x", "y"]].to_numpy().tolist()
     heads = marks[marks["mark"] == "arrow"].groupby("group").last()[["x", "y"]].to_numpy()
     for x, y in heads:
-        inside = (np.abs(boxes["x"] - x) <= boxes["width"] / 2) & (np.abs(boxes["y"] - y) <= boxes["height"] / 2)
+        inside = (np.abs(boxes["x"] - x) <= boxes["width"] / 2) & (
+            np.abs(boxes["y"] - y) <= boxes["height"] / 2
+        )
         assert inside.sum() == 1, "every arrow ends at a box"
 
 
@@ -271,16 +377,31 @@ def test_audit_of_tharwat2018():
     layouts = targets.audit_params({"tharwat2018": study}, "full", "tharwat2018")["job"]["layouts"]
     tables = published("tharwat2018")
     compared = {name: audit.read_published(study.published_file(name)) for name in layouts}
-    rows = audit.table("tharwat2018", tharwat2018.audit(tables) + audit.of_any_paper(compared, layouts))
+    rows = audit.table(
+        "tharwat2018", tharwat2018.audit(tables) + audit.of_any_paper(compared, layouts)
+    )
     wrong = rows[rows["consistent"].map(str) == "False"]
     sums = rows[rows["rule"].str.contains("add to")].set_index("item")
-    assert sums["printed"].round(1).to_dict() == {"table3": 36.0, "table4": 36.1, "table5": 13.8, "table6": 32.2}
+    assert sums["printed"].round(1).to_dict() == {
+        "table3": 36.0,
+        "table4": 36.1,
+        "table5": 13.8,
+        "table6": 32.2,
+    }
     assert sums["limit"].to_dict() == {"table3": 36, "table4": 36, "table5": 15, "table6": 55}
-    assert sums["consistent"].to_dict() == {"table3": True, "table4": True, "table5": False, "table6": False}
+    assert sums["consistent"].to_dict() == {
+        "table3": True,
+        "table4": True,
+        "table5": False,
+        "table6": False,
+    }
     below_one = wrong[wrong["rule"].str.startswith("a mean rank of")]
-    assert below_one["place"].to_list() == [f"method=cpso2_singer, obstacles={k}, metric=rank" for k in (1, 2)]
+    assert below_one["place"].to_list() == [
+        f"method=cpso2_singer, obstacles={k}, metric=rank" for k in (1, 2)
+    ]
     said = wrong[wrong["rule"].str.startswith("the text")]
-    # Logistic before Sine; Circle and Sinusoidal before Piecewise; CPSO-II Gauss and Piecewise before CPSO-I.
+    # Logistic before Sine; Circle and Sinusoidal before Piecewise; CPSO-II Gauss and Piecewise
+    # before CPSO-I.
     assert len(said) == 5
     # With two obstacles and with five, the printed best value is better than with one less.
     shorter = wrong[wrong["rule"].str.startswith("objective goes up along obstacles")]
@@ -289,7 +410,10 @@ def test_audit_of_tharwat2018():
     assert rows["rule"].str.startswith("Table 5 has").sum() == 8
 
 
-@pytest.mark.parametrize(("table", "metric"), [("table3", "objective"), ("table5", "collisions_c"), ("table6", "objective")])
+@pytest.mark.parametrize(
+    ("table", "metric"),
+    [("table3", "objective"), ("table5", "collisions_c"), ("table6", "objective")],
+)
 def test_audit_sees_a_changed_number(table, metric):
     numbers = published("tharwat2018")
     before = faults(tharwat2018.audit(numbers))
@@ -300,7 +424,9 @@ def test_audit_sees_a_changed_number(table, metric):
 
 def test_published_numbers_of_tharwat2018():
     tables = published("tharwat2018")
-    assert [len(tables[name]) for name in tharwat2018.RANKED] == [3 * rows for rows in (8, 8, 5, 10)]
+    assert [len(tables[name]) for name in tharwat2018.RANKED] == [
+        3 * rows for rows in (8, 8, 5, 10)
+    ]
     best = tables["table4"].query("metric == 'objective'").set_index("method")["value"]
     assert (best["cpso2_gauss"], best["cpso2_singer"]) == (14.90, 10.21)
     for name in tharwat2018.RANKED:
@@ -309,11 +435,15 @@ def test_published_numbers_of_tharwat2018():
 
 
 def test_methods_of_tharwat2018():
-    """Eight maps in each variant, of which the Tent map has a fixed start of its own; the collapsed sequence never moves."""
+    """Eight maps in each variant, of which the Tent map has a fixed start of its own; the collapsed
+    sequence never moves.
+    """
     for variant, term in (("cpso1", "cognitive"), ("cpso2", "social")):
         for name in tharwat2018.CHAOTIC:
             own = THARWAT["methods"][f"{variant}_{name}"]["settings"]
-            assert own == {"chaotic_term": term, "chaotic_map": name} | ({"chaotic_start": 0.6} if name == "tent" else {})
+            assert own == {"chaotic_term": term, "chaotic_map": name} | (
+                {"chaotic_start": 0.6} if name == "tent" else {}
+            )
     frozen = THARWAT["settings"] | THARWAT["methods"]["cpso2_gauss_collapsed"]["settings"]
     plan = chaotic_pso.plan(problem("equal"), np.random.default_rng(0), **frozen)
     assert plan.extra["zeta_collapsed_at"] == 1
@@ -330,7 +460,9 @@ def test_study_is_free_of_faults(key):
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_default_of_an_assumption_is_in_force(key):
-    """Of all five studies; `load` refuses a default that is not, which is tried here with a value that no setting has."""
+    """Of all five studies; `load` refuses a default that is not, which is tried here with a value
+    that no setting has.
+    """
     study = shared(key)
     governed = [assumption for assumption in study.assumptions if assumption.setting]
     assert len(governed) >= {"song2016": 9, "tharwat2018": 15, "ma2020": 14}.get(key, 5)

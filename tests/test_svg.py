@@ -1,4 +1,6 @@
-"""Drawings as maps: shapes, transforms and fill rules in closed form, and what is refused in one line."""
+"""Drawings as maps: shapes, transforms and fill rules in closed form, and what is refused in one
+line.
+"""
 
 import math
 import re
@@ -17,7 +19,9 @@ HEAD = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10">'
 def area_of(content, head=HEAD, scale=1.0):
     """Area and bounds of what is blocked in a drawing."""
     polygons = polygons_from_svg(f"{head}{content}</svg>", "m", scale)
-    union = shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles])
+    union = shapely.union_all(
+        [shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles]
+    )
     return union.area, union.bounds
 
 
@@ -25,7 +29,11 @@ SQUARE = '<rect width="2" height="2"/>'
 
 SHAPES = {
     "rect": ('<rect x="1" y="2" width="3" height="4"/>', 12, (1, 4, 4, 8)),
-    "round rect": ('<rect x="1" y="2" width="4" height="4" rx="1"/>', 16 - 4 + math.pi, (1, 4, 5, 8)),
+    "round rect": (
+        '<rect x="1" y="2" width="4" height="4" rx="1"/>',
+        16 - 4 + math.pi,
+        (1, 4, 5, 8),
+    ),
     "circle": ('<circle cx="5" cy="4" r="2"/>', 4 * math.pi, (3, 4, 7, 8)),
     "ellipse": ('<ellipse cx="5" cy="4" rx="2" ry="1"/>', 2 * math.pi, (3, 5, 7, 7)),
     "polygon": ('<polygon points="1,1 4,1 4,5"/>', 6, (1, 5, 4, 9)),
@@ -34,15 +42,28 @@ SHAPES = {
     "quadratic": ('<path d="M1 5 Q3 1 5 5 z"/>', 16 / 3, (1, 5, 5, 7)),
     "hole by direction": ('<path d="M1 1h6v6h-6z M2 2v2h2v-2z"/>', 32, (1, 3, 7, 9)),
     "no hole in one direction": ('<path d="M1 1h6v6h-6z M2 2h2v2h-2z"/>', 36, (1, 3, 7, 9)),
-    "hole by even-odd": ('<path fill-rule="evenodd" d="M1 1h6v6h-6z M2 2h2v2h-2z"/>', 32, (1, 3, 7, 9)),
+    "hole by even-odd": (
+        '<path fill-rule="evenodd" d="M1 1h6v6h-6z M2 2h2v2h-2z"/>',
+        32,
+        (1, 3, 7, 9),
+    ),
     "crosses itself": ('<path d="M1 1 L5 5 L5 1 L1 5 z"/>', 8, (1, 5, 5, 9)),
     "arc": ('<path d="M3 5 A2 2 0 0 1 7 5 z"/>', 2 * math.pi, (3, 5, 7, 7)),
     "group": ('<g transform="translate(1,2)"><rect width="3" height="4"/></g>', 12, (1, 4, 4, 8)),
-    "scale, then move": ('<rect transform="translate(1 2) scale(2)" width="2" height="1"/>', 8, (1, 6, 5, 8)),
-    "turned": ('<rect transform="rotate(90 5 5)" x="5" y="5" width="3" height="1"/>', 3, (4, 2, 5, 5)),
+    "scale, then move": (
+        '<rect transform="translate(1 2) scale(2)" width="2" height="1"/>',
+        8,
+        (1, 6, 5, 8),
+    ),
+    "turned": (
+        '<rect transform="rotate(90 5 5)" x="5" y="5" width="3" height="1"/>',
+        3,
+        (4, 2, 5, 5),
+    ),
     "matrix": ('<circle transform="matrix(2 0 0 1 5 5)" r="1"/>', 2 * math.pi, (3, 4, 7, 6)),
     "not drawn": (
-        '<defs><rect width="1" height="1"/></defs><rect display="none" width="9" height="9"/><rect width="2" height="2"/>',
+        '<defs><rect width="1" height="1"/></defs><rect display="none" width="9" '
+        'height="9"/><rect width="2" height="2"/>',
         4,
         (0, 8, 2, 10),
     ),
@@ -60,7 +81,9 @@ def test_shapes_have_their_area_and_their_place(name):
 def test_curves_are_off_by_less_than_is_said():
     polygons = polygons_from_svg(f'{HEAD}<circle cx="5" cy="5" r="4"/></svg>', "m")
     ring = shapely.Polygon(polygons.obstacles[0][0]).exterior
-    circle = [(5 + 4 * math.cos(a), 5 + 4 * math.sin(a)) for a in np.linspace(0, 2 * math.pi, 3_001)]
+    circle = [
+        (5 + 4 * math.cos(a), 5 + 4 * math.sin(a)) for a in np.linspace(0, 2 * math.pi, 3_001)
+    ]
     assert max(shapely.distance(shapely.points(circle), ring)) <= 10 * FLATNESS
 
 
@@ -68,7 +91,9 @@ def test_the_border_is_the_view_box_scaled_and_from_its_lower_left_corner():
     head = '<svg xmlns="http://www.w3.org/2000/svg" width="20cm" viewBox="-5 -5 20 10">'
     polygons = polygons_from_svg(f'{head}<rect x="-5" y="3" width="2" height="2"/></svg>', "m", 0.5)
     assert polygons.bounds == (0, 10, 0, 5)
-    assert shapely.Polygon(polygons.obstacles[0][0]).bounds == pytest.approx((0, 0, 1, 1), abs=1e-12)
+    assert shapely.Polygon(polygons.obstacles[0][0]).bounds == pytest.approx(
+        (0, 0, 1, 1), abs=1e-12
+    )
     assert polygons_from_svg('<svg width="20px" height="10"/>', "m").bounds == (0, 20, 0, 10)
 
 
@@ -80,7 +105,22 @@ def test_a_drawing_is_planned_on_by_a_planner_of_polygons_and_one_of_cells(capsy
     length = 2 * math.hypot(3, 4) + 2
     assert f"shortest path   {length:.6g} m" in told
     assert "feasible        yes" in told
-    main(["plan", str(file), "--start", "1,8", "--target", "9,8", "--like", "song2016/smooth", "--resolution", "1", "--cell", "0.5"])
+    main(
+        [
+            "plan",
+            str(file),
+            "--start",
+            "1,8",
+            "--target",
+            "9,8",
+            "--like",
+            "song2016/smooth",
+            "--resolution",
+            "1",
+            "--cell",
+            "0.5",
+        ]
+    )
     assert f"shortest path   {length:.6g} m" in capsys.readouterr().out
     wide = bp.read_map(file, robot_radius=0.5, resolution=2.0)
     assert wide.bounds == pytest.approx((0.5, 19.5, 0.5, 19.5), abs=1e-8)
@@ -93,10 +133,19 @@ def test_a_drawing_is_planned_on_by_a_planner_of_polygons_and_one_of_cells(capsy
         ('<image href="a.png"/>', "image 1: has no outline"),
         ('<use href="#a"/>', "use 1: has no outline"),
         ('<line x2="1"/>', "line 1: has no outline"),
-        ('<rect id="wall" transform="spin(3)" width="1" height="1"/>', "rect wall: transform: spin(3); expected matrix"),
+        (
+            '<rect id="wall" transform="spin(3)" width="1" height="1"/>',
+            "rect wall: transform: spin(3); expected matrix",
+        ),
         ('<g transform="translate(3mm)"/>', "g 1: transform: translate(3mm); expected"),
-        ('<g transform="matrix(1 2)"/>', "g 1: transform: matrix(1 2); expected 6 numbers for matrix"),
-        ('<rect clip-path="url(#a)" width="1" height="1"/>', "rect 1: clip-path: it changes what is seen"),
+        (
+            '<g transform="matrix(1 2)"/>',
+            "g 1: transform: matrix(1 2); expected 6 numbers for matrix",
+        ),
+        (
+            '<rect clip-path="url(#a)" width="1" height="1"/>',
+            "rect 1: clip-path: it changes what is seen",
+        ),
         ('<rect style="mask: url(#a)" width="1" height="1"/>', "rect 1: mask: it changes"),
         ('<rect width="10%" height="1"/>', "rect 1: width: 10%; expected a number"),
         ('<circle r="-1"/>', "circle 1: r: -1; expected numbers of at least 0"),

@@ -20,7 +20,12 @@ SPEC = {
     "index": ["problem"],
     "columns": ["value", "method"],
     "values": [
-        {"metric": "evaluations", "statistic": "median", "label": "number of evaluations", "decimals": 0},
+        {
+            "metric": "evaluations",
+            "statistic": "median",
+            "label": "number of evaluations",
+            "decimals": 0,
+        },
         {"metric": "length", "statistic": "median", "label": "length", "decimals": 2},
     ],
 }
@@ -34,7 +39,9 @@ long,fast,evaluations,median,20,-,1000
 
 
 def results(repeats: int = 20) -> Results:
-    """Three methods, one of them a variant of `fast`, on two problems; every fifth run is infeasible and shorter than any path."""
+    """Three methods, one of them a variant of `fast`, on two problems; every fifth run is
+    infeasible and shorter than any path.
+    """
     rng = np.random.default_rng(5)
     rows = [
         {
@@ -106,11 +113,21 @@ def test_failed_runs_are_never_averaged():
 def test_count_stands_beside_what_leaves_failed_runs_out():
     """One for all statistics of the same runs, and none where every run counts."""
     length = {"metric": "length", "statistic": ["min", "max", "mean"], "label": "length"}
-    spec = {"where": {"method": "plain"}, "index": ["problem"], "values": [length, {"metric": "evaluations", "statistic": "mean"}]}
+    spec = {
+        "where": {"method": "plain"},
+        "index": ["problem"],
+        "values": [length, {"metric": "evaluations", "statistic": "mean"}],
+    }
     ours = results()
     ours.runs.loc[ours.runs["problem"] == "brief", "feasible"] = True
     table = tables.pivot(ours, spec, {})
-    assert table.columns.to_list() == ["length: min", "length: max", "length: mean", "runs counted: length", "evaluations: mean"]
+    assert table.columns.to_list() == [
+        "length: min",
+        "length: max",
+        "length: mean",
+        "runs counted: length",
+        "evaluations: mean",
+    ]
     assert table["runs counted: length"].to_dict() == {"long": "16 of 20", "brief": "20 of 20"}
     ours.runs["feasible"] = True
     assert "runs counted: length" not in tables.pivot(ours, spec, {})
@@ -118,7 +135,9 @@ def test_count_stands_beside_what_leaves_failed_runs_out():
 
 def test_count_is_of_the_runs_that_a_value_asks_for():
     late = {"metric": "length", "statistic": "median", "where": {"repeat": [0, 1, 2]}}
-    table = tables.pivot(results(), {"index": ["value"], "columns": ["method"], "values": [late]}, {})
+    table = tables.pivot(
+        results(), {"index": ["value"], "columns": ["method"], "values": [late]}, {}
+    )
     assert table["runs counted: fast to plain"].to_list() == ["4 of 6"]
     found = row(compare(results(), spec=SPEC | {"values": [late]}), "long", "plain", "length")
     assert (found["n_ours"], found["n_asked"]) == (2, 3)
@@ -130,7 +149,11 @@ def test_empty_group_gives_an_empty_cell():
     assert tables.pivot(ours, SPEC, {})["length: fast"].to_list() == ["", ""]
     found = row(compare(ours), "long", "fast", "length")
     assert found["n_ours"] == 0
-    assert found[["value_ours", "best", "low95_ours", "quantile_published", "in_range", "gap"]].isna().all()
+    assert (
+        found[["value_ours", "best", "low95_ours", "quantile_published", "in_range", "gap"]]
+        .isna()
+        .all()
+    )
     assert found["share_feasible"] == 0
 
 
@@ -148,40 +171,71 @@ def test_where_of_a_value_and_several_statistics():
         "where": {"problem": "brief"},
         "index": ["statistic"],
         "columns": ["method", "value"],
-        "values": [{"metric": "length", "statistic": ["min", "max"], "where": {"repeat": [1, 2]}, "decimals": 3}],
+        "values": [
+            {
+                "metric": "length",
+                "statistic": ["min", "max"],
+                "where": {"repeat": [1, 2]},
+                "decimals": 3,
+            }
+        ],
     }
     ours = results()
     table = tables.pivot(ours, spec, {})
     two = ours.runs.query("problem == 'brief' and method == 'plain' and repeat in [1, 2]")["length"]
     assert table.index.to_list() == ["min", "max"]
     assert table["plain: length"].to_list() == [f"{two.min():.3f}", f"{two.max():.3f}"]
-    assert table.columns.to_list() == ["fast: length", "faster: length", "plain: length"]  # all of these runs have a path
+    assert table.columns.to_list() == [
+        "fast: length",
+        "faster: length",
+        "plain: length",
+    ]  # all of these runs have a path
 
 
 def test_words_left_out_become_levels_where_needed():
     length = {"metric": "length", "statistic": "mean"}
     one = {"index": ["problem"], "columns": ["method"], "values": [length]}
-    assert tables.pivot(results(), one, {}).columns.to_list() == ["fast", "faster", "plain", "runs counted: fast to plain"]
+    assert tables.pivot(results(), one, {}).columns.to_list() == [
+        "fast",
+        "faster",
+        "plain",
+        "runs counted: fast to plain",
+    ]
     lone = {"index": ["problem", "method"], "values": [length]}
     assert tables.pivot(results(), lone, {}).columns.to_list() == ["length", "runs counted: length"]
     several = {
         "index": ["problem", "method"],
-        "values": [length | {"statistic": ["min", "max"]}, {"metric": "evaluations", "statistic": "mean"}],
+        "values": [
+            length | {"statistic": ["min", "max"]},
+            {"metric": "evaluations", "statistic": "mean"},
+        ],
     }
     table = tables.pivot(results(), several, {})
-    assert table.columns.to_list() == ["length: min", "length: max", "runs counted: length", "evaluations: mean"]
+    assert table.columns.to_list() == [
+        "length: min",
+        "length: max",
+        "runs counted: length",
+        "evaluations: mean",
+    ]
     assert table.index.names == ["problem", "method"]
 
 
 def test_decimals_of_some_values_only():
-    values = [{"metric": "gap", "statistic": "mean"}, {"metric": "evaluations", "statistic": "mean", "decimals": 1}]
+    values = [
+        {"metric": "gap", "statistic": "mean"},
+        {"metric": "evaluations", "statistic": "mean", "decimals": 1},
+    ]
     spec = SPEC | {"values": values}
     assert set(tables.pivot(results(), spec, {})["evaluations: fast"]) == {"1000.0"}
     assert row(compare(results(), spec=spec), "long", "fast", "gap")["n_ours"] == 16
 
 
 def test_numbers_in_the_index_are_sorted_as_numbers():
-    table = tables.pivot(results(), {"index": ["repeat"], "values": [{"metric": "evaluations", "statistic": "count"}]}, {})
+    table = tables.pivot(
+        results(),
+        {"index": ["repeat"], "values": [{"metric": "evaluations", "statistic": "count"}]},
+        {},
+    )
     assert table.index.to_list() == [str(repeat) for repeat in range(20)]
 
 
@@ -194,7 +248,9 @@ def test_order_of_the_runs_never_changes_a_byte():
 def test_rows_do_not_depend_on_the_others():
     alone = compare(results(), spec=SPEC | {"where": {"problem": ["long"], "method": ["plain"]}})
     pd.testing.assert_series_equal(
-        row(alone, "long", "plain", "length"), row(compare(results()), "long", "plain", "length"), check_names=False
+        row(alone, "long", "plain", "length"),
+        row(compare(results()), "long", "plain", "length"),
+        check_names=False,
     )
 
 
@@ -242,10 +298,24 @@ def test_seconds_of_another_machine_are_shown_but_not_judged():
     ours = results()
     ours.runs["cpu_s"] = 0.01
     given = pd.DataFrame(
-        [{"problem": "long", "method": "plain", "metric": "cpu_s", "statistic": "mean", "n": 30, "unit": "s", "value": 200.0}]
+        [
+            {
+                "problem": "long",
+                "method": "plain",
+                "metric": "cpu_s",
+                "statistic": "mean",
+                "n": 30,
+                "unit": "s",
+                "value": 200.0,
+            }
+        ]
     )
-    spec = SPEC | {"values": [{"metric": "cpu_s", "statistic": "mean", "label": "time", "decimals": 3}]}
-    found = row(comparison.compare(ours, spec, given, {}, [], "study/table1"), "long", "plain", "cpu_s")
+    spec = SPEC | {
+        "values": [{"metric": "cpu_s", "statistic": "mean", "label": "time", "decimals": 3}]
+    }
+    found = row(
+        comparison.compare(ours, spec, given, {}, [], "study/table1"), "long", "plain", "cpu_s"
+    )
     assert (found["value_published"], found["value_ours"]) == (200.0, pytest.approx(0.01))
     assert pd.isna(found["in_range"])
 
@@ -254,16 +324,32 @@ def test_shares_bound_and_gap():
     ours = results()
     found = row(compare(ours), "long", "plain", "length")
     feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
-    assert (found["share_claimed"], found["share_feasible"], found["bound"], found["unit"]) == (1.0, 0.8, 9.0, "m")
+    assert (found["share_claimed"], found["share_feasible"], found["bound"], found["unit"]) == (
+        1.0,
+        0.8,
+        9.0,
+        "m",
+    )
     assert found["gap"] == pytest.approx(feasible.median() / 9 - 1)
 
 
-LEAST = SPEC | {"values": [{"metric": "length", "statistic": "min", "label": "length", "decimals": 2}]}
+LEAST = SPEC | {
+    "values": [{"metric": "length", "statistic": "min", "label": "length", "decimals": 2}]
+}
 
 
 def least(plain, fast=11.0, n=20, other=11.0):
-    """The row of the least length of `plain` on the problem `long`, whose bound is 9, beside published ones."""
-    printed = {"problem": "long", "method": ["plain", "fast", "other"], "metric": "length", "statistic": "min", "n": n, "unit": "m"}
+    """The row of the least length of `plain` on the problem `long`, whose bound is 9, beside
+    published ones.
+    """
+    printed = {
+        "problem": "long",
+        "method": ["plain", "fast", "other"],
+        "metric": "length",
+        "statistic": "min",
+        "n": n,
+        "unit": "m",
+    }
     given = pd.DataFrame(printed | {"value": [plain, fast, other]}).dropna()
     table = comparison.compare(results(), LEAST, given, {}, [], "study/table1")
     return row(table, "long", "plain", "length")
@@ -279,16 +365,31 @@ def test_published_minimum_between_the_bound_and_ours_cannot_fail():
     found = least(9.0)
     assert found["in_range"]
     assert found["low95_predicted"] == 9.0
-    assert (found["can_fail"], found["verdict"], found["why"]) == (False, "inconclusive", "interval without an end on that side")
+    assert (found["can_fail"], found["verdict"], found["why"]) == (
+        False,
+        "inconclusive",
+        "interval without an end on that side",
+    )
 
 
 def test_what_the_paper_does_not_define_is_inconclusive_wherever_it_lies():
-    values = [entry | ({"defined": False} if entry["metric"] == "length" else {}) for entry in SPEC["values"]]
+    values = [
+        entry | ({"defined": False} if entry["metric"] == "length" else {})
+        for entry in SPEC["values"]
+    ]
     ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
     for value in (ours.median(), 10 * ours.median()):
         before = row(compare(results(), plain=f"{value}"), "long", "plain", "length")
-        found = row(compare(results(), spec=SPEC | {"values": values}, plain=f"{value}"), "long", "plain", "length")
-        assert (found["verdict"], found["why"]) == ("inconclusive", "quantity that the paper does not define")
+        found = row(
+            compare(results(), spec=SPEC | {"values": values}, plain=f"{value}"),
+            "long",
+            "plain",
+            "length",
+        )
+        assert (found["verdict"], found["why"]) == (
+            "inconclusive",
+            "quantity that the paper does not define",
+        )
         assert (found["in_range"], found["power"]) == (before["in_range"], before["power"])
     assert before["verdict"] == "disagrees"
 
@@ -314,16 +415,33 @@ def test_without_another_method_a_tenth_is_what_matters():
 
 
 def test_number_that_the_metric_cannot_have_is_not_possible():
-    spec = SPEC | {"values": [{"metric": "evaluations", "statistic": "mean", "label": "e", "decimals": 0}]}
-    printed = {"problem": "long", "method": ["plain", "fast"], "metric": "evaluations", "statistic": "mean", "n": 9, "unit": "-"}
-    table = comparison.compare(results(), spec, pd.DataFrame(printed | {"value": [-1.0, 1000.0]}), {}, [], "study/table1")
-    assert [row(table, "long", method, "evaluations")["possible"] for method in ("plain", "fast")] == [False, True]
+    spec = SPEC | {
+        "values": [{"metric": "evaluations", "statistic": "mean", "label": "e", "decimals": 0}]
+    }
+    printed = {
+        "problem": "long",
+        "method": ["plain", "fast"],
+        "metric": "evaluations",
+        "statistic": "mean",
+        "n": 9,
+        "unit": "-",
+    }
+    table = comparison.compare(
+        results(), spec, pd.DataFrame(printed | {"value": [-1.0, 1000.0]}), {}, [], "study/table1"
+    )
+    assert [
+        row(table, "long", method, "evaluations")["possible"] for method in ("plain", "fast")
+    ] == [False, True]
 
 
 def test_size_of_the_paper_is_not_cut_to_the_share_that_counts(monkeypatch):
     """A fifth of our runs failed; the paper's ten are ten."""
     sizes = []
-    monkeypatch.setattr(statistics, "prediction", lambda *given: sizes.append(given[3]) or statistics.Prediction(0.5, True, 9.0, 11.0))
+    monkeypatch.setattr(
+        statistics,
+        "prediction",
+        lambda *given: sizes.append(given[3]) or statistics.Prediction(0.5, True, 9.0, 11.0),
+    )
     least(10.0, n=10)
     assert set(sizes) == {10, None}
 
@@ -332,15 +450,29 @@ def test_lengths_that_count_cells_carry_their_own_bound_and_gap():
     ours = results()
     ours = ours._replace(runs=ours.runs.assign(octile_bound=11.0, path_curve="", path_points=None))
     wanted = {"length": "gap", "cells4": "gap4", "cells8": "gap8"}
-    values = [{"metric": metric, "statistic": "mean", "label": metric, "decimals": 1} for metric in wanted]
-    cells = tables.cells(ours, SPEC | {"values": values, "where": {"problem": "long"}}, ["problem", "method"])
-    assert cells.groupby("metric")["bound"].unique().map(list).to_dict() == {"length": [9.0], "cells4": [11.0], "cells8": [11.0]}
+    values = [
+        {"metric": metric, "statistic": "mean", "label": metric, "decimals": 1} for metric in wanted
+    ]
+    cells = tables.cells(
+        ours, SPEC | {"values": values, "where": {"problem": "long"}}, ["problem", "method"]
+    )
+    assert cells.groupby("metric")["bound"].unique().map(list).to_dict() == {
+        "length": [9.0],
+        "cells4": [11.0],
+        "cells8": [11.0],
+    }
     assert {metric: metrics.METRICS[metric].gap for metric in wanted} == wanted
-    assert cells.groupby("metric")["least"].unique().map(list).to_dict() == {"length": [9.0], "cells4": [11.0], "cells8": [11.0]}
+    assert cells.groupby("metric")["least"].unique().map(list).to_dict() == {
+        "length": [9.0],
+        "cells4": [11.0],
+        "cells8": [11.0],
+    }
 
 
 def test_published_number_without_runs_keeps_its_row():
-    found = row(compare(results(), spec=SPEC | {"where": {"method": ["fast"]}}), "long", "plain", "length")
+    found = row(
+        compare(results(), spec=SPEC | {"where": {"method": ["fast"]}}), "long", "plain", "length"
+    )
     assert found["value_published"] == 10
     assert found["n_ours"] == 0
     assert math.isnan(found["value_ours"])
@@ -348,16 +480,24 @@ def test_published_number_without_runs_keeps_its_row():
 
 def test_published_file(tmp_path):
     file = tmp_path / "table.csv"
-    file.write_text("problem,term,metric,statistic,n,unit,value\nlong,none,length,mean,,m,3\nlong,NA,length,mean,5,m,\n")
+    file.write_text(
+        "problem,term,metric,statistic,n,unit,value\nlong,none,length,mean,,m,3\nlong,NA,length,mean,5,m,\n"
+    )
     table = comparison.read_published(str(file), SPEC)
     assert table["term"].to_list() == ["none", "NA"]
     assert table[["n", "value"]].isna().to_numpy().tolist() == [[True, False], [False, True]]
 
 
 def test_table_without_published_numbers():
-    table = comparison.compare(results(), SPEC, comparison.read_published(None, SPEC), {}, [], "study/extra")
+    table = comparison.compare(
+        results(), SPEC, comparison.read_published(None, SPEC), {}, [], "study/extra"
+    )
     assert len(table) == 8
-    assert table[["n_published", "value_published", "quantile_published", "in_range"]].isna().all(axis=None)
+    assert (
+        table[["n_published", "value_published", "quantile_published", "in_range"]]
+        .isna()
+        .all(axis=None)
+    )
     assert table["value_ours"].notna().all()
 
 
@@ -378,21 +518,51 @@ def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
     file = tmp_path / "table2.csv"
     file.write_text("method,value\nplain,2.5\n")
     table = listing.table(
-        {"kind": "function", "function": "twice"}, {"table2": str(file)}, {"twice": lambda tables: 2 * tables["table2"][["value"]]}, {}
+        {"kind": "function", "function": "twice"},
+        {"table2": str(file)},
+        {"twice": lambda tables: 2 * tables["table2"][["value"]]},
+        {},
     )
     assert table["value"].tolist() == [5.0]
 
 
 def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
-    columns = ["metric", "statistic", "n_published", "value_published", "n_ours", "value_ours", "low95_predicted", "high95_predicted"]
-    first = pd.DataFrame([("plain", "equal", "length", "mean", 10, 2.5, 10, 2.75, 2.12345, 3.5)], columns=["method", "workspace", *columns])
-    second = pd.DataFrame([("plain", 3, "length", "mean", 10, 4.5, 10, 4.0, 3.0, 5.0)], columns=["method", "obstacles", *columns])
-    rows = pd.concat([first, first.assign(workspace="other"), first.assign(value_published=None), first.assign(metric="rank")])
+    columns = [
+        "metric",
+        "statistic",
+        "n_published",
+        "value_published",
+        "n_ours",
+        "value_ours",
+        "low95_predicted",
+        "high95_predicted",
+    ]
+    first = pd.DataFrame(
+        [("plain", "equal", "length", "mean", 10, 2.5, 10, 2.75, 2.12345, 3.5)],
+        columns=["method", "workspace", *columns],
+    )
+    second = pd.DataFrame(
+        [("plain", 3, "length", "mean", 10, 4.5, 10, 4.0, 3.0, 5.0)],
+        columns=["method", "obstacles", *columns],
+    )
+    rows = pd.concat(
+        [
+            first,
+            first.assign(workspace="other"),
+            first.assign(value_published=None),
+            first.assign(metric="rank"),
+        ]
+    )
     for name, table in (("table3", rows), ("table6", second)):
-        table.assign(value_ours_scaled=2.5, quantile_published=0.25, in_range=True, verdict="agrees", why="").to_csv(
-            tmp_path / f"{name}.comparison.csv", index=False
-        )
-    spec = {"kind": "comparison", "of": ["table3", "table6"], "metrics": ["length"], "where": {"workspace": "equal"}}
+        table.assign(
+            value_ours_scaled=2.5, quantile_published=0.25, in_range=True, verdict="agrees", why=""
+        ).to_csv(tmp_path / f"{name}.comparison.csv", index=False)
+    spec = {
+        "kind": "comparison",
+        "of": ["table3", "table6"],
+        "metrics": ["length"],
+        "where": {"workspace": "equal"},
+    }
     files = {name: str(tmp_path / f"{name}.comparison.csv") for name in spec["of"]}
     shown = listing.table(spec, files, {}, {"plain": "plain curves", "equal": "equal circles"})
     assert shown["table"].to_list() == ["table3", "table6"]
@@ -404,25 +574,37 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
 
 def test_a_printed_length_is_compared_with_the_metric_that_the_table_reads_it_as(tmp_path):
     file = tmp_path / "table.csv"
-    file.write_text("method,metric,statistic,n,unit,value\nplain,length,mean,10,m,3\nplain,cpu_s,mean,10,s,4\n")
-    assert comparison.read_published(str(file), SPEC | {"reads": {"length": "cells4"}})["metric"].to_list() == ["cells4", "cpu_s"]
+    file.write_text(
+        "method,metric,statistic,n,unit,value\nplain,length,mean,10,m,3\nplain,cpu_s,mean,10,s,4\n"
+    )
+    assert comparison.read_published(str(file), SPEC | {"reads": {"length": "cells4"}})[
+        "metric"
+    ].to_list() == ["cells4", "cpu_s"]
     assert comparison.read_published(str(file), SPEC)["metric"].to_list() == ["length", "cpu_s"]
 
 
 def test_printed_ranks_that_no_runs_have_are_impossible():
-    """Two methods' mean ranks add to 3 on every problem, up to rounding; on the long one these do not."""
+    """Two methods' mean ranks add to 3 on every problem, up to rounding; on the long one these do
+    not.
+    """
     spec = {
         "index": ["method"],
         "columns": ["problem", "value"],
         "values": [{"metric": "rank", "statistic": "mean", "label": "mean rank", "decimals": 1}],
     }
     ours = results()
-    runs = ours.runs[ours.runs["method"] != "faster"].assign(objective=ours.runs["length"], condition=ours.runs["problem"], vary="")
+    runs = ours.runs[ours.runs["method"] != "faster"].assign(
+        objective=ours.runs["length"], condition=ours.runs["problem"], vary=""
+    )
     numbers = {"long": (1.2, 1.6), "brief": (1.4, 1.7)}
     rows = [
-        (problem, method, "rank", "mean", 20, "-", each) for problem, two in numbers.items() for method, each in zip(("plain", "fast"), two)
+        (problem, method, "rank", "mean", 20, "-", each)
+        for problem, two in numbers.items()
+        for method, each in zip(("plain", "fast"), two)
     ]
-    printed = pd.DataFrame(rows, columns=["problem", "method", "metric", "statistic", "n", "unit", "value"])
+    printed = pd.DataFrame(
+        rows, columns=["problem", "method", "metric", "statistic", "n", "unit", "value"]
+    )
     table = comparison.compare(ours._replace(runs=runs), spec, printed, {}, [], "study/table1")
     assert table.set_index(["problem", "method"])["possible"].to_dict() == {
         ("long", "plain"): False,
@@ -433,7 +615,9 @@ def test_printed_ranks_that_no_runs_have_are_impossible():
 
 
 def test_rows_of_the_papers_interpretation_are_primary():
-    """A variant of a method is another interpretation, and so is another value of what the table's `primary` names."""
+    """A variant of a method is another interpretation, and so is another value of what the table's
+    `primary` names.
+    """
     found = compare(results(), spec=SPEC | {"primary": {"problem": "long"}})
     expected = (found["problem"] == "long") & (found["method"] != "faster")
     assert found["primary"].tolist() == expected.tolist()

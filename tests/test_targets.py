@@ -47,7 +47,9 @@ def test_folder_that_is_no_name_is_told(tmp_path, key):
 
 @pytest.mark.parametrize("key", RULES)
 def test_folder_named_like_a_target_is_told(tmp_path, key):
-    assert f"{key}: the workflow has a target of this name already" in fault(elsewhere(tmp_path, key))
+    assert f"{key}: the workflow has a target of this name already" in fault(
+        elsewhere(tmp_path, key)
+    )
 
 
 def test_folder_named_like_a_target_of_another_study_is_told(tmp_path):
@@ -56,7 +58,9 @@ def test_folder_named_like_a_target_of_another_study_is_told(tmp_path):
 
 
 def test_folder_that_would_overwrite_results_of_a_study_is_told(tmp_path):
-    assert "has a study song2016 already, whose results this one would overwrite" in fault(elsewhere(tmp_path, "song2016"))
+    assert "has a study song2016 already, whose results this one would overwrite" in fault(
+        elsewhere(tmp_path, "song2016")
+    )
 
 
 def test_results_that_cannot_be_written_are_told(tmp_path, monkeypatch):
@@ -67,18 +71,29 @@ def test_results_that_cannot_be_written_are_told(tmp_path, monkeypatch):
         reading.check_start(1)
 
 
-HOSTILE = "a title\n\n.. include:: /etc/passwd\n\n.. raw:: html\n\n   <b>x</b> </script> `code`_ *bold* |sub| http://a.b {{ 7 * 7 }} \\"
+HOSTILE = (
+    "a title\n\n.. include:: /etc/passwd\n\n.. raw:: html\n\n   <b>x</b> </script> `code`_ "
+    "*bold* |sub| http://a.b {{ 7 * 7 }} \\"
+)
 
 
 def test_caption_is_one_line_that_says_just_what_it_says():
     html = publish_parts(targets.escaped(HOSTILE), writer="html")["body"]
     assert re.fullmatch("<p>[^<>]*</p>", html.strip())
-    plain = html.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", '"').replace("&amp;", "&").strip()
+    plain = (
+        html.replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&quot;", '"')
+        .replace("&amp;", "&")
+        .strip()
+    )
     assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"
 
 
 def test_files_appear_when_all_are_written(tmp_path):
-    names = OutputFiles(fromdict={"one": str(tmp_path / "one.csv"), "two": str(tmp_path / "two.csv")})
+    names = OutputFiles(
+        fromdict={"one": str(tmp_path / "one.csv"), "two": str(tmp_path / "two.csv")}
+    )
     with log.whole_files(names) as parts:
         for part in (parts.one, parts[1]):
             assert part.endswith(".csv")
@@ -108,7 +123,11 @@ def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypat
     given = SimpleNamespace(log=[str(tmp_path / "log")], input=[str(damaged)], output=output)
     with pytest.raises(SystemExit) as ended, log.job(given):
         raise ValueError("no footer")
-    assert str(ended.value) == f"{damaged}: not a whole Parquet file; delete it and start again: the workflow reproduces it"
+    assert (
+        str(ended.value)
+        == f"{damaged}: not a whole Parquet file; delete it and start again: the workflow "
+        f"reproduces it"
+    )
     assert sorted(os.listdir(tmp_path)) == ["cut.parquet"]
     given.input = []
     with pytest.raises(SystemExit, match="ValueError: no footer"), log.job(given):
@@ -123,7 +142,9 @@ def once():
     return dataclasses.replace(SONG, experiments={"routes": content.but(**sizes)})
 
 
-@pytest.mark.parametrize(("scale", "kept"), [("smoke", "smoke"), ("full", "full"), ("extended", "full")])
+@pytest.mark.parametrize(
+    ("scale", "kept"), [("smoke", "smoke"), ("full", "full"), ("extended", "full")]
+)
 def test_experiment_of_the_same_size_runs_once_for_both_scales(once, scale, kept):
     (files,) = targets.judged_by_claims(once, scale).values()
     assert {file.split("/")[1] for file in (*files.chunks, files.problems, files.bounds)} == {kept}
@@ -137,7 +158,10 @@ def test_experiment_with_more_repeats_keeps_its_own_runs():
 def test_extended_leaves_out_what_would_be_as_at_full(once):
     drawings = {"figure1", "figure2", "identified"}  # without runs
     assert targets.artefacts_of(SONG, "full") == [*SONG.tables, *SONG.figures]
-    assert set(targets.artefacts_of(SONG, "full")) - set(targets.artefacts_of(SONG, "extended")) == drawings
+    assert (
+        set(targets.artefacts_of(SONG, "full")) - set(targets.artefacts_of(SONG, "extended"))
+        == drawings
+    )
     assert targets.artefacts_of(once, "extended") == []
     assert targets.artefacts_of(once, "full") == [*SONG.tables, *SONG.figures]
 
@@ -157,7 +181,9 @@ def test_a_figure_that_shows_published_numbers_depends_on_their_files(monkeypatc
         for figure in own.figures:
             if jobs.published_drawn(own, figure):
                 drawn += 1
-                assert set(own.published_files()) <= set(targets.figure_params({key: own}, "smoke", key, figure)["sources"])
+                assert set(own.published_files()) <= set(
+                    targets.figure_params({key: own}, "smoke", key, figure)["sources"]
+                )
     assert drawn
 
 

@@ -1,4 +1,6 @@
-"""Figures of a landscape and of tracks on it: reproduced runs pass through what they passed through."""
+"""Figures of a landscape and of tracks on it: reproduced runs pass through what they passed
+through.
+"""
 
 from pathlib import Path as File
 
@@ -18,8 +20,15 @@ from bezierplan.schema import checked
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml")["settings"]
-FIELD = Problem("field", Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"), (0.0, 0.0), (4.0, 6.0))
+SETTINGS = checked.read(
+    File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml"
+)["settings"]
+FIELD = Problem(
+    "field",
+    Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"),
+    (0.0, 0.0),
+    (4.0, 6.0),
+)
 JOB = {
     "study": "study",
     "experiment": "routes",
@@ -36,9 +45,14 @@ JOB = {
 
 def surface(found: results.Results) -> pd.DataFrame:
     """A bowl with two minima over a small grid, and a control point that stays."""
-    x, y = (side.ravel() for side in np.meshgrid(np.linspace(-10, 10, 9), np.linspace(-10, 10, 7), indexing="ij"))
+    x, y = (
+        side.ravel()
+        for side in np.meshgrid(np.linspace(-10, 10, 9), np.linspace(-10, 10, 7), indexing="ij")
+    )
     nodes = pd.DataFrame({"part": "node", "x": x, "y": y, "objective": 1 + x**2 + y**2})
-    places = pd.DataFrame({"part": ["minimum", "lowest", "fixed"], "x": [5.0, 0.0, 1.0], "y": [5.0, 0.0, 2.0]})
+    places = pd.DataFrame(
+        {"part": ["minimum", "lowest", "fixed"], "x": [5.0, 0.0, 1.0], "y": [5.0, 0.0, 2.0]}
+    )
     return pd.concat([nodes, places], ignore_index=True)
 
 
@@ -48,7 +62,9 @@ def found() -> results.Results:
     bounds = problems.bounds_of({"field": FIELD}).to_pandas()
     runs = table.to_pandas()
     runs["path_points"] = runs["path_points"].map(list)
-    return results.joined(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(jobs={"swarm": JOB})
+    return results.joined(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(
+        jobs={"swarm": JOB}
+    )
 
 
 def panels() -> list[dict]:
@@ -57,14 +73,29 @@ def panels() -> list[dict]:
     return [
         {"kind": "surface", "title": "surface", **runs, **below},
         {"kind": "landscape", "title": "landscape", **runs, **below},
-        {"kind": "tracks", "title": "point", **runs, **below, "by": "homotopy", "runs": 2, "point": 1},
+        {
+            "kind": "tracks",
+            "title": "point",
+            **runs,
+            **below,
+            "by": "homotopy",
+            "runs": 2,
+            "point": 1,
+        },
         {"kind": "tracks", "title": "paths", **runs, "by": "homotopy", "runs": 2},
     ]
 
 
 def test_ways_are_those_of_the_runs(found):
-    """The objective along the way of all control points is the run's history: nothing but the run itself can do that."""
-    ways = [tracks.data(found, options_of(tracks, by="homotopy", runs=1, point=point)).query("part == 'way'") for point in range(5)]
+    """The objective along the way of all control points is the run's history: nothing but the run
+    itself can do that.
+    """
+    ways = [
+        tracks.data(found, options_of(tracks, by="homotopy", runs=1, point=point)).query(
+            "part == 'way'"
+        )
+        for point in range(5)
+    ]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
     again = chaotic_pso._objective(FIELD, filled(chaotic_pso.Settings, JOB["settings"]))
@@ -78,20 +109,29 @@ def test_ways_are_those_of_the_runs(found):
 
 def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
     frame = tracks.data(found, options_of(tracks, by="homotopy", runs=2))
-    runs = found.runs.assign(group=metrics.values(found.runs, "homotopy", found.problems)).query("feasible")
+    runs = found.runs.assign(group=metrics.values(found.runs, "homotopy", found.problems)).query(
+        "feasible"
+    )
     counts = runs["group"].value_counts()
     assert len(counts) == 2, "paths pass the circle on either side"
-    best = {runs.loc[runs.loc[runs["group"] == group, "objective"].idxmin(), "id"] for group in counts.index}
+    best = {
+        runs.loc[runs.loc[runs["group"] == group, "objective"].idxmin(), "id"]
+        for group in counts.index
+    }
     assert set(frame["run"].dropna()) == best
     assert set(frame["groups"]) == {2}
     assert set(frame.loc[frame["part"] == "path"].groupby("run")["iteration"].nunique()) == {2}
-    commonest = tracks.data(found, options_of(tracks, by="homotopy", runs=1))["run"].dropna().iloc[0]
+    commonest = (
+        tracks.data(found, options_of(tracks, by="homotopy", runs=1))["run"].dropna().iloc[0]
+    )
     assert runs.set_index("id")["group"][commonest] == counts.index[0] or counts.nunique() == 1
 
 
 def test_a_run_that_ends_elsewhere_is_a_fault(found):
     job = JOB | {"settings": JOB["settings"] | {"c1": 1.4}}
-    with pytest.raises(ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: its rerun ends in another path"):
+    with pytest.raises(
+        ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: its rerun ends in another path"
+    ):
         tracks.data(found._replace(jobs={"swarm": job}), options_of(tracks, by="homotopy", runs=1))
 
 
@@ -113,8 +153,15 @@ def test_no_feasible_run_is_said(found, tmp_path):
 
 def drawn(found: results.Results, own: list[dict], folder: File):
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(panels_of(own), Sources({"routes": found}, functions={"surface": surface})), file)
-    return sheet.draw(panels_of(own), sheet.read_data(file), sheet.Scene({"routes": found.problems}, {}, {}, "m"), 2)
+    sheet.write_data(
+        sheet.data(panels_of(own), Sources({"routes": found}, functions={"surface": surface})), file
+    )
+    return sheet.draw(
+        panels_of(own),
+        sheet.read_data(file),
+        sheet.Scene({"routes": found.problems}, {}, {}, "m"),
+        2,
+    )
 
 
 def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):
@@ -122,7 +169,15 @@ def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):
     figure.draw_without_rendering()
     assert [axes.name for axes in figure.axes if axes.get_visible()][:2] == ["3d", "rectilinear"]
     legend = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert {"first run", "second run", "first position", "last position", "local minimum", "start", "target"} <= legend
+    assert {
+        "first run",
+        "second run",
+        "first position",
+        "last position",
+        "local minimum",
+        "start",
+        "target",
+    } <= legend
     for axes in figure.axes[:4]:
         extent = axes.get_tightbbox()
         assert 0 <= extent.x0 <= extent.x1 <= figure.bbox.width

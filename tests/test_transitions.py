@@ -1,4 +1,6 @@
-"""Curvature-continuous paths: transitions in closed form, curvature certified by subdivision, and what is told where there is no room."""
+"""Curvature-continuous paths: transitions in closed form, curvature certified by subdivision, and
+what is told where there is no room.
+"""
 
 import math
 
@@ -35,9 +37,20 @@ def test_the_largest_curvature_is_between_dense_samples_and_a_millionth_more(see
     found = largest_curvature(pieces)
     t = np.linspace(0, 1, 200_001)
     with np.errstate(invalid="ignore", divide="ignore"):
-        first = degree * np.einsum("sk,nkd->nsd", curves.bernstein(degree - 1, t), np.diff(pieces, axis=1))
-        second = degree * (degree - 1) * np.einsum("sk,nkd->nsd", curves.bernstein(degree - 2, t), np.diff(pieces, n=2, axis=1))
-        kappa = np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) / np.hypot(*first.transpose(2, 0, 1)) ** 3
+        first = degree * np.einsum(
+            "sk,nkd->nsd", curves.bernstein(degree - 1, t), np.diff(pieces, axis=1)
+        )
+        second = (
+            degree
+            * (degree - 1)
+            * np.einsum(
+                "sk,nkd->nsd", curves.bernstein(degree - 2, t), np.diff(pieces, n=2, axis=1)
+            )
+        )
+        kappa = (
+            np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0])
+            / np.hypot(*first.transpose(2, 0, 1)) ** 3
+        )
     assert kappa.max() <= found.bound
     assert found.attained <= found.bound <= found.attained * (1 + CURVATURE_TOLERANCE) * (1 + 1e-12)
     assert found.attained <= kappa.max() * 1.001
@@ -48,18 +61,30 @@ def test_the_largest_curvature_of_a_parabola_of_lines_and_of_a_cusp():
     assert parabola.attained == pytest.approx(2, rel=1e-6)
     assert 2 <= parabola.bound <= 2 * (1 + 2e-6)
     assert largest_curvature(np.array([[(0.0, 0.0), (1.0, 3.0)]])) == (0, 0)
-    assert largest_curvature(1e4 + np.array([[(0.0, 0.0), (1 / 3, 1.0), (2 / 3, 2.0), (1.0, 3.0)]])).bound < 1e-6
-    assert largest_curvature(np.array([[(0.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0)]])).bound == math.inf
+    assert (
+        largest_curvature(
+            1e4 + np.array([[(0.0, 0.0), (1 / 3, 1.0), (2 / 3, 2.0), (1.0, 3.0)]])
+        ).bound
+        < 1e-6
+    )
+    assert (
+        largest_curvature(np.array([[(0.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0)]])).bound
+        == math.inf
+    )
 
 
-WALL = bp.Polygons((0.0, 10.0, 0.0, 6.0), ((np.array([(4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)]),),), "m")
+WALL = bp.Polygons(
+    (0.0, 10.0, 0.0, 6.0), ((np.array([(4.0, 0.0), (6.0, 0.0), (6.0, 3.0), (4.0, 3.0)]),),), "m"
+)
 
 
 @pytest.mark.parametrize("radius", [0.2, 0.5, 0.9])
 def test_a_continuous_path_keeps_the_turning_radius(radius):
     problem = bp.Problem("", WALL, (1.0, 1.0), (9.0, 1.0))
     arcs = bp.plan(problem, robot_radius=0.1, turning_radius=radius)
-    smooth = bp.plan(problem, robot_radius=0.1, turning_radius=radius, smooth="continuous", strict=True)
+    smooth = bp.plan(
+        problem, robot_radius=0.1, turning_radius=radius, smooth="continuous", strict=True
+    )
     assert smooth.feasible
     assert smooth.clearance >= 0.1 - 1e-8
     assert smooth.turning_radius >= radius
@@ -94,7 +119,16 @@ def test_on_the_six_maps_the_curvature_is_continuous_and_its_bound_holds(name, s
 def test_where_there_is_no_line_the_jump_is_told_and_strict_refuses_it(capsys, tmp_path):
     map_file = tmp_path / "room.txt"
     map_file.write_text("........\n" * 8)
-    words = ["plan", str(map_file), "--start", "1,1,0", "--target", "3,3,1.5707963267948966", "--settings", "{turning_radius: 1}"]
+    words = [
+        "plan",
+        str(map_file),
+        "--start",
+        "1,1,0",
+        "--target",
+        "3,3,1.5707963267948966",
+        "--settings",
+        "{turning_radius: 1}",
+    ]
     main([*words, "--smooth", "continuous"])
     told = {row[:16].strip(): row[16:] for row in capsys.readouterr().out.splitlines()}
     assert told["curvature"].endswith("/ cell where transitions have no room")
@@ -105,8 +139,23 @@ def test_where_there_is_no_line_the_jump_is_told_and_strict_refuses_it(capsys, t
     assert error.startswith("--smooth: continuous: the curvature jumps by 0.98")
     assert error.count("\n") == 1
     with pytest.raises(SystemExit) as found:
-        main(["plan", str(map_file), "--start", "1,1", "--target", "3,3", "--planner", "prm", "--smooth", "continuous"])
+        main(
+            [
+                "plan",
+                str(map_file),
+                "--start",
+                "1,1",
+                "--target",
+                "3,3",
+                "--planner",
+                "prm",
+                "--smooth",
+                "continuous",
+            ]
+        )
     assert found.value.code == 2
-    assert capsys.readouterr().err.startswith("--smooth: only for rounded_shortest_path and dubins_search")
+    assert capsys.readouterr().err.startswith(
+        "--smooth: only for rounded_shortest_path and dubins_search"
+    )
     with pytest.raises(ValueError, match="smooth: 'very'; expected arcs or continuous"):
         bp.plan(bp.Problem("", WALL, (1.0, 1.0), (9.0, 1.0)), smooth="very")

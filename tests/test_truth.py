@@ -1,4 +1,6 @@
-"""The workflow itself refuses planners that lie, end, stall or change their world, by run and planner, in one line; no table shows them."""
+"""The workflow itself refuses planners that lie, end, stall or change their world, by run and
+planner, in one line; no table shows them.
+"""
 
 import os
 import select
@@ -65,11 +67,27 @@ LIES = {
         'answer._replace(path=Path("polyline", points * 0.5))',
         ": path: start: (-2.0, 2.0); expected exactly (-4.0, 4.0)",
     ),
-    "claims_feasible": ("", 'answer._replace(extra={"feasible": True})', ": extra: feasible: a column or setting has this name already"),
-    "claims_length": ("", 'answer._replace(extra={"length": 1.0})', ": extra: length: a column or setting has this name already"),
-    "hides_points": ("", 'answer._replace(path=Path("polyline", points * np.nan))', ": path: points: expected finite numbers"),
+    "claims_feasible": (
+        "",
+        'answer._replace(extra={"feasible": True})',
+        ": extra: feasible: a column or setting has this name already",
+    ),
+    "claims_length": (
+        "",
+        'answer._replace(extra={"length": 1.0})',
+        ": extra: length: a column or setting has this name already",
+    ),
+    "hides_points": (
+        "",
+        'answer._replace(path=Path("polyline", points * np.nan))',
+        ": path: points: expected finite numbers",
+    ),
     "says_nothing": ("", "None", ": is a NoneType; expected a Plan"),
-    "flat": ("", 'answer._replace(path=Path("polyline", points.ravel()))', ": path: points: expected an array of floats, (n, 2)"),
+    "flat": (
+        "",
+        'answer._replace(path=Path("polyline", points.ravel()))',
+        ": path: points: expected an array of floats, (n, 2)",
+    ),
     "sly_plan": ("", "SlyPlan(*answer)", ": is a SlyPlan; expected a Plan"),
     "sly_points": (
         "",
@@ -79,16 +97,30 @@ LIES = {
     "sly_history": (
         "",
         "answer._replace(history=answer.history.view(SlyArray))",
-        ": history: expected an array of numbers without nan, (generations + 1,), of at most 1000000 values",
+        ": history: expected an array of numbers without nan, (generations + 1,), of at most "
+        "1000000 values",
     ),
-    "sly_objective": ("", "answer._replace(objective=SlyNumber(8.0))", ": objective: expected a number, and not nan"),
+    "sly_objective": (
+        "",
+        "answer._replace(objective=SlyNumber(8.0))",
+        ": objective: expected a number, and not nan",
+    ),
 }
 # Likewise, of what is no answer.
 DEEDS = {
     "moves": ("world.centres[:, 1] -= 3", "ValueError: output array is read-only"),
-    "unlocks": ("world.radii.setflags(write=True)", "ValueError: cannot set WRITEABLE flag to True of this array"),
-    "swaps": ('object.__setattr__(world, "radii", world.radii * 0)', f"problem: across: workspace: radii: {IS_ANOTHER}"),
-    "writes": ("ctypes.memset(world.radii.ctypes.data, 0, 8)", f"problem: across: workspace: content: {IS_ANOTHER}"),
+    "unlocks": (
+        "world.radii.setflags(write=True)",
+        "ValueError: cannot set WRITEABLE flag to True of this array",
+    ),
+    "swaps": (
+        'object.__setattr__(world, "radii", world.radii * 0)',
+        f"problem: across: workspace: radii: {IS_ANOTHER}",
+    ),
+    "writes": (
+        "ctypes.memset(world.radii.ctypes.data, 0, 8)",
+        f"problem: across: workspace: content: {IS_ANOTHER}",
+    ),
     "exits": ("os._exit(0)", "its process ended itself with exit status 0, before it was done"),
     "crashes": ("os.kill(os.getpid(), signal.SIGSEGV)", "its process was ended by signal SIGSEGV"),
     "forks": ("os.fork() or os.execvp('sleep', ['sleep', '4321.25'])", watchdog.LEFT),
@@ -96,9 +128,12 @@ DEEDS = {
     "loops": ("never_ends(1)", "not done within the time limit of 4 s; it is ended"),
 }
 
-# Who also lies to a robot that drives, and every run that is refused for a lie: experiment, problem and method, and whose lie it is.
+# Who also lies to a robot that drives, and every run that is refused for a lie: experiment, problem
+# and method, and whose lie it is.
 DRIVEN = ("ends_short", "says_nothing", "sly_plan")
-REFUSED = [(f"roads/across/{method}", method) for method in LIES] + [(f"drives/through/{method}_drives", method) for method in DRIVEN]
+REFUSED = [(f"roads/across/{method}", method) for method in LIES] + [
+    (f"drives/through/{method}_drives", method) for method in DRIVEN
+]
 
 EXPERIMENTS = """
 title: Planners that lie
@@ -144,30 +179,70 @@ def written(home, planners):
     """A study in a folder with planners, by name, each with what it does and what it answers."""
     home.mkdir()
     for name, (work, answer) in planners.items():
-        (home / f"{name}.py").write_text(PLANNER.replace("WORK", work or "pass").replace("ANSWER", answer))
+        (home / f"{name}.py").write_text(
+            PLANNER.replace("WORK", work or "pass").replace("ANSWER", answer)
+        )
     methods = [f"{name}: {{planner: {name}.py}}" for name in planners]
-    drives = {f"{name}_drives": f"{{planner: {name}.py, policy: blind}}" for name in ("honest", *DRIVEN) if name in planners}
+    drives = {
+        f"{name}_drives": f"{{planner: {name}.py, policy: blind}}"
+        for name in ("honest", *DRIVEN)
+        if name in planners
+    }
     methods += [f"{name}: {method}" for name, method in drives.items()]
-    words = {"methods": ", ".join(methods), "names": ", ".join(planners), "drives": ", ".join(drives)}
+    words = {
+        "methods": ", ".join(methods),
+        "names": ", ".join(planners),
+        "drives": ", ".join(drives),
+    }
     (home / "experiments.yaml").write_text(EXPERIMENTS.format(**words))
     (home / "artefacts.yaml").write_text(ARTEFACTS)
 
 
 def snakemake(folder, *words, limit=60.0, stderr=subprocess.PIPE):
-    """Make something of the study `liars` in a folder. limit: seconds that the import of a planner may take."""
-    call = f"from bezierplan.running import interface; from snakemake.cli import main; interface.LIMIT = {limit}; main()"
+    """Make something of the study `liars` in a folder. limit: seconds that the import of a planner
+    may take.
+    """
+    call = (
+        f"from bezierplan.running import interface; from snakemake.cli import main; "
+        f"interface.LIMIT = {limit}; main()"
+    )
     common = ["-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
-    command = [sys.executable, "-c", call, *common, *words, "--config", f"studies=[{folder / 'liars'}]"]
-    return subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=stderr, text=True, check=False, timeout=300)
+    command = [
+        sys.executable,
+        "-c",
+        call,
+        *common,
+        *words,
+        "--config",
+        f"studies=[{folder / 'liars'}]",
+    ]
+    return subprocess.run(
+        command,
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=stderr,
+        text=True,
+        check=False,
+        timeout=300,
+    )
 
 
 @pytest.fixture(scope="module")
 def ended(tmp_path_factory):
-    """The folder in which a study of liars was run as far as it goes, and what the workflow told."""
+    """The folder in which a study of liars was run as far as it goes, and what the workflow
+    told.
+    """
     folder = tmp_path_factory.mktemp("truth")
     lies = {name: (work, answer) for name, (work, answer, _) in LIES.items()}
-    written(folder / "liars", {"honest": ("", "answer")} | lies | {name: (work, "answer") for name, (work, _) in DEEDS.items()})
-    return folder, snakemake(folder, *(f"{TABLES}/{name}.csv" for name in ("all", "driven", "honest")), "--keep-going")
+    written(
+        folder / "liars",
+        {"honest": ("", "answer")}
+        | lies
+        | {name: (work, "answer") for name, (work, _) in DEEDS.items()},
+    )
+    return folder, snakemake(
+        folder, *(f"{TABLES}/{name}.csv" for name in ("all", "driven", "honest")), "--keep-going"
+    )
 
 
 def told_once(ended, told, experiment, method):
@@ -176,7 +251,9 @@ def told_once(ended, told, experiment, method):
     log = f"results/smoke/liars/logs/runs/{experiment}/{method}/0.log"
     lines = [f"{told} ({where}: {log})" for where in ("full account", "log")]
     last = (folder / log).read_text().splitlines()[-1]
-    return sum(line in lines for line in done.stderr.splitlines()) == 1 and last.endswith(tuple(f"CRITICAL {line}" for line in lines))
+    return sum(line in lines for line in done.stderr.splitlines()) == 1 and last.endswith(
+        tuple(f"CRITICAL {line}" for line in lines)
+    )
 
 
 @pytest.mark.parametrize(("run", "method"), REFUSED)
@@ -189,16 +266,27 @@ def test_liar_is_refused_by_name_in_one_line(ended, run, method):
 @pytest.mark.parametrize("method", DEEDS)
 def test_what_a_planner_does_is_told_by_name_in_one_line(ended, method):
     # What was written into memory shows only after all runs of a job.
-    run = f"liars/roads/{'*' if method == 'writes' else 'across'}/{method}" + ("" if method == "writes" else "/0")
-    assert told_once(ended, f"run {run}: planner liars/{method}.py: {DEEDS[method][1]}", "roads", method), ended[1].stderr
+    run = f"liars/roads/{'*' if method == 'writes' else 'across'}/{method}" + (
+        "" if method == "writes" else "/0"
+    )
+    assert told_once(
+        ended, f"run {run}: planner liars/{method}.py: {DEEDS[method][1]}", "roads", method
+    ), ended[1].stderr
 
 
 def test_no_table_shows_them_and_the_honest_one_ran(ended):
     folder, done = ended
     assert done.returncode == 1
-    assert [file.parent.name for file in folder.glob("results/**/runs/roads/*/0.parquet")] == ["honest"]
-    assert [file.parent.name for file in folder.glob("results/**/runs/drives/*/0.parquet")] == ["honest_drives"]
-    assert {file.name for file in folder.glob(f"{TABLES}/*")} == {"honest.comparison.csv", "honest.csv"}
+    assert [file.parent.name for file in folder.glob("results/**/runs/roads/*/0.parquet")] == [
+        "honest"
+    ]
+    assert [file.parent.name for file in folder.glob("results/**/runs/drives/*/0.parquet")] == [
+        "honest_drives"
+    ]
+    assert {file.name for file in folder.glob(f"{TABLES}/*")} == {
+        "honest.comparison.csv",
+        "honest.csv",
+    }
     assert "Traceback" not in done.stderr
 
 
@@ -214,12 +302,20 @@ def test_messages_of_the_workflow_are_written_with_their_ends(tmp_path):
     os.close(reading)
     assert ended.result().returncode == 1
     assert any(b"ended itself with exit status 0" in each for each in writes)
-    assert [each for each in writes if not each.endswith(b"\n") and len(each) < select.PIPE_BUF] == []
+    assert [
+        each for each in writes if not each.endswith(b"\n") and len(each) < select.PIPE_BUF
+    ] == []
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux gives a process the children of its children")
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="only Linux gives a process the children of its children"
+)
 def test_no_process_outlives_its_job(ended):
-    running = [file.read_bytes() for file in Path("/proc").glob("[0-9]*/cmdline") if os.access(file, os.R_OK)]
+    running = [
+        file.read_bytes()
+        for file in Path("/proc").glob("[0-9]*/cmdline")
+        if os.access(file, os.R_OK)
+    ]
     assert not any(b"4321.25" in words for words in running)
 
 
@@ -231,7 +327,12 @@ def test_runs_that_were_edited_between_two_jobs_are_shown_nowhere(ended, column,
     file, sound = folder / name, (folder / name).read_bytes()
     table = parquet.read_table(file)
     place = table.column_names.index(column)
-    parquet.write_table(table.set_column(place, column, pa.array([value] * len(table), table.schema.field(column).type)), file)
+    parquet.write_table(
+        table.set_column(
+            place, column, pa.array([value] * len(table), table.schema.field(column).type)
+        ),
+        file,
+    )
     for made in folder.glob(f"{TABLES}/honest*"):
         made.unlink()
     try:
@@ -239,16 +340,37 @@ def test_runs_that_were_edited_between_two_jobs_are_shown_nowhere(ended, column,
     finally:
         file.write_bytes(sound)
     assert done.returncode == 1
-    told = f"{name}: its rows are not those that were written; delete it and start again: the workflow reproduces it"
-    assert sum(f"{told} (full account: " in line for line in done.stderr.splitlines()) == 1, done.stderr
+    told = (
+        f"{name}: its rows are not those that were written; delete it and start again: the "
+        f"workflow reproduces it"
+    )
+    assert sum(f"{told} (full account: " in line for line in done.stderr.splitlines()) == 1, (
+        done.stderr
+    )
     assert not list(folder.glob(f"{TABLES}/honest*"))
 
 
 AT_START = {
-    "exits": ("os._exit(0)", "", "when it is imported: its process ended itself with exit status 0, before it was done"),
-    "loops": ("while True: pass", "", "when it is imported: not done within the time limit of 2 s; it is ended"),
-    "asked exits": ("", "os._exit(0)", "serves of its planner: its process ended itself with exit status 0, before it was done"),
-    "asked loops": ("", "while True: pass", "serves of its planner: not done within the time limit of 2 s; it is ended"),
+    "exits": (
+        "os._exit(0)",
+        "",
+        "when it is imported: its process ended itself with exit status 0, before it was done",
+    ),
+    "loops": (
+        "while True: pass",
+        "",
+        "when it is imported: not done within the time limit of 2 s; it is ended",
+    ),
+    "asked exits": (
+        "",
+        "os._exit(0)",
+        "serves of its planner: its process ended itself with exit status 0, before it was done",
+    ),
+    "asked loops": (
+        "",
+        "while True: pass",
+        "serves of its planner: not done within the time limit of 2 s; it is ended",
+    ),
 }
 
 
@@ -257,7 +379,9 @@ def test_a_file_that_ends_or_stalls_the_start_is_told_before_any_job(case, tmp_p
     at_import, when_asked, told = AT_START[case]
     written(tmp_path / "liars", {"honest": ("", "answer")})
     file = tmp_path / "liars" / "honest.py"
-    file.write_text(f"{file.read_text()}\ndef serves(problem):\n    {when_asked or 'pass'}\n\n\n{at_import}\n")
+    file.write_text(
+        f"{file.read_text()}\ndef serves(problem):\n    {when_asked or 'pass'}\n\n\n{at_import}\n"
+    )
     begun = time.monotonic()
     done = snakemake(tmp_path, f"{TABLES}/honest.csv", limit=2.0)
     assert done.returncode == 2

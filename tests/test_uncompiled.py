@@ -1,4 +1,6 @@
-"""Kernels without compilation (NUMBA_DISABLE_JIT), for debuggers and coverage: the same answers, bit for bit."""
+"""Kernels without compilation (NUMBA_DISABLE_JIT), for debuggers and coverage: the same answers,
+bit for bit.
+"""
 
 import json
 import os
@@ -39,7 +41,9 @@ def workspaces() -> dict[str, Grid | Circles | Polygons]:
 
 
 def paths() -> list[np.ndarray]:
-    """Pieces of a straight line, of curves of degrees 2 to 5 around and through the middle, and of a polyline that touches a cell."""
+    """Pieces of a straight line, of curves of degrees 2 to 5 around and through the middle, and of
+    a polyline that touches a cell.
+    """
     rng = np.random.default_rng(7)
     found = [ENDS[None]]
     for degree in (2, 3, 5):
@@ -51,7 +55,9 @@ def paths() -> list[np.ndarray]:
 
 
 def digits(numbers: Iterable[float]) -> str:
-    """Numbers with all digits, of whatever type: compiled code returns those of Python, the others are numpy's."""
+    """Numbers with all digits, of whatever type: compiled code returns those of Python, the others
+    are numpy's.
+    """
     return " ".join(float(number).hex() for number in numbers)
 
 
@@ -62,7 +68,9 @@ def answers() -> dict[str, list[str]]:
         built: Region = region(workspace)
         found[name] = [digits(check(pieces, built)) for pieces in paths()]
         found[name].append(digits(check(paths()[-1], built, "closed")))
-        shortest = shortest_paths.shortest_path(Problem(name, workspace, *map(tuple, ENDS.tolist())))
+        shortest = shortest_paths.shortest_path(
+            Problem(name, workspace, *map(tuple, ENDS.tolist()))
+        )
         found[name].append(digits((shortest.length, *shortest.points.ravel())))
     return found
 
@@ -82,8 +90,18 @@ def run_again() -> str:
 
 def uncompiled(code: str) -> str:
     """What code prints in a process without compilation."""
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join([str(ROOT / "src"), str(ROOT / "tests")])}
-    ended = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    environment = os.environ | {
+        "NUMBA_DISABLE_JIT": "1",
+        "PYTHONPATH": os.pathsep.join([str(ROOT / "src"), str(ROOT / "tests")]),
+    }
+    ended = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
 
@@ -94,8 +112,14 @@ def test_the_checker_answers_the_same_without_compilation():
 
 
 def test_all_modules_import_without_compilation():
-    uncompiled("import importlib, test_uncompiled; [importlib.import_module(name) for name in test_uncompiled.modules()]")
+    uncompiled(
+        "import importlib, test_uncompiled; [importlib.import_module(name) for name in "
+        "test_uncompiled.modules()]"
+    )
 
 
 def test_a_run_is_made_again_without_compilation():
-    assert uncompiled("import test_uncompiled; print(test_uncompiled.run_again())").strip() == run_again()
+    assert (
+        uncompiled("import test_uncompiled; print(test_uncompiled.run_again())").strip()
+        == run_again()
+    )

@@ -1,4 +1,6 @@
-"""`make verify-outcome`: equal numbers pass, chance seldom fails, and a real difference is found."""
+"""`make verify-outcome`: equal numbers pass, chance seldom fails, and a real difference is
+found.
+"""
 
 import numpy as np
 import pandas as pd
@@ -13,9 +15,18 @@ from bezierplan.schema.checked import Fault
 def rows(values, unit="m", n=50, width=1.0):
     """A comparison of some numbers."""
     values = np.asarray(values, dtype=float)
-    named = pd.DataFrame({"method": [f"m{i}" for i in range(len(values))], "metric": "length", "statistic": "mean", "unit": unit})
+    named = pd.DataFrame(
+        {
+            "method": [f"m{i}" for i in range(len(values))],
+            "metric": "length",
+            "statistic": "mean",
+            "unit": unit,
+        }
+    )
     measured = {"n_published": np.nan, "value_published": 1.0, "n_ours": n, "value_ours": values}
-    return verification.with_width(named.assign(**measured, low95_ours=values - width / 2, high95_ours=values + width / 2))
+    return verification.with_width(
+        named.assign(**measured, low95_ours=values - width / 2, high95_ours=values + width / 2)
+    )
 
 
 def test_equal_numbers_pass():
@@ -31,7 +42,9 @@ def test_a_difference_beyond_chance_is_found_and_named():
 
 
 def test_numbers_that_no_chance_decides_must_be_equal():
-    found = verification.compared(rows([100.0, 100.0], width=0.0), rows([100.0 + 1e-7, 100.1], width=0.0))
+    found = verification.compared(
+        rows([100.0, 100.0], width=0.0), rows([100.0 + 1e-7, 100.1], width=0.0)
+    )
     assert found["p"].tolist() == [1.0, 0.0]
 
 
@@ -54,7 +67,9 @@ def test_names_match_however_a_column_was_read():
 
 DRAWS = {
     "skewed": lambda rng, n: rng.lognormal(0.0, 1.0, n),
-    "two corridors": lambda rng, n: np.where(rng.random(n) < 0.8, 7.5, 9.3) + 0.05 * rng.standard_normal(n),
+    "two corridors": lambda rng, n: (
+        np.where(rng.random(n) < 0.8, 7.5, 9.3) + 0.05 * rng.standard_normal(n)
+    ),
     "counts": lambda rng, n: rng.poisson(2.0, n).astype(float),
     "a share": lambda rng, n: (rng.random(n) < 0.3).astype(float),
 }
@@ -63,13 +78,17 @@ DRAWS = {
 @pytest.mark.parametrize("name", DRAWS)
 @pytest.mark.parametrize("statistic", [np.mean, np.median])
 def test_independent_samples_of_one_distribution_seldom_fail(name, statistic):
-    """Of pairs of samples of ten runs, hardly any have a p as small as fails one of 628 numbers: so these keep the stated rate."""
+    """Of pairs of samples of ten runs, hardly any have a p as small as fails one of 628 numbers: so
+    these keep the stated rate.
+    """
     rng, pairs, n = np.random.default_rng(0), 1000, 10
     samples = DRAWS[name](rng, 2 * pairs * n).reshape(2, pairs, n)
     again = rng.integers(0, n, (200, n))
     spread = statistic(samples[:, :, again], axis=-1)
     widths = np.quantile(spread, 0.975, axis=-1) - np.quantile(spread, 0.025, axis=-1)
-    p = verification.p_values(list(statistic(samples, axis=-1)), list(widths), [np.full(pairs, n)] * 2)
+    p = verification.p_values(
+        list(statistic(samples, axis=-1)), list(widths), [np.full(pairs, n)] * 2
+    )
     assert (p < 0.001).mean() <= 0.005
     assert (p < verification.ERROR_RATE / 628).mean() <= 0.001
 
@@ -93,7 +112,11 @@ def song():
 def test_kept_outcome_agrees_with_itself(made):
     found = verify_outcome.verified(song())
     told = verify_outcome.lines(found, verification.failed(found))
-    assert told[0] == f"{found['p'].notna().sum()} numbers compared, {found['p'].notna().sum()} equal, 0 different by more than chance"
+    assert (
+        told[0]
+        == f"{found['p'].notna().sum()} numbers compared, {found['p'].notna().sum()} equal, 0 "
+        f"different by more than chance"
+    )
     assert found["p"].notna().sum() > 20
     assert told[1].startswith("sound: ")
 
@@ -113,10 +136,18 @@ def test_a_wrong_planner_is_found(made):
 
 def test_missing_tables_are_told(made):
     made.unlink()
-    with pytest.raises(FileNotFoundError, match=r"table1\.comparison\.csv: not there; make verify-outcome makes it"):
+    with pytest.raises(
+        FileNotFoundError, match=r"table1\.comparison\.csv: not there; make verify-outcome makes it"
+    ):
         verify_outcome.verified(song())
-    made.write_text(pd.read_csv(verify_outcome.KEPT).head(1).assign(method="none").to_csv(index=False))
-    with pytest.raises(Fault, match=r"table1\.comparison\.csv: none of its numbers is kept in docs/outcome/numbers_papers_size\.csv"):
+    made.write_text(
+        pd.read_csv(verify_outcome.KEPT).head(1).assign(method="none").to_csv(index=False)
+    )
+    with pytest.raises(
+        Fault,
+        match=r"table1\.comparison\.csv: none of its numbers is kept in "
+        r"docs/outcome/numbers_papers_size\.csv",
+    ):
         verify_outcome.verified(song())
     with pytest.raises(Fault, match=r"no number of docs/outcome/numbers_papers_size\.csv is here"):
         verify_outcome.verified({})

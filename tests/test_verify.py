@@ -1,4 +1,6 @@
-"""`python -m bezierplan verify`: results are what their points say, and every edit of them is told in one line."""
+"""`python -m bezierplan verify`: results are what their points say, and every edit of them is told
+in one line.
+"""
 
 import shutil
 
@@ -54,7 +56,9 @@ def edited(file, column, change, digest=False):
     """Change a column of a file by a function of its list; with a digest like an honest file."""
     table = parquet.read_table(file)
     place = table.column_names.index(column)
-    changed = table.set_column(place, column, pa.array(change(table[column].to_pylist()), table.schema.field(column).type))
+    changed = table.set_column(
+        place, column, pa.array(change(table[column].to_pylist()), table.schema.field(column).type)
+    )
     rows.write(changed, str(file)) if digest else parquet.write_table(changed, file)
 
 
@@ -95,7 +99,11 @@ def test_an_edit_is_told_with_file_run_column_and_both_values(results, capsys, c
     status, lines, _ = verified(capsys, results)
     assert status == 1
     named = {"path_points": "length", "repeat": "id"}.get(column, column)
-    shown = [line for line in lines if line.startswith(f"{results / RUNS}: s/e/") and f": {named}: stored " in line]
+    shown = [
+        line
+        for line in lines
+        if line.startswith(f"{results / RUNS}: s/e/") and f": {named}: stored " in line
+    ]
     assert shown
     assert all(", recomputed " in line for line in shown)
     assert lines[-1].endswith(" values differ")
@@ -116,30 +124,64 @@ def test_a_bound_that_was_edited_is_told(results, capsys):
 
 
 FIELD = (0.0, 10.0, 0.0, 10.0)
-OPEN, SHUT = (from_lines([".........", ".........", row, row, "........."], 1.0, "m") for row in (".........", "....#...."))
+OPEN, SHUT = (
+    from_lines([".........", ".........", row, row, "........."], 1.0, "m")
+    for row in (".........", "....#....")
+)
 WORLDS = {
-    "circles": MovingCircles(FIELD, FIELD, np.array([[5.0, 8.0]]), np.array([[0.0, 0.1]]), np.array([1.0]), "circles", 1.0, 60, "m"),
+    "circles": MovingCircles(
+        FIELD,
+        FIELD,
+        np.array([[5.0, 8.0]]),
+        np.array([[0.0, 0.1]]),
+        np.array([1.0]),
+        "circles",
+        1.0,
+        60,
+        "m",
+    ),
     "cells": ChangingCells((OPEN, SHUT), np.array([2.5]), 1.0, 60),
 }
 MET = {
     "circles": Problem("circles", WORLDS["circles"].workspace(0), (1.0, 5.0), (9.0, 5.0)),
     "cells": Problem("cells", WORLDS["cells"].workspace(0), (0.5, 2.5), (8.5, 2.5)),
 }
-MOVES = {"replan": "when_changed", "every": 1, "warm": False, "waits": False, "evades": False, "start": "position", "brake": 1.0}
-SEES = {"sees": "before", "knows": "positions", "check_margin": 0.0, "plan_margins": [0.0], "horizon": 2.0}
+MOVES = {
+    "replan": "when_changed",
+    "every": 1,
+    "warm": False,
+    "waits": False,
+    "evades": False,
+    "start": "position",
+    "brake": 1.0,
+}
+SEES = {
+    "sees": "before",
+    "knows": "positions",
+    "check_margin": 0.0,
+    "plan_margins": [0.0],
+    "horizon": 2.0,
+}
 POLICY = MOVES | SEES | {"spacing": 0.1, "step_seconds": 1.0}
 DRIVES, FIRST_DRIVES = "s/runs/d/line/0.parquet", "s/problems/d.bounds.parquet"
 
 
 @pytest.fixture(scope="module")
 def driven(tmp_path_factory):
-    """Results of a robot that drives along the shortest path that it sees, among circles and cells; bounds of the first repeat only."""
+    """Results of a robot that drives along the shortest path that it sees, among circles and cells;
+    bounds of the first repeat only.
+    """
     folder = tmp_path_factory.mktemp("drives") / "full"
     (folder / DRIVES).parent.mkdir(parents=True)
     (folder / FIRST_DRIVES).parent.mkdir(parents=True)
     worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, str(folder / "s/problems/d.parquet"))
     described = {name: {"workspace": "field"} for name in MET}
-    job = JOB | {"experiment": "d", "planner": "shortest_path", "problems": described, "policy": POLICY}
+    job = JOB | {
+        "experiment": "d",
+        "planner": "shortest_path",
+        "problems": described,
+        "policy": POLICY,
+    }
     runs, _, traces = rides.run_chunk(MET, WORLDS, job)
     rows.write(runs, str(folder / DRIVES))
     parquet.write_table(traces, (folder / DRIVES).with_suffix(".traces.parquet"))
@@ -160,17 +202,29 @@ def test_an_edit_of_a_drive_is_told(driven, tmp_path, capsys, column):
         "feasible": lambda values: [not value for value in values],
         "path_points": lambda values: [[*points[:2], 5.0, 9.0, *points[2:]] for points in values],
     }
-    edited(folder / DRIVES, column, changes.get(column, lambda values: [value - 1.0 for value in values]), digest=True)
+    edited(
+        folder / DRIVES,
+        column,
+        changes.get(column, lambda values: [value - 1.0 for value in values]),
+        digest=True,
+    )
     status, lines, _ = verified(capsys, folder)
     named = {"arrival": "objective", "path_points": "length"}.get(column, column)
     assert status == 1
-    assert any(line.startswith(f"{folder / DRIVES}: s/d/") and f": {named}: stored " in line for line in lines)
+    assert any(
+        line.startswith(f"{folder / DRIVES}: s/d/") and f": {named}: stored " in line
+        for line in lines
+    )
 
 
 @pytest.mark.parametrize("column", ["best_arrival", "clairvoyant_arrival", "bound", "bound_path"])
 def test_an_edited_bound_of_a_moving_world_is_told(driven, tmp_path, capsys, column):
     folder = shutil.copytree(driven, tmp_path / "full")
-    edited(folder / FIRST_DRIVES, column, lambda values: [np.multiply(value, 1.001).tolist() for value in values])
+    edited(
+        folder / FIRST_DRIVES,
+        column,
+        lambda values: [np.multiply(value, 1.001).tolist() for value in values],
+    )
     status, lines, _ = verified(capsys, folder)
     assert status == 1
     assert f"{folder / FIRST_DRIVES}: cells: {column}: stored " in "\n".join(lines)
@@ -184,21 +238,33 @@ def test_a_drive_through_what_its_trace_meets_is_not_free(driven, tmp_path, caps
         edited(file, column, lambda values: [[-1.0] * len(each) for each in values])
     status, lines, _ = verified(capsys, folder)
     assert status == 1
-    assert sum(": feasible: stored True, recomputed False" in line for line in lines) == len(lines) - 3 == 4
+    assert (
+        sum(": feasible: stored True, recomputed False" in line for line in lines)
+        == len(lines) - 3
+        == 4
+    )
 
 
 FOREIGN = {
     "other columns": (lambda table: pa.table({"a": [1]}), "no column id"),
     "text for numbers": (
-        lambda table: table.set_column(table.column_names.index("length"), "length", pa.array(["1.0"] * len(table))),
+        lambda table: table.set_column(
+            table.column_names.index("length"), "length", pa.array(["1.0"] * len(table))
+        ),
         "column length: expected numbers in every row",
     ),
     "a missing value": (
-        lambda table: table.set_column(table.column_names.index("feasible"), "feasible", pa.array([None, *[True] * (len(table) - 1)])),
+        lambda table: table.set_column(
+            table.column_names.index("feasible"),
+            "feasible",
+            pa.array([None, *[True] * (len(table) - 1)]),
+        ),
         "column feasible: expected truths in every row",
     ),
     "points that are numbers": (
-        lambda table: table.set_column(table.column_names.index("path_points"), "path_points", table["length"]),
+        lambda table: table.set_column(
+            table.column_names.index("path_points"), "path_points", table["length"]
+        ),
         "column path_points: expected lists of numbers in every row",
     ),
 }
@@ -218,11 +284,18 @@ def test_foreign_bounds_and_problems_are_one_line_with_status_2(results, capsys,
     status, lines, told = verified(capsys, results)
     assert (status, lines) == (2, [])
     what = "no column problem" if name == BOUNDS else "not a whole file of problems"
-    assert told == [f"{results / name}: {what}; delete it and start again: the workflow reproduces it"]
+    assert told == [
+        f"{results / name}: {what}; delete it and start again: the workflow reproduces it"
+    ]
 
 
 def test_points_that_are_no_path_are_told(results, capsys):
-    edited(results / RUNS, "path_points", lambda values: [[1.0, 8.0, 9.0]] * 2 + [[float("nan")] * 4] * 2, digest=True)
+    edited(
+        results / RUNS,
+        "path_points",
+        lambda values: [[1.0, 8.0, 9.0]] * 2 + [[float("nan")] * 4] * 2,
+        digest=True,
+    )
     status, lines, _ = verified(capsys, results)
     assert status == 1
     assert sum(": path_points: stored a path, recomputed " in line for line in lines) == 4
@@ -230,7 +303,9 @@ def test_points_that_are_no_path_are_told(results, capsys):
 
 def test_the_digest_of_results_is_that_of_the_workflow_whatever_the_tasks(results):
     whole = recheck.tasks(results)
-    alone = [recheck.Task(task.problems, task.bounds, (file,)) for task in whole for file in task.runs]
+    alone = [
+        recheck.Task(task.problems, task.bounds, (file,)) for task in whole for file in task.runs
+    ]
     assert recheck.verify(whole, 1).digest == recheck.verify(alone, 1).digest
 
 
@@ -238,14 +313,23 @@ def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):
     assert verified(capsys, tmp_path / "nowhere") == (
         2,
         [],
-        [f"{tmp_path / 'nowhere'}: no runs here; expected a folder of results, such as results/full"],
+        [
+            f"{tmp_path / 'nowhere'}: no runs here; expected a folder of results, such as "
+            f"results/full"
+        ],
     )
     (results / RUNS).write_bytes(b"PAR1")
     status, lines, told = verified(capsys, results)
     assert (status, lines) == (2, [])
-    assert told == [f"{results / RUNS}: not a whole Parquet file; delete it and start again: the workflow reproduces it"]
+    assert told == [
+        f"{results / RUNS}: not a whole Parquet file; delete it and start again: the workflow "
+        f"reproduces it"
+    ]
     (results / "s/problems/e.parquet").unlink()
     (results / BOUNDS).unlink()
     status, _, told = verified(capsys, results)
     assert status == 2
-    assert told == [f"{results / 's/problems/e.parquet'}: missing; expected the problems of {(results / RUNS).parents[1]}"]
+    assert told == [
+        f"{results / 's/problems/e.parquet'}: missing; expected the problems of "
+        f"{(results / RUNS).parents[1]}"
+    ]

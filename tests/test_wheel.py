@@ -1,4 +1,6 @@
-"""The wheel: built, installed without the extra into a fresh environment, and used away from the clone."""
+"""The wheel: built, installed without the extra into a fresh environment, and used away from the
+clone.
+"""
 
 import os
 import subprocess
@@ -29,13 +31,40 @@ def done(command, **options):
 def away(tmp_path_factory):
     """A fresh environment with the wheel and nothing else, and beside it a folder with a map."""
     folder = tmp_path_factory.mktemp("wheel")
-    done([sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", str(folder / "dist")], cwd=ROOT)
+    done(
+        [
+            sys.executable,
+            "-m",
+            "hatchling",
+            "build",
+            "--target",
+            "wheel",
+            "--directory",
+            str(folder / "dist"),
+        ],
+        cwd=ROOT,
+    )
     (wheel,) = (folder / "dist").glob("*.whl")
-    done([sys.executable, "-m", "uv", "venv", "--quiet", "--python", sys.executable, str(folder / "venv")])
+    done(
+        [
+            sys.executable,
+            "-m",
+            "uv",
+            "venv",
+            "--quiet",
+            "--python",
+            sys.executable,
+            str(folder / "venv"),
+        ]
+    )
     python = folder / "venv/bin/python"
     constraints = folder / "constraints.txt"
     constraints.write_text(
-        "".join(f"{line.split(' ')[0]}\n" for line in (ROOT / "environment.txt").read_text().splitlines() if "==" in line[:60])
+        "".join(
+            f"{line.split(' ')[0]}\n"
+            for line in (ROOT / "environment.txt").read_text().splitlines()
+            if "==" in line[:60]
+        )
     )
     # Where no package index can be reached, this test says so.
     got = subprocess.run(
@@ -51,14 +80,20 @@ def away(tmp_path_factory):
 
 def environment(folder):
     """The variables of a shell that knows nothing of the clone."""
-    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | {"XDG_CACHE_HOME": str(folder / "cache")}
+    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | {
+        "XDG_CACHE_HOME": str(folder / "cache")
+    }
 
 
 def test_wheel_plans_away_from_the_clone_without_the_extra(away):
-    said = done([str(away / "venv/bin/python"), "-c", FIVE_LINES], cwd=away, env=environment(away)).split()
+    said = done(
+        [str(away / "venv/bin/python"), "-c", FIVE_LINES], cwd=away, env=environment(away)
+    ).split()
     assert said[1] == "True"
     assert (away / "cache/bezierplan").is_dir()
-    installed = done([sys.executable, "-m", "uv", "pip", "list", "--python", str(away / "venv/bin/python")])
+    installed = done(
+        [sys.executable, "-m", "uv", "pip", "list", "--python", str(away / "venv/bin/python")]
+    )
     assert "snakemake" not in installed
     assert "pyarrow" not in installed
 
@@ -80,4 +115,8 @@ def test_command_that_needs_the_extra_says_which(away):
         check=False,
     )
     assert ended.returncode == 2
-    assert ended.stderr == "digest: needs pyarrow, which is not installed; install it with: pip install 'bezierplan[workflow]'\n"
+    assert (
+        ended.stderr
+        == "digest: needs pyarrow, which is not installed; install it with: pip install "
+        "'bezierplan[workflow]'\n"
+    )

@@ -8,9 +8,24 @@ import pytest
 from bezierplan.analysis.claims import kinds
 from bezierplan.figures.page import why
 
-ROW = {"test": "lower", "metric": "length", "statistic": "mean", "unit": "cell", "effect": 3.0, "low95": 1.0, "high95": 5.0, "margin": 0.5}
+ROW = {
+    "test": "lower",
+    "metric": "length",
+    "statistic": "mean",
+    "unit": "cell",
+    "effect": 3.0,
+    "low95": 1.0,
+    "high95": 5.0,
+    "margin": 0.5,
+}
 ROW |= {"effect_size": 4.96, "counted": "0 of 10, 10 of 10"}
-SHARE = {"test": "share", "metric": "generation_5pct", "statistic": math.nan, "unit": "generation", "margin": math.nan}
+SHARE = {
+    "test": "share",
+    "metric": "generation_5pct",
+    "statistic": math.nan,
+    "unit": "generation",
+    "margin": math.nan,
+}
 SHARE |= {"effect": 0.39, "low95": 0.29, "high95": 0.49}
 OURS = "differences below {} do not count (our choice)."
 
@@ -19,53 +34,73 @@ SENTENCES = {
         {},
         {"direction": "lower"},
         "mga lower than ga",
-        "Case 1: in exact arc length (mean), mga is 3 cell higher than ga (95 % interval 1 to 5); the claim says lower; "
-        + OURS.format("0.5 cell"),
+        "Case 1: in exact arc length (mean), mga is 3 cell higher than ga (95 % interval 1 to 5); "
+        "the claim says lower; " + OURS.format("0.5 cell"),
     ),
     "many times as high, in counted work": (
-        {"metric": "evaluations", "statistic": "rank", "effect": 25000.0, "low95": 24200.0, "high95": 25800.0, "margin": 0.1},
+        {
+            "metric": "evaluations",
+            "statistic": "rank",
+            "effect": 25000.0,
+            "low95": 24200.0,
+            "high95": 25800.0,
+            "margin": 0.1,
+        },
         {"scale": "relative", "work": "evaluations", "margin": {"published": 0.1}},
         "mga lower than prm",
-        "Case 1: in paths whose objective the planner asked for, mga is 25,000 times prm (95 % interval 24,200 to 25,800 times); the claim "
-        "says lower; differences below 10 % do not count (our choice, and not more than the printed difference); judged on counted work, "
+        "Case 1: in paths whose objective the planner asked for, mga is 25,000 times prm (95 % "
+        "interval 24,200 to 25,800 times); the claim "
+        "says lower; differences below 10 % do not count (our choice, and not more than the "
+        "printed difference); judged on counted work, "
         "because seconds differ from machine to machine.",
     ),
     "a superlative": (
         {"statistic": "rank"},
         {"direction": "lower"},
         "all 3 together",
-        "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cell higher (95 % interval 1 to 5); the claim says lower in "
+        "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cell higher (95 % "
+        "interval 1 to 5); the claim says lower in "
         "all of them; " + OURS.format("0.5 cell"),
     ),
     "a stated difference": (
         {"test": "equal_within", "effect": -0.000331, "low95": math.nan, "margin": 0.01},
         {"scale": "relative", "target": 0.0496},
         "bca_q as bca",
-        "Case 1: in exact arc length (mean), bca_q is 0.0331 % lower than bca; the claim says by how much: 4.96 % higher; "
-        + OURS.format("1 %"),
+        "Case 1: in exact arc length (mean), bca_q is 0.0331 % lower than bca; the claim says by "
+        "how much: 4.96 % higher; " + OURS.format("1 %"),
     ),
     "a share": (
         SHARE,
         {"event": {"at_most": 30}, "threshold": 0.5, "direction": "at_least"},
         "at_most 30 in at_least 0.5",
-        "Case 1: first generation within 5 % of the run's final objective is at most 30 in 39 % of the runs (95 % interval 29 to 49 %); "
+        "Case 1: first generation within 5 % of the run's final objective is at most 30 in 39 % "
+        "of the runs (95 % interval 29 to 49 %); "
         "the claim needs it in at least 50 %.",
     ),
     "an event": (
         SHARE | {"metric": "collided", "unit": "-"},
         {"threshold": "none", "metric": "feasible"},
         "in none",
-        "Case 1: the robot is in an obstacle at any time in 39 % of the runs (95 % interval 29 to 49 %); the claim needs it in no run.",
+        "Case 1: the robot is in an obstacle at any time in 39 % of the runs (95 % interval 29 to "
+        "49 %); the claim needs it in no run.",
     ),
     "a trend": (
         {"test": "trend", "statistic": "rank", "effect": -3.0, "low95": -5.0, "high95": -1.0},
         {"x": "obstacles", "direction": "up"},
         "obstacles up",
-        "Case 1: exact arc length falls by 3 cell (95 % interval -5 to -1) from the least to the largest obstacles; the claim says that it "
+        "Case 1: exact arc length falls by 3 cell (95 % interval -5 to -1) from the least to the "
+        "largest obstacles; the claim says that it "
         "rises; " + OURS.format("0.5 cell"),
     ),
     "a function": (
-        {"test": "function", "metric": math.nan, "unit": "-", "effect": 0.235, "low95": 0.233, "high95": 0.237},
+        {
+            "test": "function",
+            "metric": math.nan,
+            "unit": "-",
+            "effect": 0.235,
+            "low95": 0.233,
+            "high95": 0.237,
+        },
         {"effect": "share of the values above 0.7"},
         "gauss above",
         "Case 1: share of the values above 0.7: 0.235 (95 % interval 0.233 to 0.237).",
@@ -107,15 +142,29 @@ def check_of(test, **written):
 @pytest.mark.parametrize(("row", "check", "name", "sentence"), SENTENCES.values(), ids=SENTENCES)
 def test_each_kind_of_test_has_a_sentence(row, check, name, sentence):
     given = pd.Series(ROW | row)
-    assert why.why(given, check_of(given["test"], **check), name, "Case 1", own_criterion=False) == sentence
+    assert (
+        why.why(given, check_of(given["test"], **check), name, "Case 1", own_criterion=False)
+        == sentence
+    )
 
 
 def test_a_limit_of_ours_is_said_to_be_ours():
-    given, check = pd.Series(ROW | SHARE), check_of("share", event={"at_most": 30}, threshold=0.5, direction="at_least")
-    assert why.why(given, check, "", "", own_criterion=True).endswith("; the paper gives no number, so this limit is ours.")
+    given, check = (
+        pd.Series(ROW | SHARE),
+        check_of("share", event={"at_most": 30}, threshold=0.5, direction="at_least"),
+    )
+    assert why.why(given, check, "", "", own_criterion=True).endswith(
+        "; the paper gives no number, so this limit is ours."
+    )
 
 
 def test_the_line_in_a_picture_is_what_a_share_is_compared_with():
-    assert [why.reference(check_of("share", threshold=each, metric="feasible")) for each in ("all", "none", "some")] == [1.0, 0.0, 0.0]
-    assert why.reference(check_of("share", threshold=0.5, direction="at_least", metric="feasible")) == 0.5
+    assert [
+        why.reference(check_of("share", threshold=each, metric="feasible"))
+        for each in ("all", "none", "some")
+    ] == [1.0, 0.0, 0.0]
+    assert (
+        why.reference(check_of("share", threshold=0.5, direction="at_least", metric="feasible"))
+        == 0.5
+    )
     assert why.reference(check_of("lower", direction="lower")) == 0.0

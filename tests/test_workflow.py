@@ -1,4 +1,6 @@
-"""The workflow itself, on a copy of the tree with a small song2016: what an edit re-runs, and that results depend on names alone."""
+"""The workflow itself, on a copy of the tree with a small song2016: what an edit re-runs, and that
+results depend on names alone.
+"""
 
 import json
 import os
@@ -41,8 +43,20 @@ TRIGGERS = yaml.safe_load((ROOT / "profiles/default/profile.yaml").read_text())[
 
 
 def snakemake(tree, *words, check=True, **options):
-    """Run snakemake in a tree, with the triggers alone of the default profile; returns what it printed."""
-    done = starts.snakemake(tree, "--workflow-profile", "none", "--cores", "2", *words, "--rerun-triggers", *TRIGGERS, **options)
+    """Run snakemake in a tree, with the triggers alone of the default profile; returns what it
+    printed.
+    """
+    done = starts.snakemake(
+        tree,
+        "--workflow-profile",
+        "none",
+        "--cores",
+        "2",
+        *words,
+        "--rerun-triggers",
+        *TRIGGERS,
+        **options,
+    )
     if check:
         assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
@@ -52,17 +66,23 @@ def digests(tree):
     """Digest of each run table of the tree's results at full scale, by name."""
     command = [sys.executable, "-m", "bezierplan", "digest", "results/full"]
     environment = os.environ | {"PYTHONPATH": str(tree / "src")}
-    printed = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=True).stdout
+    printed = subprocess.run(
+        command, cwd=tree, env=environment, capture_output=True, text=True, check=True
+    ).stdout
     return {name: digest for digest, name in map(str.split, printed.splitlines())}
 
 
 def planned(tree, *words):
-    """Jobs of a dry run: how many of each rule, and the names of the artefacts and methods among them."""
+    """Jobs of a dry run: how many of each rule, and the names of the artefacts and methods among
+    them.
+    """
     printed = snakemake(tree, "--dry-run", *words)
     jobs = re.findall(r"^rule (\w+):\n(.*?)(?=^rule |\Z)", printed, flags=re.M | re.S)
     names = Counter()
     for rule, body in jobs:
-        wildcards = dict(re.findall(r"(\w+)=([\w.]+)", "".join(re.findall(r"wildcards: (.*)", body))))
+        wildcards = dict(
+            re.findall(r"(\w+)=([\w.]+)", "".join(re.findall(r"wildcards: (.*)", body)))
+        )
         name = wildcards.get("figure") or wildcards.get("table") or wildcards.get("method")
         if rule not in ("default", "all"):
             names[f"{rule} {name}" if name else rule] += 1
@@ -73,7 +93,13 @@ def runs(number, methods=METHODS):
     return {f"runs {method}": number for method in methods}
 
 
-TABLES = {"table table1": 1, "table feasibility": 1, "table running_time": 1, "claims": 1, "summary": 1}
+TABLES = {
+    "table table1": 1,
+    "table feasibility": 1,
+    "table running_time": 1,
+    "claims": 1,
+    "summary": 1,
+}
 ARTEFACTS_OF_RUNS = TABLES | {
     "worth": 1,
     "figure figure3": 1,
@@ -83,17 +109,32 @@ ARTEFACTS_OF_RUNS = TABLES | {
     "figure work": 1,
 }
 
-OF_PUBLISHED = {"table table1": 1, "claims": 1, "audit": 1, "summary": 1, "figure work": 1, "figure identified": 1}
+OF_PUBLISHED = {
+    "table table1": 1,
+    "claims": 1,
+    "audit": 1,
+    "summary": 1,
+    "figure work": 1,
+    "figure identified": 1,
+}
 # A label is printed by what shows the thing that it names.
-OF_LABELS = {name: 1 for name in (*ARTEFACTS_OF_RUNS, "figure identified") if name not in ("claims", "worth")}
+OF_LABELS = {
+    name: 1 for name in (*ARTEFACTS_OF_RUNS, "figure identified") if name not in ("claims", "worth")
+}
 # The page shows everything, with titles and assumptions.
 PAGE = {"page": 1}
 
 
 def with_page(jobs):
-    """Jobs with those that they make run again: before the page, runs are judged again from their points; tables are set in LaTeX."""
+    """Jobs with those that they make run again: before the page, runs are judged again from their
+    points; tables are set in LaTeX.
+    """
     again = {"verified": "runs ", "latex": "table "}
-    return jobs | PAGE | {job: 1 for job, kind in again.items() if any(name.startswith(kind) for name in jobs)}
+    return (
+        jobs
+        | PAGE
+        | {job: 1 for job, kind in again.items() if any(name.startswith(kind) for name in jobs)}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +152,9 @@ def finished(tmp_path_factory):
 
 
 def copied(finished):
-    """The finished tree, to be edited. It lies in the same place for every test, so that compiled kernels are found again."""
+    """The finished tree, to be edited. It lies in the same place for every test, so that compiled
+    kernels are found again.
+    """
     place = finished.parent / "tree"
     shutil.rmtree(place, ignore_errors=True)
     return Path(shutil.copytree(finished, place, symlinks=True))
@@ -128,7 +171,9 @@ def test_nothing_is_left_to_do(tree):
 
 
 def test_each_planner_has_a_job_before_all_others(tree):
-    """It compiles the planner's kernels, for which others would wait. Claims wait for no figure, and runs only for problems."""
+    """It compiles the planner's kernels, for which others would wait. Claims wait for no figure,
+    and runs only for problems.
+    """
     printed = snakemake(tree, "--dry-run", "--forceall")
     given, of_planner = {}, {}
     for job in re.findall(r"^rule \w+:\n(.*?)(?=^rule |\Z)", printed, flags=re.M | re.S):
@@ -137,10 +182,17 @@ def test_each_planner_has_a_job_before_all_others(tree):
         if "priority" in told:
             given.setdefault(log[4].removesuffix(".log"), []).append(float(told["priority"]))
         if "runs" in log:
-            of_planner.setdefault("genetic" if log[-2] in GENETIC else log[-2], []).append(float(told["priority"]))
-    assert {planner: len(found) for planner, found in of_planner.items()} == dict.fromkeys(METHODS[-3:], 2) | {"genetic": 10}
+            of_planner.setdefault("genetic" if log[-2] in GENETIC else log[-2], []).append(
+                float(told["priority"])
+            )
+    assert {planner: len(found) for planner, found in of_planner.items()} == dict.fromkeys(
+        METHODS[-3:], 2
+    ) | {"genetic": 10}
     ((claims,), (problems,), (bounds,)) = (given[rule] for rule in ("claims", "problems", "bounds"))
-    assert all(problems > max(found) > claims > sorted(found)[-2] > bounds > 0 for found in of_planner.values())
+    assert all(
+        problems > max(found) > claims > sorted(found)[-2] > bounds > 0
+        for found in of_planner.values()
+    )
     assert len({max(found) for found in of_planner.values()}) == len(of_planner)
 
 
@@ -159,17 +211,38 @@ EDITS = {
         runs(2, GENETIC) | ARTEFACTS_OF_RUNS | {"audit": 1, "figure identified": 1},
     ),
     "a docstring": ("src/bezierplan/planners/parts/genetic.py", '"""', '"""Once more. ', {}),
-    "a comment in a script": ("workflow/scripts/runs.py", "    import pyarrow", "    # A comment.\n    import pyarrow", {}),
+    "a comment in a script": (
+        "workflow/scripts/runs.py",
+        "    import pyarrow",
+        "    # A comment.\n    import pyarrow",
+        {},
+    ),
     "code of a script": (
         "workflow/scripts/table.py",
         "    compared = ",
         "    0\n    compared = ",
         {name: 1 for name in TABLES if name != "claims"},
     ),
-    "how a job is logged": ("src/bezierplan/running/log.py", 'LAST = "CRITICAL "', 'LAST = "CRITICAL " + ""', {}),
-    "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", PAGE | {"latex": 1}),
-    "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw close to 1", "# Hence a draw close to 1", {}),
-    # Paths and convergence share code with the kind `lines`, which reads the units of metrics; the audit reads what a metric can be.
+    "how a job is logged": (
+        "src/bezierplan/running/log.py",
+        'LAST = "CRITICAL "',
+        'LAST = "CRITICAL " + ""',
+        {},
+    ),
+    "a title": (
+        "config/studies/song2016/artefacts.yaml",
+        "title: ",
+        "title: The same, ",
+        PAGE | {"latex": 1},
+    ),
+    "a comment": (
+        "src/bezierplan/planners/parts/genetic.py",
+        "# A draw close to 1",
+        "# Hence a draw close to 1",
+        {},
+    ),
+    # Paths and convergence share code with the kind `lines`, which reads the units of metrics; the
+    # audit reads what a metric can be.
     "a metric": (
         "src/bezierplan/analysis/measures.py",
         "FINE_SAMPLES = 4001",
@@ -188,20 +261,52 @@ EDITS = {
         "samples: 701, population: 202}",
         runs(2, ["nonsmooth"]) | TABLES | {"worth": 1, "figure overall": 1, "figure work": 1},
     ),
-    "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),
-    "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", OF_PUBLISHED),
+    "a setting of all methods": (
+        EXPERIMENTS,
+        "penalty: 10.0",
+        "penalty: 11.0",
+        runs(2, GENETIC) | ARTEFACTS_OF_RUNS,
+    ),
+    "a published number": (
+        "config/studies/song2016/published/table1.csv",
+        "225.4982",
+        "225.5982",
+        OF_PUBLISHED,
+    ),
     "a map": (
         "config/studies/song2016/workspaces/figure2.txt",
         "....##....######\n",
         "....##.....#####\n",
-        {"problems": 1, "bounds": 1, "figure figure2": 1, "figure identified": 1, "audit": 1} | runs(2) | ARTEFACTS_OF_RUNS,
+        {"problems": 1, "bounds": 1, "figure figure2": 1, "figure identified": 1, "audit": 1}
+        | runs(2)
+        | ARTEFACTS_OF_RUNS,
     ),
-    "the seed rule": (EXPERIMENTS, "    repeats: {smoke", "    seeds: shared\n    repeats: {smoke", runs(2) | ARTEFACTS_OF_RUNS),
+    "the seed rule": (
+        EXPERIMENTS,
+        "    repeats: {smoke",
+        "    seeds: shared\n    repeats: {smoke",
+        runs(2) | ARTEFACTS_OF_RUNS,
+    ),
     "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1) | ARTEFACTS_OF_RUNS),
     "fewer repeats": (EXPERIMENTS, "full: 4,", "full: 3,", ARTEFACTS_OF_RUNS),
-    "a label": ("config/studies/song2016/artefacts.yaml", "0_15: 0 to 15", "0_15: from 0 to 15", OF_LABELS | {"claims": 1}),
-    "a claim": ("config/studies/song2016/claims.yaml", "margin: 0.1,", "margin: 0.2,", {"claims": 1, "summary": 1}),
-    "an alternative": ("config/studies/song2016/assumptions.yaml", "[20, 50, 101, 401]", "[20, 50, 401]", PAGE),
+    "a label": (
+        "config/studies/song2016/artefacts.yaml",
+        "0_15: 0 to 15",
+        "0_15: from 0 to 15",
+        OF_LABELS | {"claims": 1},
+    ),
+    "a claim": (
+        "config/studies/song2016/claims.yaml",
+        "margin: 0.1,",
+        "margin: 0.2,",
+        {"claims": 1, "summary": 1},
+    ),
+    "an alternative": (
+        "config/studies/song2016/assumptions.yaml",
+        "[20, 50, 101, 401]",
+        "[20, 50, 401]",
+        PAGE,
+    ),
 }
 
 
@@ -212,7 +317,9 @@ def test_edit_reruns_exactly_what_it_changes(name, tree):
     assert planned(tree) == (expected and with_page(expected))
 
 
-@pytest.mark.parametrize("file", ["workspaces/figure2.txt", "published/table1.csv", "published/table1.csv: copied"])
+@pytest.mark.parametrize(
+    "file", ["workspaces/figure2.txt", "published/table1.csv", "published/table1.csv: copied"]
+)
 def test_content_of_a_source_counts_not_its_date(file, tree):
     name, _, copied = file.partition(": ")
     source = tree / "config/studies/song2016" / name
@@ -237,14 +344,20 @@ def test_cut_off_table_of_runs_is_named_and_made_again(finished, tree):
     file = tree / "results/full/song2016/runs/routes/smooth/0.parquet"
     file.write_bytes(file.read_bytes()[:100])
     printed = snakemake(tree, "song2016_figure4", "--forcerun", "figure", check=False)
-    assert f"{file.relative_to(tree)}: not a whole Parquet file; delete it and start again: the workflow reproduces it" in printed
+    assert (
+        f"{file.relative_to(tree)}: not a whole Parquet file; delete it and start again: the "
+        f"workflow reproduces it" in printed
+    )
     file.unlink()
     snakemake(tree, file.relative_to(tree))
     assert digests(tree) == digests(finished)
 
 
 def test_new_planner_reruns_nothing(tree):
-    shutil.copy(tree / "src/bezierplan/planners/binary_genetic.py", tree / "src/bezierplan/planners/another.py")
+    shutil.copy(
+        tree / "src/bezierplan/planners/binary_genetic.py",
+        tree / "src/bezierplan/planners/another.py",
+    )
     assert planned(tree) == {}
 
 
@@ -255,25 +368,44 @@ def test_deleted_figure_alone_is_made_again(tree):
 
 def test_single_figure_needs_only_its_own_methods(tree):
     shutil.rmtree(tree / "results")
-    expected = {"problems": 1, "bounds": 1, "figure figure4": 1, **runs(2, ["smooth", "smooth_cubic", "smooth_single"])}
-    assert {name: number for name, number in planned(tree, "song2016_figure4").items() if "song2016" not in name} == expected
+    expected = {
+        "problems": 1,
+        "bounds": 1,
+        "figure figure4": 1,
+        **runs(2, ["smooth", "smooth_cubic", "smooth_single"]),
+    }
+    assert {
+        name: number
+        for name, number in planned(tree, "song2016_figure4").items()
+        if "song2016" not in name
+    } == expected
 
 
 def test_one_core_another_order_and_larger_chunks_give_the_same_content(finished, tree):
     """And Snakemake looks for jobs that could start no more often than jobs end."""
     shutil.rmtree(tree / "results")
     edit(tree / EXPERIMENTS, "full: 2,", "full: 4,")
-    files = [f"results/full/song2016/runs/routes/{method}/0.parquet" for method in reversed(METHODS)]
+    files = [
+        f"results/full/song2016/runs/routes/{method}/0.parquet" for method in reversed(METHODS)
+    ]
     printed = snakemake(tree, "--cores", "1", *files, calls=tree / "calls")
     assert digests(tree) == digests(finished)
     jobs = int(re.search(r"^total +(\d+)", printed, flags=re.M)[1])
-    (looks,) = (counts[0] for (*_, name), counts in pstats.Stats(str(tree / "calls")).stats.items() if name == "job_selector")
+    (looks,) = (
+        counts[0]
+        for (*_, name), counts in pstats.Stats(str(tree / "calls")).stats.items()
+        if name == "job_selector"
+    )
     assert 0 < looks <= jobs == len(files) + 1
 
 
 def test_figures_and_page_made_again_on_one_core_have_equal_bytes(tree):
-    """On Linux the figure of the same CPU times: all others are compared at the end of the workflow that is killed."""
-    figures = (tree / "results/full/song2016/figures").glob("work.*" if sys.platform == "linux" else "*")
+    """On Linux the figure of the same CPU times: all others are compared at the end of the workflow
+    that is killed.
+    """
+    figures = (tree / "results/full/song2016/figures").glob(
+        "work.*" if sys.platform == "linux" else "*"
+    )
     files = [tree / "results/full/index.html", *figures]
     before = [file.read_bytes() for file in files]
     assert len(files) >= 4
@@ -284,15 +416,24 @@ def test_figures_and_page_made_again_on_one_core_have_equal_bytes(tree):
 
 
 def untimed(text):
-    """The data of a page without CPU times and what is made of them, and its pictures without those that show CPU times."""
+    """The data of a page without CPU times and what is made of them, and its pictures without those
+    that show CPU times.
+    """
     data = json.loads(re.search(r'id="page-data">(.*?)</script>', text).group(1))
-    data["headline"]["rows"] = {study: cells[:-1] for study, cells in data["headline"]["rows"].items()}
+    data["headline"]["rows"] = {
+        study: cells[:-1] for study, cells in data["headline"]["rows"].items()
+    }
     for study in data["studies"].values():
         study["worth"] = [each | {"cpu": 0} for each in study["worth"]]
-        study["worth_in_words"] = re.sub(r"at [^ ]+( to [^ ]+)? times the baseline's CPU", "", study["worth_in_words"])
+        study["worth_in_words"] = re.sub(
+            r"at [^ ]+( to [^ ]+)? times the baseline's CPU", "", study["worth_in_words"]
+        )
         for table in study["tables"]:
             times = [n for n, name in enumerate(table["columns"]) if "(s" in name]
-            table["rows"] = [[None if n in times else value for n, value in enumerate(row)] for row in table["rows"]]
+            table["rows"] = [
+                [None if n in times else value for n, value in enumerate(row)]
+                for row in table["rows"]
+            ]
     return data, dict(re.findall(r'alt="(\w+): [^"]*" src="(data:image[^"]*)"', text))
 
 
@@ -310,18 +451,38 @@ def processes_in(folder):
 
 def written(tree):
     """The results of a tree: each file with its size and its date."""
-    return {file: (file.stat().st_size, file.stat().st_mtime_ns) for file in (tree / "results").rglob("*") if file.is_file()}
+    return {
+        file: (file.stat().st_size, file.stat().st_mtime_ns)
+        for file in (tree / "results").rglob("*")
+        if file.is_file()
+    }
 
 
-# The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
-@pytest.mark.skipif(sys.platform != "linux", reason="only the kernel of Linux ends a job with its parent, and has /proc to look into")
-def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_to_the_same_end_but_for_times(finished, tree):
-    """Killed by itself or with its group, each time when a new file of a kind is there; at most so many chunks of runs are done by then."""
+# The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no
+# such call, and no /proc to look into.
+@pytest.mark.skipif(
+    sys.platform != "linux",
+    reason="only the kernel of Linux ends a job with its parent, and has /proc to look into",
+)
+def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_to_the_same_end_but_for_times(
+    finished, tree
+):
+    """Killed by itself or with its group, each time when a new file of a kind is there; at most so
+    many chunks of runs are done by then.
+    """
     shutil.rmtree(tree / "results")
-    for kill, moment, runs in (os.killpg, "problems/*.parquet", 7), (os.kill, "runs/*/*/*.parquet", 7), (os.killpg, "tables/*.csv", 16):
+    for kill, moment, runs in (
+        (os.killpg, "problems/*.parquet", 7),
+        (os.kill, "runs/*/*/*.parquet", 7),
+        (os.killpg, "tables/*.csv", 16),
+    ):
         before = set(tree.glob(f"results/full/song2016/{moment}"))
         make = subprocess.Popen(
-            ["make", "reproduce"], cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+            ["make", "reproduce"],
+            cwd=tree,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
         )
         deadline = time.monotonic() + 120
         while set(tree.glob(f"results/full/song2016/{moment}")) <= before:
@@ -334,7 +495,8 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_
         assert make.wait() != 0
         time.sleep(0.5)
         left = written(tree)
-        # A busy machine takes longer to clear away what is dead; a job that lived on would write its files and its log.
+        # A busy machine takes longer to clear away what is dead; a job that lived on would write
+        # its files and its log.
         deadline = time.monotonic() + 20
         while processes_in(tree) and time.monotonic() < deadline:
             time.sleep(0.05)
@@ -344,15 +506,23 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_
         assert not (tree / "results/full/index.html").exists()
     subprocess.run(["make", "reproduce"], cwd=tree, check=True, capture_output=True)
     assert digests(tree) == digests(finished)
-    (data, pictures), (again, drawn) = (untimed((place / "results/full/index.html").read_text()) for place in (finished, tree))
+    (data, pictures), (again, drawn) = (
+        untimed((place / "results/full/index.html").read_text()) for place in (finished, tree)
+    )
     assert again == data
     assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
     assert not list((tree / "results").rglob(".part-*"))
     drawings, drawn_again = (
-        {file.name: file.read_bytes() for file in place.glob("results/full/song2016/figures/*")} for place in (finished, tree)
+        {file.name: file.read_bytes() for file in place.glob("results/full/song2016/figures/*")}
+        for place in (finished, tree)
     )
     assert drawings.keys() == drawn_again.keys()
-    assert {name for name, content in drawings.items() if drawn_again[name] != content} <= {"work.csv", "work.pdf", "work.png", "work.svg"}
+    assert {name for name, content in drawings.items() if drawn_again[name] != content} <= {
+        "work.csv",
+        "work.pdf",
+        "work.png",
+        "work.svg",
+    }
 
 
 # One kernel that calls another one of another module.
@@ -367,12 +537,21 @@ def test_edited_kernel_is_never_served_from_an_old_cache(tree):
     def run_once():
         environment = os.environ | {"PYTHONPATH": str(tree / "src")}
         return subprocess.run(
-            [sys.executable, "-c", RUN_ONCE], cwd=tree, env=environment, capture_output=True, text=True, check=True
+            [sys.executable, "-c", RUN_ONCE],
+            cwd=tree,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
         ).stdout
 
     before = run_once()
     assert run_once() == before
-    edit(tree / "src/bezierplan/planners/parts/diversity.py", "return (agree - differ) / ", "return 2.0 * (agree - differ) / ")
+    edit(
+        tree / "src/bezierplan/planners/parts/diversity.py",
+        "return (agree - differ) / ",
+        "return 2.0 * (agree - differ) / ",
+    )
     after = run_once()
     (tree / ".cache").unlink()
     assert run_once() == after != before
@@ -382,11 +561,17 @@ def test_fault_stops_before_any_job_with_one_line(tree):
     shutil.rmtree(tree / "results")
     edit(
         tree / EXPERIMENTS,
-        "population: 200" if "population: 200" in (tree / EXPERIMENTS).read_text() else "population: 10",
+        "population: 200"
+        if "population: 200" in (tree / EXPERIMENTS).read_text()
+        else "population: 10",
         "population: 11",
     )
-    done = subprocess.run([sys.executable, "-m", "snakemake"], cwd=tree, capture_output=True, text=True, check=False)
-    told = [line for line in (done.stdout + done.stderr).splitlines() if line and "profile" not in line]
+    done = subprocess.run(
+        [sys.executable, "-m", "snakemake"], cwd=tree, capture_output=True, text=True, check=False
+    )
+    told = [
+        line for line in (done.stdout + done.stderr).splitlines() if line and "profile" not in line
+    ]
     assert done.returncode != 0
     assert len(told) == 1
     assert "experiments.yaml: methods: nonsmooth: settings: population: 11" in told[0]
@@ -395,7 +580,14 @@ def test_fault_stops_before_any_job_with_one_line(tree):
 
 def test_every_artefact_is_a_named_target(tree):
     targets = snakemake(tree, "--list-target-rules").split()
-    assert {"all", "smoke", "extended", "song2016", "song2016_table1", *(f"song2016_figure{n}" for n in range(1, 6))} <= set(targets)
+    assert {
+        "all",
+        "smoke",
+        "extended",
+        "song2016",
+        "song2016_table1",
+        *(f"song2016_figure{n}" for n in range(1, 6)),
+    } <= set(targets)
 
 
 def test_report_shows_every_artefact_with_its_caption(tree):

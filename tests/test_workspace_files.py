@@ -1,4 +1,6 @@
-"""Workspaces from descriptions and files: every fault in one line, and back from text bit by bit."""
+"""Workspaces from descriptions and files: every fault in one line, and back from text bit by
+bit.
+"""
 
 import json
 import os
@@ -27,7 +29,10 @@ BORDER = [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]]
 
 def geojson(*obstacles, border=BORDER):
     roles = [("border", [border]), *(("obstacle", rings) for rings in obstacles)]
-    features = [{"properties": {"role": role}, "geometry": {"type": "Polygon", "coordinates": rings}} for role, rings in roles]
+    features = [
+        {"properties": {"role": role}, "geometry": {"type": "Polygon", "coordinates": rings}}
+        for role, rings in roles
+    ]
     return json.dumps({"type": "FeatureCollection", "features": features})
 
 
@@ -41,7 +46,10 @@ def moved(x, y):
 
 def feature(properties, geometry):
     """A GeoJSON file with a border and one further feature."""
-    border = {"properties": {"role": "border"}, "geometry": {"type": "Polygon", "coordinates": [BORDER]}}
+    border = {
+        "properties": {"role": "border"},
+        "geometry": {"type": "Polygon", "coordinates": [BORDER]},
+    }
     return json.dumps({"features": [border, {"properties": properties, "geometry": geometry}]})
 
 
@@ -56,61 +64,138 @@ POLYGON_FAULTS = {
     "features no list": ('{"features": 1}', "not a GeoJSON feature collection"),
     "nested too deeply": ('{"features": ' + "[" * 100_000, "nested too deeply"),
     "long number": ('{"features": [' + "1" * 5000 + "]}", "not a GeoJSON feature collection"),
-    "feature no object": (json.dumps({"features": [1]}), "feature 0: 1; expected a feature with a geometry"),
+    "feature no object": (
+        json.dumps({"features": [1]}),
+        "feature 0: 1; expected a feature with a geometry",
+    ),
     "no kind": (
         json.dumps({"features": [{"geometry": {"coordinates": []}}]}),
         r"feature 0 \(obstacle\): geometry: None; expected a Polygon",
     ),
-    "no geometry at all": (json.dumps({"features": [{"properties": {}}]}), r"feature 0 \(obstacle\): geometry: None; expected a Polygon"),
+    "no geometry at all": (
+        json.dumps({"features": [{"properties": {}}]}),
+        r"feature 0 \(obstacle\): geometry: None; expected a Polygon",
+    ),
     "properties no mapping": (
         json.dumps({"features": [{"properties": ["border"]}]}),
         r"feature 0: properties: role: \['border'\]: unknown",
     ),
-    "role misspelt": (polygon([SQUARE], "obstacel"), "feature 1: properties: role: 'obstacel': unknown; did you mean obstacle?"),
+    "role misspelt": (
+        polygon([SQUARE], "obstacel"),
+        "feature 1: properties: role: 'obstacel': unknown; did you mean obstacle?",
+    ),
     "role no word": (polygon([SQUARE], ["obstacle"]), "feature 1: properties: role: .* unknown"),
-    "no border": (json.dumps({"features": []}), "no border; expected a polygon with role border, a bbox, or a margin"),
+    "no border": (
+        json.dumps({"features": []}),
+        "no border; expected a polygon with role border, a bbox, or a margin",
+    ),
     "two borders": (polygon([BORDER], "border"), "2 polygons with role border; expected one"),
-    "border crossing itself": (geojson(border=closed((0, 0), (10, 10), (10, 0), (0, 10))), r"feature 0 \(border\): Self-intersection"),
-    "border with a tip": (geojson(border=closed((0, 0), (10, 0), (10, 10), (5, 10), (4.999, 1), (4.998, 10), (0, 10))), "an angle at"),
+    "border crossing itself": (
+        geojson(border=closed((0, 0), (10, 10), (10, 0), (0, 10))),
+        r"feature 0 \(border\): Self-intersection",
+    ),
+    "border with a tip": (
+        geojson(
+            border=closed((0, 0), (10, 0), (10, 10), (5, 10), (4.999, 1), (4.998, 10), (0, 10))
+        ),
+        "an angle at",
+    ),
     "crossing itself": (geojson([[[1, 1], [3, 3], [3, 1], [1, 3], [1, 1]]]), "Self-intersection"),
     "hole outside": (polygon([SQUARE, moved(3, 3)]), "Hole lies outside shell"),
     "holes in each other": (
-        polygon([SQUARE, *[[[a, a], [b, a], [b, b], [a, b], [a, a]] for a, b in ((4.2, 5.8), (4.5, 5))]]),
+        polygon(
+            [SQUARE, *[[[a, a], [b, a], [b, b], [a, b], [a, a]] for a, b in ((4.2, 5.8), (4.5, 5))]]
+        ),
         "Holes are nested",
     ),
-    "not closed": (polygon([SQUARE[:-1]]), r"feature 1 \(obstacle\): ring 0: is not closed: begins at \[4, 4\], ends at \[4, 6\]"),
-    "hole not closed": (polygon([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.6]]]), "ring 1: is not closed"),
-    "too few positions": (polygon([[[1, 1], [2, 2], [1, 1]]]), "ring 0: expected at least four positions"),
+    "not closed": (
+        polygon([SQUARE[:-1]]),
+        r"feature 1 \(obstacle\): ring 0: is not closed: begins at \[4, 4\], ends at \[4, 6\]",
+    ),
+    "hole not closed": (
+        polygon([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.6]]]),
+        "ring 1: is not closed",
+    ),
+    "too few positions": (
+        polygon([[[1, 1], [2, 2], [1, 1]]]),
+        "ring 0: expected at least four positions",
+    ),
     "rings missing": (polygon([SQUARE[0]]), "ring 0: expected at least four positions"),
     "no ring": (polygon([]), "coordinates: expected a list of rings"),
-    "in space at times": (polygon([[[4, 4], [6, 4, 1], [6, 6], [4, 4]]]), r"ring 0: position \[6, 4, 1\]; expected \[x, y\]"),
-    "on a line": (polygon([[[position[0]] for position in SQUARE]]), r"ring 0: position \[4\]; expected \[x, y\]"),
+    "in space at times": (
+        polygon([[[4, 4], [6, 4, 1], [6, 6], [4, 4]]]),
+        r"ring 0: position \[6, 4, 1\]; expected \[x, y\]",
+    ),
+    "on a line": (
+        polygon([[[position[0]] for position in SQUARE]]),
+        r"ring 0: position \[4\]; expected \[x, y\]",
+    ),
     "text": (polygon([[[str(x), str(y)] for x, y in SQUARE]]), r"expected \[x, y\]"),
     "truths": (polygon([[[True, False]] * 4]), r"expected \[x, y\]"),
     "null": (polygon([[[None, None]] * 4]), r"expected \[x, y\]"),
-    "a line": (feature({}, {"type": "LineString", "coordinates": SQUARE}), "geometry: LineString; expected a Polygon, a MultiPolygon"),
+    "a line": (
+        feature({}, {"type": "LineString", "coordinates": SQUARE}),
+        "geometry: LineString; expected a Polygon, a MultiPolygon",
+    ),
     "a line in a collection": (
-        feature({}, {"type": "GeometryCollection", "geometries": [{"type": "LineString", "coordinates": SQUARE}]}),
+        feature(
+            {},
+            {
+                "type": "GeometryCollection",
+                "geometries": [{"type": "LineString", "coordinates": SQUARE}],
+            },
+        ),
         "geometry: LineString; expected a Polygon",
     ),
-    "no parts": (feature({}, {"type": "MultiPolygon", "coordinates": []}), "coordinates: expected a list of polygons"),
-    "a bbox of words": (json.dumps({"features": [], "bbox": ["0", "0", "1", "1"]}), "bbox: .*; expected .x low, y low, x high, y high."),
-    "a bbox of three": (json.dumps({"features": [], "bbox": [0, 0, 1]}), "bbox: .0, 0, 1.; expected"),
-    "a bbox beyond floats": (json.dumps({"features": [], "bbox": [0, 0, 10**400, 1]}), "bbox: a number is too large"),
-    "a bbox the wrong way": (json.dumps({"features": [], "bbox": [5, 0, 1, 1]}), "bounds: .*; expected .x low"),
+    "no parts": (
+        feature({}, {"type": "MultiPolygon", "coordinates": []}),
+        "coordinates: expected a list of polygons",
+    ),
+    "a bbox of words": (
+        json.dumps({"features": [], "bbox": ["0", "0", "1", "1"]}),
+        "bbox: .*; expected .x low, y low, x high, y high.",
+    ),
+    "a bbox of three": (
+        json.dumps({"features": [], "bbox": [0, 0, 1]}),
+        "bbox: .0, 0, 1.; expected",
+    ),
+    "a bbox beyond floats": (
+        json.dumps({"features": [], "bbox": [0, 0, 10**400, 1]}),
+        "bbox: a number is too large",
+    ),
+    "a bbox the wrong way": (
+        json.dumps({"features": [], "bbox": [5, 0, 1, 1]}),
+        "bounds: .*; expected .x low",
+    ),
     "no geometry": (feature({"role": "obstacle"}, None), "geometry: None; expected a Polygon"),
     "not finite": (geojson([[[1, 1], [3, 1], [float("nan"), 3], [1, 1]]]), "is not a coordinate"),
     "beyond floats": (polygon([[[1, 1], [3, 1], [10**400, 3], [1, 1]]]), "too large"),
-    "too large": (geojson(border=[[0, 0], [2e5, 0], [2e5, 10], [0, 10], [0, 0]]), "is not a coordinate"),
-    "too many": (polygon([[[1, 1], *[[2, 1]] * 100_000, [2, 2], [1, 1]]]), "more than 100,000 positions"),
+    "too large": (
+        geojson(border=[[0, 0], [2e5, 0], [2e5, 10], [0, 10], [0, 0]]),
+        "is not a coordinate",
+    ),
+    "too many": (
+        polygon([[[1, 1], *[[2, 1]] * 100_000, [2, 2], [1, 1]]]),
+        "more than 100,000 positions",
+    ),
     "gap between obstacles": (geojson([SQUARE], [moved(2 + 5e-8, 0)]), "a gap below 1e-07"),
     "gap to the border": (geojson([moved(4 - 5e-8, 0)]), "a gap below 1e-07"),
-    "gap in a notch": (geojson([closed((1, 1), (3, 1), (3, 3), (2, 3), (2, 2), (2 - 5e-8, 2), (2 - 5e-8, 3), (1, 3))]), "an edge at"),
+    "gap in a notch": (
+        geojson(
+            [closed((1, 1), (3, 1), (3, 3), (2, 3), (2, 2), (2 - 5e-8, 2), (2 - 5e-8, 3), (1, 3))]
+        ),
+        "an edge at",
+    ),
     "gap between arms": (
-        geojson([closed((1, 1), (4, 1), (4, 4), (2, 4), (2, 2), (1.5, 2.5), (2 - 5e-8, 3), (1, 3))]),
+        geojson(
+            [closed((1, 1), (4, 1), (4, 4), (2, 4), (2, 2), (1.5, 2.5), (2 - 5e-8, 3), (1, 3))]
+        ),
         r"feature 1 \(obstacle\): a gap below 1e-07",
     ),
-    "thin wall": (geojson([closed((5, 0), (5 + 2e-9, 0), (5 + 2e-9, 9), (5, 9))]), r"feature 1 \(obstacle\): an edge at .* length 2e-09; "),
+    "thin wall": (
+        geojson([closed((5, 0), (5 + 2e-9, 0), (5 + 2e-9, 9), (5, 9))]),
+        r"feature 1 \(obstacle\): an edge at .* length 2e-09; ",
+    ),
     "waist": (
         geojson([closed((1, 1), (5, 1), (3, 3 - 2e-8), (5, 5), (1, 5), (3 - 2e-8, 3))]),
         "at .* a wall of thickness 2.*e-08; expected",
@@ -119,10 +204,19 @@ POLYGON_FAULTS = {
         geojson([SQUARE, closed((4 + 1e-7, 4.5), (5, 4.5), (5, 5), (4 + 1e-7, 5))]),
         "a wall of thickness 1e-07; expected at least 1e-06",
     ),
-    "needle": (geojson([closed((1, 1), (9, 1.001), (1, 1.002))]), r"an angle at \[9.0, 1.001\] of 0.00025 rad; expected at least 0.001"),
-    "sharp notch": (geojson([closed((1, 1), (9, 1), (9, 2.998), (2, 2), (9, 3), (1, 3))]), r"an angle at \[2.0, 2.0\] of"),
+    "needle": (
+        geojson([closed((1, 1), (9, 1.001), (1, 1.002))]),
+        r"an angle at \[9.0, 1.001\] of 0.00025 rad; expected at least 0.001",
+    ),
+    "sharp notch": (
+        geojson([closed((1, 1), (9, 1), (9, 2.998), (2, 2), (9, 3), (1, 3))]),
+        r"an angle at \[2.0, 2.0\] of",
+    ),
     "sliver": (geojson([closed((1, 1), (9, 1), (5, 1 + 1e-9))]), "an angle at"),
-    "thin border": (geojson(border=closed((0, 0), (10, 0), (10, 1e-9), (0, 1e-9))), r"bounds: .*: side 1e-09; expected at least 1e-06"),
+    "thin border": (
+        geojson(border=closed((0, 0), (10, 0), (10, 1e-9), (0, 1e-9))),
+        r"bounds: .*: side 1e-09; expected at least 1e-06",
+    ),
 }
 
 
@@ -137,7 +231,11 @@ def test_polygon_fault_is_told(fault):
 def test_no_obstacle_vanishes():
     """Neither one that shares its id with another, nor the last corner of one."""
     same = [
-        {"properties": {"role": "obstacle", "id": 1}, "geometry": {"type": "Polygon", "coordinates": [moved(x, 0)]}} for x in (-3, 0, 3)
+        {
+            "properties": {"role": "obstacle", "id": 1},
+            "geometry": {"type": "Polygon", "coordinates": [moved(x, 0)]},
+        }
+        for x in (-3, 0, 3)
     ]
     border = json.loads(geojson())["features"]
     found = polygons_from_geojson(json.dumps({"features": border + same}), "m")
@@ -149,10 +247,22 @@ FOREIGN = {
     "no role": feature(None, SHAPE),
     "roles of other programs": feature({"building": "yes"}, SHAPE),
     "many parts": feature({}, {"type": "MultiPolygon", "coordinates": [[SQUARE], [moved(3, 3)]]}),
-    "a collection": feature({}, {"type": "GeometryCollection", "geometries": [SHAPE, {"type": "MultiPolygon", "coordinates": [[SQUARE]]}]}),
-    "heights": feature({}, {"type": "Polygon", "coordinates": [[[*place, 7.5] for place in SQUARE]]}),
-    "a bbox": json.dumps({"type": "FeatureCollection", "bbox": [0, 0, 10, 10], "features": [{"geometry": SHAPE}]}),
-    "a bbox with heights": json.dumps({"bbox": [0, 0, -1, 10, 10, 5], "features": [{"type": "Feature", "geometry": SHAPE}]}),
+    "a collection": feature(
+        {},
+        {
+            "type": "GeometryCollection",
+            "geometries": [SHAPE, {"type": "MultiPolygon", "coordinates": [[SQUARE]]}],
+        },
+    ),
+    "heights": feature(
+        {}, {"type": "Polygon", "coordinates": [[[*place, 7.5] for place in SQUARE]]}
+    ),
+    "a bbox": json.dumps(
+        {"type": "FeatureCollection", "bbox": [0, 0, 10, 10], "features": [{"geometry": SHAPE}]}
+    ),
+    "a bbox with heights": json.dumps(
+        {"bbox": [0, 0, -1, 10, 10, 5], "features": [{"type": "Feature", "geometry": SHAPE}]}
+    ),
     "one feature": json.dumps({"type": "Feature", "bbox": [0, 0, 10, 10], "geometry": SHAPE}),
     "a bare geometry": json.dumps(SHAPE | {"bbox": [0, 0, 10, 10]}),
 }
@@ -164,13 +274,19 @@ def test_files_of_gis_programs_are_read_as_they_are(form, caplog):
     assert found.bounds == (0, 10, 0, 10)
     assert found.obstacles[0][0].tolist() == SQUARE[:-1]
     assert len(found.obstacles) == 1 + (form in ("many parts", "a collection"))
-    assert caplog.messages == (["4 positions have a height, which is dropped: the map is flat"] if form == "heights" else [])
+    assert caplog.messages == (
+        ["4 positions have a height, which is dropped: the map is flat"]
+        if form == "heights"
+        else []
+    )
 
 
 def test_a_margin_around_obstacles_takes_the_place_of_a_border():
     file = json.dumps({"features": [{"geometry": SHAPE}]})
     assert polygons_from_geojson(file, "m", margin=1.5).bounds == (2.5, 7.5, 2.5, 7.5)
-    with pytest.raises(ValueError, match=r"margin: 1: the file has a border of its own; expected no margin"):
+    with pytest.raises(
+        ValueError, match=r"margin: 1: the file has a border of its own; expected no margin"
+    ):
         polygons_from_geojson(geojson([SQUARE]), "m", margin=1.0)
     with pytest.raises(ValueError, match=r"margin: 1: the file has no obstacle; expected a border"):
         polygons_from_geojson(json.dumps({"features": []}), "m", margin=1.0)
@@ -178,9 +294,18 @@ def test_a_margin_around_obstacles_takes_the_place_of_a_border():
 
 def test_what_lies_outside_a_border_of_any_shape_is_blocked():
     ell = closed((0, 0), (10, 0), (10, 4), (4, 4), (4, 10), (0, 10))
-    courtyard = json.loads(polygon([ell, closed((1, 1), (3, 1), (3, 3), (1, 3))], "border"))["features"][1]
+    courtyard = json.loads(polygon([ell, closed((1, 1), (3, 1), (3, 3), (1, 3))], "border"))[
+        "features"
+    ][1]
     found = region(polygons_from_geojson(json.dumps({"features": [courtyard]}), "m"))
-    for point, free in {(9, 3): True, (2, 9): True, (5, 5): False, (4.001, 4.001): False, (2, 2): False, (3.5, 3.5): True}.items():
+    for point, free in {
+        (9, 3): True,
+        (2, 9): True,
+        (5, 5): False,
+        (4.001, 4.001): False,
+        (2, 2): False,
+        (3.5, 3.5): True,
+    }.items():
         assert blocks(found, point) != free
 
 
@@ -205,13 +330,22 @@ GRID_FAULTS = {
     "empty": (lambda file: file.write_text(""), "the map is empty"),
     "first line empty": (lambda file: file.write_text("\n..\n"), "the map is empty"),
     "ragged": (lambda file: file.write_text("..\n...\n"), "line 2 has 3 cells"),
-    "unknown character": (lambda file: file.write_text("..\n.x\n"), "line 2: unknown character 'x'"),
-    "too many cells": (lambda file: file.write_text(f"{'.' * 2001}\n" * 2000), "2,000 x 2,001 cells; expected at most 4,000,000 cells"),
+    "unknown character": (
+        lambda file: file.write_text("..\n.x\n"),
+        "line 2: unknown character 'x'",
+    ),
+    "too many cells": (
+        lambda file: file.write_text(f"{'.' * 2001}\n" * 2000),
+        "2,000 x 2,001 cells; expected at most 4,000,000 cells",
+    ),
 }
 FILE_FAULTS = {
     "NUL": (lambda file: file.write_text("..\n.\0\n"), "has a NUL character in line 2"),
     "not UTF-8": (lambda file: file.write_bytes(b"..\n\xff.\n"), "byte 3 is not UTF-8"),
-    "too large": (lambda file: file.write_text("." * (2**24 + 1)), "has 16,777,217 bytes; expected at most 16,777,216"),
+    "too large": (
+        lambda file: file.write_text("." * (2**24 + 1)),
+        "has 16,777,217 bytes; expected at most 16,777,216",
+    ),
     "a folder": (lambda file: file.mkdir(), "is not a regular file"),
     "a pipe": (fifo, "is not a regular file"),
     "a device": (lambda file: file.symlink_to("/dev/zero"), "is not a regular file"),
@@ -220,7 +354,11 @@ FILE_FAULTS = {
 
 
 @pytest.mark.parametrize(
-    ("kind", "fault"), [*(("grid", fault) for fault in GRID_FAULTS | FILE_FAULTS), *(("polygons", fault) for fault in FILE_FAULTS)]
+    ("kind", "fault"),
+    [
+        *(("grid", fault) for fault in GRID_FAULTS | FILE_FAULTS),
+        *(("polygons", fault) for fault in FILE_FAULTS),
+    ],
 )
 def test_map_fault_is_told_at_once(kind, fault, tmp_path):
     make, told = (GRID_FAULTS | FILE_FAULTS)[fault]
@@ -241,20 +379,39 @@ def test_cell_beyond_all_coordinates_is_told(cell, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "obstacles", [([SQUARE],), ([SQUARE], [moved(2, 0)]), ([moved(4, 0)],), ([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.5]]],)]
+    "obstacles",
+    [
+        ([SQUARE],),
+        ([SQUARE], [moved(2, 0)]),
+        ([moved(4, 0)],),
+        ([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.5]]],),
+    ],
 )
 def test_touching_polygons_and_holes_are_accepted(obstacles):
     assert len(polygons_from_geojson(geojson(*obstacles), "m").obstacles) == len(obstacles)
 
 
-@example(-6.04, np.pi / 2, 0.001, 3e4, "cap")  # so far out halving ends at units in the last place that are more than a rounding error
+@example(
+    -6.04, np.pi / 2, 0.001, 3e4, "cap"
+)  # so far out halving ends at units in the last place that are more than a rounding error
 @given(
-    st.floats(-9.5, -0.1), st.floats(0, np.pi), st.floats(1e-3, 3), st.sampled_from([0.0, 3e4]), st.sampled_from(["wall", "wedge", "cap"])
+    st.floats(-9.5, -0.1),
+    st.floats(0, np.pi),
+    st.floats(1e-3, 3),
+    st.sampled_from([0.0, 3e4]),
+    st.sampled_from(["wall", "wedge", "cap"]),
 )
-def test_the_checker_blocks_the_middle_of_every_polygon_that_is_accepted(exponent, turn, length, far, form):
+def test_the_checker_blocks_the_middle_of_every_polygon_that_is_accepted(
+    exponent, turn, length, far, form
+):
     thickness = 10**exponent
     shapes = {
-        "wall": [(-length, -thickness), (length, -thickness), (length, thickness), (-length, thickness)],
+        "wall": [
+            (-length, -thickness),
+            (length, -thickness),
+            (length, thickness),
+            (-length, thickness),
+        ],
         "wedge": [(-length, -2 * thickness), (2 * length, 0), (-length, 2 * thickness)],
         "cap": [(-length, -thickness), (length, -thickness), (0, 2 * thickness)],
     }
@@ -277,11 +434,17 @@ def test_the_checker_blocks_occupied_cells_of_every_side_that_is_accepted(expone
     with TemporaryDirectory() as folder:
         (Path(folder) / "map").write_text("....\n.##.\n.##.\n....\n")
         try:
-            found = files.load({"kind": "grid", "unit": "m", "file": "map", "cell": cell}, Path(folder))
+            found = files.load(
+                {"kind": "grid", "unit": "m", "file": "map", "cell": cell}, Path(folder)
+            )
         except ValueError:
             assert cell < 1e-6
             return
-    line = np.array([[0.5, 0.5 + row], [3.5, 3.5 - row]]) if falling else np.array([[0.5, 1.5], [3.5, 2.5]])
+    line = (
+        np.array([[0.5, 0.5 + row], [3.5, 3.5 - row]])
+        if falling
+        else np.array([[0.5, 1.5], [3.5, 2.5]])
+    )
     assert not check(line[None] * cell, region(found)).feasible
 
 
@@ -290,26 +453,43 @@ def test_the_checker_blocks_occupied_cells_of_every_side_that_is_accepted(expone
 def test_cells_thinner_than_the_tolerance_are_told(cell, kind, tmp_path):
     (tmp_path / "map").write_text(geojson() if kind == "raster" else "..\n")
     with pytest.raises(ValueError, match=rf"cell: {cell:g}; expected at least 1e-06"):
-        files.load({"kind": kind, "unit": "m", "file": "map", "cell": cell, "rule": "overlap"}, tmp_path)
+        files.load(
+            {"kind": kind, "unit": "m", "file": "map", "cell": cell, "rule": "overlap"}, tmp_path
+        )
 
 
 @pytest.mark.parametrize("kind", ["moving_circles", "random_moving_circles", "random_moving_field"])
 def test_circles_that_move_and_are_too_small_are_told(kind):
-    given = {"kind": kind, "unit": "m", "bounds": [0, 10, 0, 10], "circles": [[5, 5, 1e-12, 0, 0]] if kind == "moving_circles" else 1}
+    given = {
+        "kind": kind,
+        "unit": "m",
+        "bounds": [0, 10, 0, 10],
+        "circles": [[5, 5, 1e-12, 0, 0]] if kind == "moving_circles" else 1,
+    }
     given |= {"radius": 1e-12, "clear_ends": 0.0, "speed": 0.0, "pace": 1.0, "steps": 10}
     problem = {"start": [1, 1], "target": [9, 9], "layout": 0, "obstacles": 1, "side": 10}
-    with pytest.raises(ValueError, match=r"circles: circle 0: radius 1e-1[12]; expected at least 1e-06"):
+    with pytest.raises(
+        ValueError, match=r"circles: circle 0: radius 1e-1[12]; expected at least 1e-06"
+    ):
         worlds.build(given, problem, "test", Path())
 
 
 CIRCLE_FAULTS = {
-    "radius below the tolerance": ([-5, 5, -5, 5], [[0, 0, 1e-12]], "circles: circle 0: radius 1e-12; expected at least 1e-06"),
+    "radius below the tolerance": (
+        [-5, 5, -5, 5],
+        [[0, 0, 1e-12]],
+        "circles: circle 0: radius 1e-12; expected at least 1e-06",
+    ),
     "border below the tolerance": ([-5, 5, 0, 1e-9], [], "side 1e-09; expected at least 1e-06"),
     "radius of 0": ([-5, 5, -5, 5], [[0, 0, 0]], "circle 0: radius 0; expected above 0"),
     "bounds exchanged": ([5, -5, -5, 5], [], "low below high"),
     "not finite": ([-5, 5, -5, 5], [[0, float("inf"), 1]], "is not a coordinate"),
     "too many": ([-5, 5, -5, 5], [[0, 0, 1]] * 10_001, "10,001; expected at most 10,000"),
-    "gap between circles": ([-5, 5, -5, 5], [[0, 0, 1], [2 + 5e-8, 0, 1]], "circle 0: a gap below 1e-07"),
+    "gap between circles": (
+        [-5, 5, -5, 5],
+        [[0, 0, 1], [2 + 5e-8, 0, 1]],
+        "circle 0: a gap below 1e-07",
+    ),
     "gap to the border": ([-5, 5, -5, 5], [[4 - 5e-8, 0, 1]], "circle 0: a gap below 1e-07"),
 }
 
@@ -322,14 +502,23 @@ def test_circle_fault_is_told(fault):
 
 
 def descriptions():
-    yield {"kind": "circles", "unit": "m", "bounds": [-1, 1, -1, 1], "circles": [[0.1, 0.2, 0.3], [1 / 3, 0, 0.1]]}
+    yield {
+        "kind": "circles",
+        "unit": "m",
+        "bounds": [-1, 1, -1, 1],
+        "circles": [[0.1, 0.2, 0.3], [1 / 3, 0, 0.1]],
+    }
     yield {"kind": "grid", "unit": "cell", "file": "song2016.txt", "cell": 10}
     for file in sorted(BENCHMARK_MAPS.glob("*.geojson")):
         yield {"kind": "polygons", "unit": "m", "file": str(file)}
         yield {"kind": "raster", "unit": "m", "file": str(file), "cell": 0.4, "rule": "overlap"}
 
 
-@pytest.mark.parametrize("description", list(descriptions()), ids=lambda each: f"{each['kind']} {Path(each.get('file', '')).stem}")
+@pytest.mark.parametrize(
+    "description",
+    list(descriptions()),
+    ids=lambda each: f"{each['kind']} {Path(each.get('file', '')).stem}",
+)
 def test_text_gives_a_workspace_back_bit_by_bit(description):
     text = files.to_json(files.load(description, MAPS))
     assert files.to_json(files.from_json(text)) == text
@@ -339,10 +528,14 @@ RANDOM = {"bounds": [-10, 10, -10, 10], "radius": 2.0, "circles": 10, "unit": "u
 
 
 def test_layout_depends_on_its_names_alone_and_is_nested():
-    one, again = (random_circles.layout(RANDOM, "study/random", 3, [(0, 0), (4, 6)]) for _ in range(2))
+    one, again = (
+        random_circles.layout(RANDOM, "study/random", 3, [(0, 0), (4, 6)]) for _ in range(2)
+    )
     assert np.array_equal(one.centres, again.centres)
     assert np.array_equal(random_circles.first(one, 4).centres, one.centres[:4])
-    assert not np.array_equal(one.centres, random_circles.layout(RANDOM, "study/random", 4, [(0, 0), (4, 6)]).centres)
+    assert not np.array_equal(
+        one.centres, random_circles.layout(RANDOM, "study/random", 4, [(0, 0), (4, 6)]).centres
+    )
 
 
 def test_layouts_leave_the_ends_free():

@@ -16,18 +16,29 @@ STRAIGHT = ("polyline", [0.0, 0, 2, 0])
 
 
 def arc(radius):
-    """A quarter of a circle, as one cubic piece; its largest curvature is within 2 % of 1 / radius."""
+    """A quarter of a circle, as one cubic piece; its largest curvature is within 2 % of 1 /
+    radius.
+    """
     k = 4 / 3 * math.tan(math.pi / 8)
     return "bezier", [radius * each for each in (0.0, 0, k, 0, 1, 1 - k, 1, 1)]
 
 
 def run(condition, method, length, path, *, cpu=1.0, feasible=True):
-    values = {"problem": condition, "condition": condition, "method": method, "length": length, "cpu_s": cpu, "feasible": feasible}
+    values = {
+        "problem": condition,
+        "condition": condition,
+        "method": method,
+        "length": length,
+        "cpu_s": cpu,
+        "feasible": feasible,
+    }
     return values | {"path_curve": path[0], "path_points": path[1]}
 
 
 def rows(*runs):
-    return worth.measured({"only": Results(pd.DataFrame(runs), {}, pd.DataFrame())}, "base").set_index("method")
+    return worth.measured(
+        {"only": Results(pd.DataFrame(runs), {}, pd.DataFrame())}, "base"
+    ).set_index("method")
 
 
 def test_ratios_of_medians_and_their_median():
@@ -56,7 +67,12 @@ def test_failed_runs_count_in_the_share_and_in_the_time_but_not_in_the_length():
         run("b", "tried", 1.0, arc(0.1), cpu=5.0, feasible=False),
         run("b", "tried", 1.0, arc(0.1), cpu=5.0, feasible=False),
     ).loc["tried"]
-    assert (found["feasible"], found["feasible_baseline"], found["conditions"], found["compared"]) == (0.25, 1.0, 2, 1)
+    assert (
+        found["feasible"],
+        found["feasible_baseline"],
+        found["conditions"],
+        found["compared"],
+    ) == (0.25, 1.0, 2, 1)
     assert (found["length"], found["curvature"], found["cpu"]) == (1.2, 1.0, 4.0)
 
 
@@ -76,13 +92,28 @@ def test_corners_curve_without_limit_and_a_straight_baseline_is_no_measure():
 
 
 def test_experiments_are_paired_each_with_its_own_baseline():
-    one = Results(pd.DataFrame([run("a", "base", 10.0, arc(1.0)), run("a", "tried", 20.0, arc(1.0))]), {}, pd.DataFrame())
-    other = Results(pd.DataFrame([run("a", "base", 100.0, arc(1.0)), run("a", "tried", 400.0, arc(1.0))]), {}, pd.DataFrame())
+    one = Results(
+        pd.DataFrame([run("a", "base", 10.0, arc(1.0)), run("a", "tried", 20.0, arc(1.0))]),
+        {},
+        pd.DataFrame(),
+    )
+    other = Results(
+        pd.DataFrame([run("a", "base", 100.0, arc(1.0)), run("a", "tried", 400.0, arc(1.0))]),
+        {},
+        pd.DataFrame(),
+    )
     assert worth.measured({"one": one, "other": other}, "base")["length"].tolist() == [3.0]
 
 
 def described(**changes):
-    row = {"study": "one", "method": "tried", "baseline": "base", "conditions": 1, "feasible": 1.0, "feasible_baseline": 1.0}
+    row = {
+        "study": "one",
+        "method": "tried",
+        "baseline": "base",
+        "conditions": 1,
+        "feasible": 1.0,
+        "feasible_baseline": 1.0,
+    }
     row |= {"compared": 1, "length": 1.25, "bent": 1, "curvature": 2.0, "cpu": 8.0}
     return row | changes
 
@@ -92,13 +123,20 @@ def described(**changes):
     [
         ({}, "Of the 1 feasible as often as the baseline, none is shorter or curves less."),
         ({"feasible": 0.5}, "No method is feasible as often as the baseline."),
-        ({"length": 0.9995}, "Of the 1 feasible as often as the baseline, none is shorter or curves less."),
+        (
+            {"length": 0.9995},
+            "Of the 1 feasible as often as the baseline, none is shorter or curves less.",
+        ),
         (
             {"curvature": 0.5},
-            "Of the 1 feasible as often as the baseline, 1 is shorter or curves less; the least curved, tried, has 0.5 times the "
+            "Of the 1 feasible as often as the baseline, 1 is shorter or curves less; the least "
+            "curved, tried, has 0.5 times the "
             "curvature, 1.25 times the length and 8 times the CPU time.",
         ),
-        ({"compared": 0, "length": np.nan, "curvature": np.nan, "feasible": 0.0}, "No method is feasible as often as the baseline."),
+        (
+            {"compared": 0, "length": np.nan, "curvature": np.nan, "feasible": 0.0},
+            "No method is feasible as often as the baseline.",
+        ),
     ],
 )
 def test_the_verdict_follows_from_the_numbers(changes, verdict):
@@ -106,9 +144,17 @@ def test_the_verdict_follows_from_the_numbers(changes, verdict):
 
 
 def test_the_section_has_a_sentence_for_each_study():
-    table = pd.DataFrame([described(), described(study="two", cpu=1234.5), described(study="two", method="cornered", curvature=math.inf)])
+    table = pd.DataFrame(
+        [
+            described(),
+            described(study="two", cpu=1234.5),
+            described(study="two", method="cornered", curvature=math.inf),
+        ]
+    )
     paragraphs = worth.section(table, {"one": "The first", "two": "The second"})
-    assert paragraphs[2].startswith("**The first** 1 method: feasible in 100 % of the runs (baseline: 100 %), at 8 times")
+    assert paragraphs[2].startswith(
+        "**The first** 1 method: feasible in 100 % of the runs (baseline: 100 %), at 8 times"
+    )
     assert "2 methods" in paragraphs[3]
     assert "at 8 to 1,230 times the baseline's CPU time" in paragraphs[3]
     assert "those of 1 have corners" in paragraphs[3]
@@ -117,13 +163,25 @@ def test_the_section_has_a_sentence_for_each_study():
 
 def test_the_section_stands_in_the_summary():
     comparison = pd.DataFrame(
-        {"method": ["tried"], "metric": ["length"], "statistic": ["mean"], "value_published": [1.0], "value_ours_scaled": [1.0]}
+        {
+            "method": ["tried"],
+            "metric": ["length"],
+            "statistic": ["mean"],
+            "value_published": [1.0],
+            "value_ours_scaled": [1.0],
+        }
     )
     numbers = summary.numbers(
-        {("one", "table1"): comparison.assign(in_range=True, possible=True, n_published=1, verdict="agrees", why="", primary=True)}
+        {
+            ("one", "table1"): comparison.assign(
+                in_range=True, possible=True, n_published=1, verdict="agrees", why="", primary=True
+            )
+        }
     )
     claims = pd.DataFrame(columns=["study", "id", "primary", "finding", "verdict"])
-    text = summary.report(numbers, claims, pd.DataFrame([described()]), {"one": "The first"}, "full")
+    text = summary.report(
+        numbers, claims, pd.DataFrame([described()]), {"one": "The first"}, "full"
+    )
     assert worth.sentence(pd.DataFrame([described()])) in text
 
 
@@ -131,8 +189,18 @@ def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
     """Its cells would be those of either side, as rounding has it."""
     grid = from_lines(["....", ".##.", "...."], cell=1.0, unit="m")
     problem = Problem("room", grid, (1.5, 0.5), (3.5, 2.5))
-    along, clear = np.array([1.5, 0.5, 1, 1, 1, 2, 3.5, 2.5]), np.array([1.5, 0.5, 3.5, 0.5, 3.5, 2.5])
-    runs = pd.DataFrame({"id": ["along", "clear"], "problem": "room", "path_curve": "polyline", "path_points": [along, clear]})
+    along, clear = (
+        np.array([1.5, 0.5, 1, 1, 1, 2, 3.5, 2.5]),
+        np.array([1.5, 0.5, 3.5, 0.5, 3.5, 2.5]),
+    )
+    runs = pd.DataFrame(
+        {
+            "id": ["along", "clear"],
+            "problem": "room",
+            "path_curve": "polyline",
+            "path_points": [along, clear],
+        }
+    )
     runs = runs.assign(octile_bound=3.5, feasible=True)
     for name in ("cells4", "cells8"):
         found = metrics.values(runs, name, {"room": problem})
@@ -147,5 +215,7 @@ def test_a_square_corner_is_one():
 
 
 def test_equal_curvature_is_not_less():
-    own = pd.DataFrame([described(curvature=1.0), described(curvature=0.9995), described(curvature=0.9)])
+    own = pd.DataFrame(
+        [described(curvature=1.0), described(curvature=0.9995), described(curvature=0.9)]
+    )
     assert "those of 1 of 3 methods curve less" in worth.sentence(own)

@@ -23,7 +23,9 @@ KEPT = (".cache/kernels", ".cache/syntax")
 
 
 def copy(tree: Path) -> Path:
-    """Copy the tree to a new folder, with a configuration that names song2016 alone; without environment and results."""
+    """Copy the tree to a new folder, with a configuration that names song2016 alone; without
+    environment and results.
+    """
     for name in (*NAMES, *(kept for kept in KEPT if (ROOT / kept).exists())):
         source, copied = ROOT / name, tree / name
         copied.parent.mkdir(parents=True, exist_ok=True)

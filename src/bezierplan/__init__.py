@@ -1,4 +1,5 @@
-"""Smooth robot paths by genetic algorithms, particle swarms and exact geometry, and the experiments of five papers on them.
+"""Smooth robot paths by genetic algorithms, particle swarms and exact geometry, and the experiments
+of five papers on them.
 
 The public names are those of `__all__`; they are imported when they are first used.
 """
@@ -29,7 +30,8 @@ __all__ = [  # names of `api`, found by `__getattr__`
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module 'bezierplan' has no attribute {name!r}")
-    # Not an import statement: no module depends on the public names only because it lies in this package.
+    # Not an import statement: no module depends on the public names only because it lies in this
+    # package.
     return getattr(import_module("bezierplan.api"), name)
 
 

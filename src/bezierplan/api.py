@@ -1,4 +1,5 @@
-"""The public interface: `import bezierplan as bp`, then `bp.plan`, `bp.check`, `bp.shortest_path` and the rest.
+"""The public interface: `import bezierplan as bp`, then `bp.plan`, `bp.check`, `bp.shortest_path`
+and the rest.
 
 The command line and the documentation use the same functions.
 """
@@ -50,22 +51,25 @@ class Judged:
     length : float
         Exact arc length, in the map's unit; nan without a path.
     feasible : bool
-        Whether the path stays out of every obstacle and within the border; with a footprint, whether that does.
+        Whether the path stays out of every obstacle and within the border; with a footprint,
+        whether that does.
     collision : tuple of float or None
         The first point (x, y) of the path at which it or the footprint enters an obstacle.
     depth : float
         How deeply the path itself enters, in the map's unit; 0 if it does not.
     clearance : float
-        Least distance of the path, or of the footprint along it, to an obstacle or the border of the map itself, in the map's unit; 0 if it
-        enters one.
+        Least distance of the path, or of the footprint along it, to an obstacle or the border of
+        the map itself, in the map's unit; 0 if it enters one.
     robot_radius : float
-        The clearance that a feasible path keeps, in the map's unit; of a footprint, the radius of the circle within it.
+        The clearance that a feasible path keeps, in the map's unit; of a footprint, the radius of
+        the circle within it.
     footprint : Footprint or None
         The robot's outline, which turns with the direction of travel.
     curvature : float
         Largest absolute curvature of samples, in 1/unit; corners have none.
     curvature_bound : float
-        What it is nowhere more than, certified by subdivision; infinite at a cusp, and where the curve stands still.
+        What it is nowhere more than, certified by subdivision; infinite at a cusp, and where the
+        curve stands still.
     curvature_jump : float
         Its largest jump between two pieces of the path; infinite at a corner.
     corners : bool
@@ -105,7 +109,8 @@ class Judged:
         n : int, optional
             Number of points, both ends included.
         step : float, optional
-            Largest distance between two points, in the map's unit. Exactly one of `n` and `step` is given.
+            Largest distance between two points, in the map's unit. Exactly one of `n` and `step` is
+            given.
 
         Returns
         -------
@@ -124,7 +129,9 @@ class Judged:
         return found._replace(x=found.x + x, y=found.y + y)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are returned."""
+        """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are
+        returned.
+        """
         from bezierplan.figures import drawn_path
         from bezierplan.running import legs, problems
         from bezierplan.workspaces import shifted
@@ -141,19 +148,25 @@ class Judged:
         return axes
 
     def to_picture(self, file: str | File) -> None:
-        """Draw the same with a legend into a file whose suffix matplotlib knows, such as .svg or .png."""
+        """Draw the same with a legend into a file whose suffix matplotlib knows, such as .svg or
+        .png.
+        """
         from bezierplan.figures import drawn_path
 
         drawn_path.save(File(file), self.plot)
 
     def to_csv(self, file: str | File, *, step: float | None = None) -> None:
-        """Write distance, x, y, heading and curvature along the path; `step` as in `sample`, by default a thousandth of the length."""
+        """Write distance, x, y, heading and curvature along the path; `step` as in `sample`, by
+        default a thousandth of the length.
+        """
         from bezierplan.geometry import path_files
 
         path_files.write_csv(File(file), self.sample(step=step or self.length / 1000))
 
     def to_geojson(self, file: str | File, *, step: float | None = None) -> None:
-        """Write the path as a GeoJSON feature of kind LineString, with the verdict among its properties."""
+        """Write the path as a GeoJSON feature of kind LineString, with the verdict among its
+        properties.
+        """
         from bezierplan.geometry import path_files
 
         verdict = {"feasible": self.feasible, "length": self.length, "clearance": self.clearance}
@@ -167,7 +180,9 @@ class Judged:
 
     def _path(self) -> Path:
         if self.path is None:
-            raise ValueError("no path was found, so there is nothing to sample, to draw or to write")
+            raise ValueError(
+                "no path was found, so there is nothing to sample, to draw or to write"
+            )
         return self.path
 
 
@@ -192,10 +207,11 @@ class Answer(Judged):
     stop : str
         Why it ended.
     turning_radius : float
-        Radius of the tightest turn, where the planner is `rounded_shortest_path` or `dubins_search`: 0 where a corner is left, infinite
-        without turns; nan of other planners.
+        Radius of the tightest turn, where the planner is `rounded_shortest_path` or
+        `dubins_search`: 0 where a corner is left, infinite without turns; nan of other planners.
     planned_radius : float
-        Radius of the disc for which the path was planned, in the map's unit: with a footprint, from the circle within it to that around it.
+        Radius of the disc for which the path was planned, in the map's unit: with a footprint, from
+        the circle within it to that around it.
     """
 
     method: str
@@ -211,9 +227,11 @@ class Answer(Judged):
 
 @dataclass(frozen=True)
 class Shortest:
-    """The exact shortest path: its length, in the map's unit (infinite without a free path), and its points (n, 2).
+    """The exact shortest path: its length, in the map's unit (infinite without a free path), and
+    its points (n, 2).
 
-    Among circles the points are the vertices of a chain of chords and tangents that is within 1e-6 of the path.
+    Among circles the points are the vertices of a chain of chords and tangents that is within 1e-6
+    of the path.
     """
 
     length: float
@@ -237,21 +255,24 @@ def read_map(
     Parameters
     ----------
     file : str or Path
-        GeoJSON polygons (.geojson, .json), as GIS programs write them, also in projected coordinates; an occupancy map of ROS's map_server
-        (.yaml), or an image alone (.png, .pgm, .bmp); a MovingAI grid (.map), cells as text (.txt), or shapes of a drawing (.svg).
+        GeoJSON polygons (.geojson, .json), as GIS programs write them, also in projected
+        coordinates; an occupancy map of ROS's map_server (.yaml), or an image alone (.png, .pgm,
+        .bmp); a MovingAI grid (.map), cells as text (.txt), or shapes of a drawing (.svg).
     cell : float, optional
-        Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that need cells.
+        Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that
+        need cells.
     rule : {"overlap", "centre"}, optional
         Which cells polygons occupy; overlap by default.
     robot_radius : float, optional
-        Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. Verdicts tell the clearance to the map itself.
+        Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks.
+        Verdicts tell the clearance to the map itself.
     unit : str, optional
         Name of the unit of length; by default m, of grids cell.
     margin : float, optional
         Of GeoJSON without a border: how far the border lies from the obstacles, in the map's unit.
     resolution : float, optional
-        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and dark pixels are occupied. Of a drawing:
-        length of a user unit, 1 by default.
+        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and
+        dark pixels are occupied. Of a drawing: length of a user unit, 1 by default.
     unknown : {"occupied", "free"}, optional
         What pixels of a ROS map or an image count as that are unknown; occupied by default.
     most_pixels : int, optional
@@ -271,7 +292,9 @@ def read_map(
 
     source = File(file)
     pixels = {"resolution": resolution, "unknown": unknown, "most_pixels": most_pixels}
-    description = map_files.described(source, cell=cell, rule=rule, unit=unit, margin=margin, **pixels, cells=cell is not None)
+    description = map_files.described(
+        source, cell=cell, rule=rule, unit=unit, margin=margin, **pixels, cells=cell is not None
+    )
     return map_files.read(source, description, robot_radius)
 
 
@@ -305,7 +328,9 @@ def shortest_path(problem: Problem) -> Shortest:
 
     regions = problems.remembered()
     placed = _placed(problem, regions)
-    bound = shortest_paths.shortest_path(shifted.near_problem(placed), blocked=regions(placed.workspace))
+    bound = shortest_paths.shortest_path(
+        shifted.near_problem(placed), blocked=regions(placed.workspace)
+    )
     return Shortest(bound.length, bound.points + shifted.shift_of(placed.workspace))
 
 
@@ -318,8 +343,8 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     path : Path
         A curve kind and its control points (n, 2); its ends need not be those of the problem.
     footprint : sequence of tuple of float, optional
-        Corners (x, y) of the robot, a convex polygon, in the map's unit: x ahead and y to the left of the point that follows the path. At a
-        corner of the path the robot turns on the spot.
+        Corners (x, y) of the robot, a convex polygon, in the map's unit: x ahead and y to the left
+        of the point that follows the path. At a corner of the path the robot turns on the spot.
 
     Returns
     -------
@@ -328,8 +353,9 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     Raises
     ------
     ValueError
-        For a curve kind that is unknown, points of the wrong shape, or coordinates that are not finite or too large; for a footprint that
-        is not convex, or on a map that has grown by a robot's radius.
+        For a curve kind that is unknown, points of the wrong shape, or coordinates that are not
+        finite or too large; for a footprint that is not convex, or on a map that has grown by a
+        robot's radius.
 
     Examples
     --------
@@ -347,19 +373,26 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     footprints.check_map(outline, problem.workspace, 0.0)
     placed = _placed(problem, regions)
     x, y = shifted.shift_of(placed.workspace)
-    bound = shortest_paths.shortest_path(shifted.near_problem(placed), blocked=regions(placed.workspace))
+    bound = shortest_paths.shortest_path(
+        shifted.near_problem(placed), blocked=regions(placed.workspace)
+    )
     judged = verdict(placed, curves.moved(path, (-x, -y)), bound.length, regions, footprint=outline)
     return Judged(**judged | {"path": path})
 
 
 def verdict(
-    problem: Problem, path: Path | None, shortest: float, regions: Regions, via: Via = (), footprint: Footprint | None = None
+    problem: Problem,
+    path: Path | None,
+    shortest: float,
+    regions: Regions,
+    via: Via = (),
+    footprint: Footprint | None = None,
 ) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
-    path: on the map where it is computed with (`shifted`). shortest: length of the exact shortest path. regions: the blocked regions of
-    maps. Raises ValueError if the path is feasible and yet closer to the map's own obstacles than the robot's radius, so that the checker
-    is wrong.
+    path: on the map where it is computed with (`shifted`). shortest: length of the exact shortest
+    path. regions: the blocked regions of maps. Raises ValueError if the path is feasible and yet
+    closer to the map's own obstacles than the robot's radius, so that the checker is wrong.
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
     from bezierplan.geometry import checker, curves
@@ -369,21 +402,44 @@ def verdict(
     from bezierplan.workspaces.grown import grown_of, original
 
     grown = grown_of(problem.workspace)
-    asked = {"robot_radius": grown.radius if grown else 0.0, "via": tuple(via), "shortest": shortest, "footprint": footprint}
+    asked = {
+        "robot_radius": grown.radius if grown else 0.0,
+        "via": tuple(via),
+        "shortest": shortest,
+        "footprint": footprint,
+    }
     if path is None:
-        nothing = dict.fromkeys(("length", "depth", "clearance", "curvature", "curvature_bound", "curvature_jump"), math.nan)
-        return {"problem": problem, "path": None, **nothing, "feasible": False, "collision": None, "corners": False, **asked}
+        nothing = dict.fromkeys(
+            ("length", "depth", "clearance", "curvature", "curvature_bound", "curvature_jump"),
+            math.nan,
+        )
+        return {
+            "problem": problem,
+            "path": None,
+            **nothing,
+            "feasible": False,
+            "collision": None,
+            "corners": False,
+            **asked,
+        }
     pieces = curves.bezier_pieces(path)
     verdict = checker.check(pieces, regions(problem.workspace))
-    clearance = checker.check(pieces, regions(grown.original)).clearance if grown else verdict.clearance
+    clearance = (
+        checker.check(pieces, regions(grown.original)).clearance if grown else verdict.clearance
+    )
     if grown and verdict.feasible and clearance < grown.radius - robot.TOLERANCE:
-        raise ValueError(f"its path is feasible, but {clearance:.12g} from an obstacle, less than the robot's radius: the checker is wrong")
+        raise ValueError(
+            f"its path is feasible, but {clearance:.12g} from an obstacle, less than the robot's "
+            f"radius: the checker is wrong"
+        )
     jump = curves.curvature_jump(path)
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
     shift = shifted.shift_of(problem.workspace)
     feasible, collision_at = verdict.feasible, verdict.collision_at
     if footprint and feasible:
-        feasible, collision_at, clearance, _ = check_footprint(pieces, regions(original(problem.workspace)), footprint)
+        feasible, collision_at, clearance, _ = check_footprint(
+            pieces, regions(original(problem.workspace)), footprint
+        )
     collision = None if feasible else tuple((curves.point_at(path, collision_at) + shift).tolist())
     return {
         "problem": problem,
@@ -419,28 +475,34 @@ def plan(
     ----------
     problem : Problem
     method : str, module or callable, optional
-        A study's method such as ``"song2016/smooth"``, whose settings are the defaults; a planner such as ``"prm"``, with the settings of
-        the first study that uses it; the path of a planner's file; or a planner's module or its function ``plan``. Without it, the exact
+        A study's method such as ``"song2016/smooth"``, whose settings are the defaults; a planner
+        such as ``"prm"``, with the settings of the first study that uses it; the path of a
+        planner's file; or a planner's module or its function ``plan``. Without it, the exact
         shortest path with rounded corners.
     seed : int
         Of the random numbers.
     robot_radius : float
-        Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if the map was read with one.
+        Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if
+        the map was read with one.
     footprint : sequence of tuple of float, optional
-        In place of a radius: corners (x, y) of the robot, a convex polygon, x ahead and y to the left of the point that follows the path.
-        Discs are planned for, from the circle within the footprint to that around it, until the footprint itself is free along the path.
+        In place of a radius: corners (x, y) of the robot, a convex polygon, x ahead and y to the
+        left of the point that follows the path. Discs are planned for, from the circle within the
+        footprint to that around it, until the footprint itself is free along the path.
     via : sequence of tuple of float
-        Way points (x, y), in their order: the path joins paths from one to the next. For the planners without a method, `dubins_search`
-        and `shortest_path`.
+        Way points (x, y), in their order: the path joins paths from one to the next. For the
+        planners without a method, `dubins_search` and `shortest_path`.
     smooth : {"arcs", "continuous"}
-        Whether the path turns along arcs, or with a curvature that rises and falls along transitions, wherever there is room for these. For
-        the planners without a method and `dubins_search`.
+        Whether the path turns along arcs, or with a curvature that rises and falls along
+        transitions, wherever there is room for these. For the planners without a method and
+        `dubins_search`.
     strict : bool
-        Whether a turning radius that cannot be kept everywhere is an error, a footprint that is free along no path, and a curvature that
-        should be continuous and jumps. For the planners without a method and `dubins_search`.
+        Whether a turning radius that cannot be kept everywhere is an error, a footprint that is
+        free along no path, and a curvature that should be continuous and jumps. For the planners
+        without a method and `dubins_search`.
     **settings
-        Settings in place of the method's own. Without a method: `turning_radius`; `start_heading` and `target_heading`, directions at the
-        ends, in radians counterclockwise from the x-axis, None for any.
+        Settings in place of the method's own. Without a method: `turning_radius`; `start_heading`
+        and `target_heading`, directions at the ends, in radians counterclockwise from the x-axis,
+        None for any.
 
     Returns
     -------
@@ -449,8 +511,9 @@ def plan(
     Raises
     ------
     ValueError
-        Names the argument or the setting and what is expected: an unknown method, a wrong setting, a start in an obstacle, a map that the
-        planner does not serve, a turning radius that cannot be kept where `strict` asks for it.
+        Names the argument or the setting and what is expected: an unknown method, a wrong setting,
+        a start in an obstacle, a map that the planner does not serve, a turning radius that cannot
+        be kept where `strict` asks for it.
     TypeError
         For a problem that is no `Problem`, or a method that is none of the above.
 
@@ -475,7 +538,15 @@ def plan(
     legs.check_planner(_planner_name(*named[:2]), via, strict, smooth)
     served = getattr(named[1], "workspaces", None)
     if footprint is None:
-        planned = _planned(_placed(_grown(problem, robot_radius), regions, served), named, seed, via, smooth, settings, regions)
+        planned = _planned(
+            _placed(_grown(problem, robot_radius), regions, served),
+            named,
+            seed,
+            via,
+            smooth,
+            settings,
+            regions,
+        )
     else:
         outline = outline_of(footprint)
         footprints.check_map(outline, problem.workspace, robot_radius)
@@ -494,8 +565,12 @@ def plan(
         planned = footprints.first_that_holds(outline, attempt, lambda answer: answer.feasible)
     if strict:
         footprints.check_held(planned.footprint, planned.feasible)
-        legs.check_continuous(smooth, planned.curvature_jump, planned.curvature_bound, problem.workspace.unit)
-        legs.check_kept(planned.settings["turning_radius"], planned.turning_radius, problem.workspace.unit)
+        legs.check_continuous(
+            smooth, planned.curvature_jump, planned.curvature_bound, problem.workspace.unit
+        )
+        legs.check_kept(
+            planned.settings["turning_radius"], planned.turning_radius, problem.workspace.unit
+        )
     return planned
 
 
@@ -510,9 +585,11 @@ def _planned(
     footprint: Footprint | None = None,
     judged_as: Answer | None = None,
 ) -> Answer:
-    """The answer of a method, given by name, module and settings, to a problem on a map for the robot's centre.
+    """The answer of a method, given by name, module and settings, to a problem on a map for the
+    robot's centre.
 
-    judged_as: an answer on the map and by the shortest path of which this one is judged, if not by its own.
+    judged_as: an answer on the map and by the shortest path of which this one is judged, if not by
+    its own.
     """
     from bezierplan.running import answer as door
     from bezierplan.running import legs
@@ -535,7 +612,11 @@ def _planned(
     except door.Unfit as fault:
         raise ValueError(f"the answer of planner {name}: {fault}") from None
     grown = grown_of(problem.workspace)
-    home, shortest = (judged_as.problem, judged_as.shortest) if judged_as else (problem, legs.whole(bounds).length)
+    home, shortest = (
+        (judged_as.problem, judged_as.shortest)
+        if judged_as
+        else (problem, legs.whole(bounds).length)
+    )
     return Answer(
         **verdict(home, answer.path, shortest, regions, via, footprint),
         turning_radius=legs.kept(planner, answer, chosen),
@@ -554,7 +635,9 @@ def _planner_name(name: str, module: Any) -> str:
     return getattr(module, "__name__", name).removeprefix("bezierplan.planners.")
 
 
-def _answered(problem: Problem, name: str, module: Any, seed: int, settings: Mapping[str, Any]) -> Plan:
+def _answered(
+    problem: Problem, name: str, module: Any, seed: int, settings: Mapping[str, Any]
+) -> Plan:
     """The answer of any planner, which gets a copy of the problem."""
     from bezierplan.running import answer as door
     from bezierplan.running.columns import TAKEN
@@ -583,7 +666,8 @@ def _grown(problem: Problem, radius: float) -> Problem:
 
 
 def _placed(problem: Problem, regions: Regions, served: Collection[str] | None = None) -> Problem:
-    """A problem whose start and target are known to be free, in the workspace that suits a planner of some kinds, None for all.
+    """A problem whose start and target are known to be free, in the workspace that suits a planner
+    of some kinds, None for all.
 
     Raises TypeError and ValueError.
     """
@@ -592,7 +676,9 @@ def _placed(problem: Problem, regions: Regions, served: Collection[str] | None =
 
     _check_problem(problem)
     workspace = robot.suited(problem.workspace, served)
-    return problems.build(problem.name, {"start": problem.start, "target": problem.target}, workspace, regions)
+    return problems.build(
+        problem.name, {"start": problem.start, "target": problem.target}, workspace, regions
+    )
 
 
 class _Function:
@@ -602,14 +688,20 @@ class _Function:
         self.plan = function
 
 
-def _method(method: Method | None, problem: Problem, settings: Mapping[str, Any]) -> tuple[str, Any, dict[str, Any]]:
-    """Name, module and settings of a method; without one, of a planner that has the given settings."""
+def _method(
+    method: Method | None, problem: Problem, settings: Mapping[str, Any]
+) -> tuple[str, Any, dict[str, Any]]:
+    """Name, module and settings of a method; without one, of a planner that has the given
+    settings.
+    """
     from bezierplan.planners import known_planners, planner_module
     from bezierplan.running import legs
     from bezierplan.schema.checked import closest
 
     if method is None:
-        method = legs.DRIVEN if {"start_heading", "target_heading"} & set(settings) else legs.ROUNDED
+        method = (
+            legs.DRIVEN if {"start_heading", "target_heading"} & set(settings) else legs.ROUNDED
+        )
     if isinstance(method, str) and method in legs.TURNING:
         return method, planner_module(method), legs.preset(method, problem.workspace)
     if isinstance(method, ModuleType):
@@ -617,7 +709,10 @@ def _method(method: Method | None, problem: Problem, settings: Mapping[str, Any]
     if callable(method):
         return getattr(method, "__name__", "a function"), _Function(method), {}
     if not isinstance(method, str):
-        raise TypeError(f"method: is a {type(method).__name__}; expected a name, a planner's module, or its function plan")
+        raise TypeError(
+            f"method: is a {type(method).__name__}; expected a name, a planner's module, or its "
+            f"function plan"
+        )
     if method.endswith(".py"):
         if not File(method).is_file():
             raise ValueError(f"method: {method}: no such file")
@@ -626,7 +721,9 @@ def _method(method: Method | None, problem: Problem, settings: Mapping[str, Any]
         return method, planner_module(method), _first_use(method)
     key, _, name = method.partition("/")
     if key not in _keys() or name not in _study(key).methods:
-        raise ValueError(f"method: {method}: unknown{closest(method, [*methods(), *known_planners()])}")
+        raise ValueError(
+            f"method: {method}: unknown{closest(method, [*methods(), *known_planners()])}"
+        )
     return method, planner_module(_study(key).planner(name)), _study(key).resolved(name)
 
 
@@ -663,8 +760,15 @@ def _check_settings(name: str, module: Any, settings: Mapping[str, Any], problem
     served = getattr(module, "workspaces", None)
     kind = KINDS[type(problem.workspace)]
     if served is not None and kind not in served:
-        hint = "; read the map with a cell to have a grid" if "grid" in served and kind == "polygons" else ""
-        raise ValueError(f"problem: {name} serves workspaces of kind {', '.join(served)}, and this one is {kind}{hint}")
+        hint = (
+            "; read the map with a cell to have a grid"
+            if "grid" in served and kind == "polygons"
+            else ""
+        )
+        raise ValueError(
+            f"problem: {name} serves workspaces of kind {', '.join(served)}, and this one is "
+            f"{kind}{hint}"
+        )
     if hasattr(module, "serves"):
         module.serves(problem)
 
@@ -681,7 +785,12 @@ def methods() -> dict[str, str]:
     >>> methods()["song2016/smooth"]
     'binary_genetic'
     """
-    return {f"{key}/{name}": study.planner(name) for key in _keys() for study in [_study(key)] for name in study.methods}
+    return {
+        f"{key}/{name}": study.planner(name)
+        for key in _keys()
+        for study in [_study(key)]
+        for name in study.methods
+    }
 
 
 def results(folder: str | File, experiment: str) -> pd.DataFrame:
@@ -708,18 +817,27 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
 
     runs_folder = File(folder) / "runs"
     if not runs_folder.is_dir():
-        raise ValueError(f"folder: {folder}: no runs here; expected results of a study, such as results/full/song2016")
+        raise ValueError(
+            f"folder: {folder}: no runs here; expected results of a study, such as "
+            f"results/full/song2016"
+        )
     runs: dict[str, list[str]] = {}
-    for chunk in sorted(file for file in runs_folder.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal()):
+    for chunk in sorted(
+        file for file in runs_folder.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal()
+    ):
         runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
         known = [each.name for each in runs_folder.iterdir()]
-        raise ValueError(f"experiment: {experiment}: no runs of it in {runs_folder}{closest(experiment, known)}")
+        raise ValueError(
+            f"experiment: {experiment}: no runs of it in {runs_folder}{closest(experiment, known)}"
+        )
     from bezierplan.analysis import results as stored
     from bezierplan.running.inputs import Files
 
     made = File(folder) / "problems" / experiment
-    return stored.read(Files(runs, f"{made}.parquet", f"{made}.bounds.parquet"), 10**9, experiment).runs
+    return stored.read(
+        Files(runs, f"{made}.parquet", f"{made}.bounds.parquet"), 10**9, experiment
+    ).runs
 
 
 def replay(run: str) -> Answer:
@@ -737,7 +855,8 @@ def replay(run: str) -> Answer:
     Raises
     ------
     ValueError
-        States the unknown part of the name; a drive through a moving world has no single path and is replayed at the command line.
+        States the unknown part of the name; a drive through a moving world has no single path and
+        is replayed at the command line.
     """
     from bezierplan.analysis.results import path_of
     from bezierplan.planners import planner_module, planner_settings
@@ -747,7 +866,10 @@ def replay(run: str) -> Answer:
     made = replays.replay(run, {key: _study(key) for key in _keys()})
     row, study, method = made.runs.iloc[0], run.split("/")[0], run.split("/")[3]
     if made.worlds:
-        raise ValueError(f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan replay`")
+        raise ValueError(
+            f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan "
+            f"replay`"
+        )
     names = planner_settings(planner_module(row["planner"]))
     problem = made.problems[row["problem"]]
     judged = verdict(problem, path_of(row), shortest_path(problem).length, problems.remembered())

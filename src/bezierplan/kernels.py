@@ -1,5 +1,5 @@
-"""Decorators for kernels, the functions that numba compiles: `compiled`, `allocation_free` for those that create no arrays, and `inlined`
-for those that are always part of their caller.
+"""Decorators for kernels, the functions that numba compiles: `compiled`, `allocation_free` for
+those that create no arrays, and `inlined` for those that are always part of their caller.
 """
 
 from collections.abc import Callable
@@ -10,8 +10,8 @@ from numba.core import config
 
 from bezierplan.running.kernel_cache import Kernel
 
-# Options of `njit` as numba sets them itself, and without the entry point that it adds for callers written in C, which takes about a tenth
-# of the time to compile.
+# Options of `njit` as numba sets them itself, and without the entry point that it adds for callers
+# written in C, which takes about a tenth of the time to compile.
 _OPTIONS = {"nopython": True, "boundscheck": None, "no_cfunc_wrapper": True}
 
 # A kernel keeps the signature of its function.
@@ -19,7 +19,9 @@ K = TypeVar("K", bound=Callable[..., Any])
 
 
 def _kernel(function: K, **options: Any) -> K:
-    """A function with the options of all kernels and some more, kept in this package's own cache; itself where numba compiles nothing."""
+    """A function with the options of all kernels and some more, kept in this package's own cache;
+    itself where numba compiles nothing.
+    """
     if config.DISABLE_JIT:
         return function
     kernel = Kernel(function, targetoptions=_OPTIONS | options)
@@ -33,12 +35,15 @@ def compiled(kernel: K) -> K:
 
 
 def allocation_free(kernel: K) -> K:
-    """`compiled` for a kernel that creates no array or list, returns none, and calls only kernels like it.
+    """`compiled` for a kernel that creates no array or list, returns none, and calls only kernels
+    like it.
 
-    Otherwise numba counts the references to every array that is passed to a kernel, with instructions that lock memory: in small kernels
-    that takes most of the time, and much of the time to compile them. numba refuses to compile a kernel that creates an array all the same.
+    Otherwise numba counts the references to every array that is passed to a kernel, with
+    instructions that lock memory: in small kernels that takes most of the time, and much of the
+    time to compile them. numba refuses to compile a kernel that creates an array all the same.
     """
-    # The flag, which numba documents in `numba.extending.register_jitable`, leaves out its run-time library, which allocates and counts.
+    # The flag, which numba documents in `numba.extending.register_jitable`, leaves out its run-time
+    # library, which allocates and counts.
     return _kernel(kernel, _nrt=False)
 
 

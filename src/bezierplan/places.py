@@ -1,4 +1,6 @@
-"""Where things lie: this package, the tree with the studies and the workflow, and the folder of caches."""
+"""Where things lie: this package, the tree with the studies and the workflow, and the folder of
+caches.
+"""
 
 import os
 import sys
@@ -8,7 +10,9 @@ PACKAGE = Path(__file__).parent
 """The folder of this package."""
 
 CHECKOUT = PACKAGE.parent.name == "src" and (PACKAGE.parents[1] / "config" / "studies").is_dir()
-"""Whether this package runs from a clone; otherwise it is installed, and the wheel holds a copy of the tree."""
+"""Whether this package runs from a clone; otherwise it is installed, and the wheel holds a copy of
+the tree.
+"""
 
 TREE = PACKAGE.parents[1] if CHECKOUT else PACKAGE / "tree"
 """The folder with `config`, `workflow`, `profiles` and `docs/outcome`."""
@@ -21,7 +25,9 @@ EXTRA = frozenset(("itables", "jinja2", "pyarrow", "seaborn", "snakemake", "vl_c
 
 
 def cache_folder() -> Path:
-    """The folder of what can be made again: `.cache` in a clone that can be written, and of an installed package the user's own."""
+    """The folder of what can be made again: `.cache` in a clone that can be written, and of an
+    installed package the user's own.
+    """
     if CHECKOUT:
         return (TREE if os.access(TREE, os.W_OK) else Path.home()) / ".cache"
     if sys.platform == "darwin":

@@ -1,9 +1,9 @@
-"""What Snakemake shows while it works: in a terminal a bar a rule with jobs done, jobs in all, and time left; without one a line every 15
-seconds or less often; at the end where the results are, how long it took and what came out, or the one line in which each job that failed
-says why.
+"""What Snakemake shows while it works: in a terminal a bar a rule with jobs done, jobs in all, and
+time left; without one a line every 15 seconds or less often; at the end where the results are, how
+long it took and what came out, or the one line in which each job that failed says why.
 
-Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this one.
-It is the rich logger with other columns.
+Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this
+one. It is the rich logger with other columns.
 """
 
 import re
@@ -12,16 +12,26 @@ from datetime import timedelta
 from logging import LogRecord
 from pathlib import Path
 
-from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from snakemake_interface_logger_plugins.common import LogEvent
 from snakemake_logger_plugin_rich import LogHandler as RichHandler
 
 __all__ = ["LogHandler"]
 
 REASON = "CRITICAL "
-"""What comes, in a job's log, before the line that says why the job failed (`bezierplan.running.log`)."""
+"""What comes, in a job's log, before the line that says why the job failed
+(`bezierplan.running.log`).
+"""
 LOCKED = (
-    "LockException: {}: another Snakemake works in this folder, or was killed here; if none works, free it by `snakemake --unlock` and "
+    "LockException: {}: another Snakemake works in this folder, or was killed here; if none "
+    "works, free it by `snakemake --unlock` and "
     "start again (`make smoke`, `make reproduce` and `make extended` do so themselves)"
 )
 KNOWN: set[str] = set()
@@ -33,7 +43,9 @@ BETWEEN_LINES = 15.0
 class LogHandler(RichHandler):
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.progress.speed_estimate_period = 24 * 3600  # seconds looked back on; the usual 30 are shorter than one job
+        self.progress.speed_estimate_period = (
+            24 * 3600
+        )  # seconds looked back on; the usual 30 are shorter than one job
         self.progress.columns = (
             SpinnerColumn(finished_text="✓"),
             TextColumn("{task.description}"),
@@ -48,7 +60,11 @@ class LogHandler(RichHandler):
         self.folders: set[str] = set()
         self.pages: set[Path] = set()
         self.reasons: list[str] = []
-        self.frames: LogRecord | None = None  # Snakemake's account of a failed job, until it is known whether the job's own is better
+        self.frames: LogRecord | None = (
+            # Snakemake's account of a failed job, until it is known whether the job's own is
+            # better.
+            None
+        )
 
     def emit(self, record: LogRecord) -> None:
         event, exception = getattr(record, "event", None), getattr(record, "exception", None)
@@ -63,7 +79,11 @@ class LogHandler(RichHandler):
         if event == LogEvent.ERROR and exception == "LockException":
             self.reasons.append(LOCKED.format(Path.cwd()))
             return
-        if event == LogEvent.ERROR and exception == "MissingRuleException" and (reason := unknown_target(record.getMessage())):
+        if (
+            event == LogEvent.ERROR
+            and exception == "MissingRuleException"
+            and (reason := unknown_target(record.getMessage()))
+        ):
             self.reasons.append(reason)
             return
         if event is None and record.getMessage().startswith("Elapsed time: "):
@@ -71,8 +91,12 @@ class LogHandler(RichHandler):
         self.show_frames()
         super().emit(record)
         if event == LogEvent.JOB_INFO:
-            self.folders.update(folder for file in record.output or [] if (folder := results_folder(file)))
-            self.pages.update(Path(file) for file in record.output or [] if Path(file).name == "index.html")
+            self.folders.update(
+                folder for file in record.output or [] if (folder := results_folder(file))
+            )
+            self.pages.update(
+                Path(file) for file in record.output or [] if Path(file).name == "index.html"
+            )
         elif event == LogEvent.JOB_FINISHED and not self.console.is_terminal:
             self.show_progress()
         elif event is None and "Complete log" in record.getMessage():
@@ -82,7 +106,10 @@ class LogHandler(RichHandler):
 
     def show_end(self) -> None:
         """Print where the results are, how long it took, what came out, and last the page."""
-        lines = [f"Results: {', '.join(sorted(self.folders))}", f"Time: {shown(time.monotonic() - self.started)}"]
+        lines = [
+            f"Results: {', '.join(sorted(self.folders))}",
+            f"Time: {shown(time.monotonic() - self.started)}",
+        ]
         for page in sorted(self.pages):
             lines += [*headline(page.parent), f"Open {page} in a browser: file://{page.resolve()}"]
         for line in lines:
@@ -112,7 +139,9 @@ class LogHandler(RichHandler):
             self.console.print(self.reasons.pop(0), soft_wrap=True, highlight=False, markup=False)
 
     def show_progress(self) -> None:
-        """Print a line, unless the last one is too fresh: jobs done, jobs in all, time elapsed and left if all jobs take equally long."""
+        """Print a line, unless the last one is too fresh: jobs done, jobs in all, time elapsed and
+        left if all jobs take equally long.
+        """
         now = time.monotonic()
         done, total = self.event_handler.completed, self.event_handler.total_jobs
         if done < total and now - self.last_line < BETWEEN_LINES:
@@ -120,13 +149,23 @@ class LogHandler(RichHandler):
         self.last_line = now
         elapsed = now - self.started
         left = f", about {shown(elapsed / done * (total - done))} left" if done < total else ""
-        self.console.print(f"{done} of {total} jobs done, {shown(elapsed)} elapsed{left}", soft_wrap=True, highlight=False)
+        self.console.print(
+            f"{done} of {total} jobs done, {shown(elapsed)} elapsed{left}",
+            soft_wrap=True,
+            highlight=False,
+        )
 
 
 def results_folder(file: str) -> str | None:
-    """The folder of results that a reader looks into for an output file, such as results/full/song2016; None for other files."""
+    """The folder of results that a reader looks into for an output file, such as
+    results/full/song2016; None for other files.
+    """
     parts = Path(file).parts
-    return "/".join(parts[: min(3, len(parts) - 1)]) if parts[0] == "results" and len(parts) > 2 else None
+    return (
+        "/".join(parts[: min(3, len(parts) - 1)])
+        if parts[0] == "results" and len(parts) > 2
+        else None
+    )
 
 
 def unknown_target(message: str) -> str:
@@ -137,16 +176,24 @@ def unknown_target(message: str) -> str:
     if not found or not KNOWN:
         return ""
     if "/" in found[1]:
-        return f"{found[1]}: no rule makes this file; `python -m bezierplan list` lists what there is"
+        return (
+            f"{found[1]}: no rule makes this file; `python -m bezierplan list` lists what there is"
+        )
     return f"{found[1]}: no target{closest(found[1], KNOWN)}"
 
 
 def headline(folder: Path) -> list[str]:
-    """The headline of the results in a folder, as its summary has it, one sentence per line; none if there is no summary."""
+    """The headline of the results in a folder, as its summary has it, one sentence per line; none
+    if there is no summary.
+    """
     file = folder / "summary.md"
     if not file.is_file():
         return []
-    bold = [line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("**Of ") and line.endswith("**")]
+    bold = [
+        line
+        for line in file.read_text(encoding="utf-8").splitlines()
+        if line.startswith("**Of ") and line.endswith("**")
+    ]
     return bold[0].strip("*").replace(". ", ".\n").splitlines() if bold else []
 
 

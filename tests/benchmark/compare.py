@@ -1,14 +1,17 @@
-"""The chaotic swarm beside other libraries: `make compare`, in an environment of its own (requirements.txt).
+"""The chaotic swarm beside other libraries: `make compare`, in an environment of its own
+(requirements.txt).
 
 The first part; the second sets OMPL beside the planners of all studies (compare_planners.py).
 
-All search the same path, between the three circles of tharwat2018 with the public radii, with the same number of evaluations of the same
-objective: ours, compiled, of a whole swarm at once where a library takes that. So the difference in speed is their loop against ours.
-Velocity limit, inertia and learning factors are those of the study's profile `tuned` where a library has them, else its inertia is 0.73;
-how a bound is kept is its own affair.
+All search the same path, between the three circles of tharwat2018 with the public radii, with the
+same number of evaluations of the same objective: ours, compiled, of a whole swarm at once where a
+library takes that. So the difference in speed is their loop against ours. Velocity limit, inertia
+and learning factors are those of the study's profile `tuned` where a library has them, else its
+inertia is 0.73; how a bound is kept is its own affair.
 
-Evaluations a second of one core's CPU time, how often ours is as fast, and how good the paths are over 100 seeds: the share in the good
-corridor (shorter than 8 units and free of collisions; the next one begins above 9), median and quartiles of the objective.
+Evaluations a second of one core's CPU time, how often ours is as fast, and how good the paths are
+over 100 seeds: the share in the good corridor (shorter than 8 units and free of collisions; the
+next one begins above 9), median and quartiles of the objective.
 """
 
 import logging
@@ -45,9 +48,15 @@ SEEDS = 100
 GOOD = 8.0
 
 STUDY = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
-PROBLEM = Problem("public", files.load(STUDY.workspaces["public"].plain(), STUDY.folder), (0.0, 0.0), (4.0, 6.0))
+PROBLEM = Problem(
+    "public", files.load(STUDY.workspaces["public"].plain(), STUDY.folder), (0.0, 0.0), (4.0, 6.0)
+)
 SETTINGS = STUDY.resolved("pso") | STUDY.presets["profile"]["tuned"] | {"stall_limit": 0}
-PARTICLES, ITERATIONS, DIMENSIONS = SETTINGS["particles"], SETTINGS["iterations"], 2 * SETTINGS["control_points"]
+PARTICLES, ITERATIONS, DIMENSIONS = (
+    SETTINGS["particles"],
+    SETTINGS["iterations"],
+    2 * SETTINGS["control_points"],
+)
 EVALUATIONS = PARTICLES * (ITERATIONS + 1)
 LOW, HIGH = np.repeat(np.reshape(PROBLEM.workspace.bounds, (2, 2)).T, DIMENSIONS // 2, axis=1)
 LIMIT = SETTINGS["velocity_limit"] * (HIGH - LOW)
@@ -82,7 +91,9 @@ def ours(method: str) -> Callable[[int], float]:
 def with_pyswarms(seed: int) -> float:
     np.random.seed(seed)  # noqa: NPY002, it draws from the global generator
     options = {"w": 0.73, "c1": SETTINGS["c1"], "c2": SETTINGS["c2"]}
-    swarm = GlobalBestPSO(PARTICLES, DIMENSIONS, options, bounds=(LOW, HIGH), velocity_clamp=(-LIMIT, LIMIT))
+    swarm = GlobalBestPSO(
+        PARTICLES, DIMENSIONS, options, bounds=(LOW, HIGH), velocity_clamp=(-LIMIT, LIMIT)
+    )
     best, _ = swarm.optimize(fitness, ITERATIONS + 1, verbose=False)
     return float(best)
 
@@ -96,18 +107,33 @@ class Curves(PymooProblem):
 
 
 def with_pymoo(algorithm: Callable) -> Callable[[int], float]:
-    return lambda seed: float(minimize(Curves(), algorithm(), ("n_eval", EVALUATIONS), seed=seed).F[0])
+    return lambda seed: float(
+        minimize(Curves(), algorithm(), ("n_eval", EVALUATIONS), seed=seed).F[0]
+    )
 
 
 def pymoo_pso() -> PSO:
     share = SETTINGS["velocity_limit"]
-    return PSO(PARTICLES, w=0.73, c1=SETTINGS["c1"], c2=SETTINGS["c2"], adaptive=False, max_velocity_rate=share, pertube_best=False)
+    return PSO(
+        PARTICLES,
+        w=0.73,
+        c1=SETTINGS["c1"],
+        c2=SETTINGS["c2"],
+        adaptive=False,
+        max_velocity_rate=share,
+        pertube_best=False,
+    )
 
 
 def with_deap(seed: int) -> float:
-    """The swarm of DEAP's documentation (examples/pso/basic), with inertia, positions kept in the field and one evaluation a particle."""
+    """The swarm of DEAP's documentation (examples/pso/basic), with inertia, positions kept in the
+    field and one evaluation a particle.
+    """
     random.seed(seed)
-    swarm = [creator.Particle(random.uniform(low, high) for low, high in zip(LOW, HIGH)) for _ in range(PARTICLES)]
+    swarm = [
+        creator.Particle(random.uniform(low, high) for low, high in zip(LOW, HIGH))
+        for _ in range(PARTICLES)
+    ]
     for particle in swarm:
         particle.speed, particle.best = [0.0] * DIMENSIONS, None
     best, inertia = None, SETTINGS["inertia"]
@@ -129,7 +155,9 @@ def _update(particle: list, best: list, inertia: float) -> None:
     social = (random.uniform(0, SETTINGS["c2"]) * (g - x) for g, x in zip(best, particle))
     moved = map(operator.add, (inertia * v for v in particle.speed), map(operator.add, own, social))
     particle.speed = [max(-limit, min(limit, v)) for v, limit in zip(moved, LIMIT)]
-    particle[:] = [max(low, min(high, x + v)) for x, v, low, high in zip(particle, particle.speed, LOW, HIGH)]
+    particle[:] = [
+        max(low, min(high, x + v)) for x, v, low, high in zip(particle, particle.speed, LOW, HIGH)
+    ]
 
 
 def _copy(particle: list) -> list:
@@ -147,11 +175,16 @@ TOOLBOX.register("evaluate", lambda particle: (float(fitness(np.array([particle]
 
 
 def deap_genetic(seed: int) -> float:
-    """DEAP's simple genetic algorithm: two-point crossover, Gaussian mutation, tournaments of three."""
+    """DEAP's simple genetic algorithm: two-point crossover, Gaussian mutation, tournaments of
+    three.
+    """
     from deap import algorithms
 
     random.seed(seed)
-    swarm = [creator.Particle(random.uniform(low, high) for low, high in zip(LOW, HIGH)) for _ in range(PARTICLES)]
+    swarm = [
+        creator.Particle(random.uniform(low, high) for low, high in zip(LOW, HIGH))
+        for _ in range(PARTICLES)
+    ]
     best, evaluated = tools.HallOfFame(1), 0
     toolbox = base.Toolbox()
     toolbox.register("evaluate", TOOLBOX.evaluate)
@@ -159,18 +192,29 @@ def deap_genetic(seed: int) -> float:
     toolbox.register("mutate", tools.mutGaussian, mu=0, sigma=1.0, indpb=0.2)
     toolbox.register("select", tools.selTournament, tournsize=3)
     while evaluated < EVALUATIONS:
-        swarm, log = algorithms.eaSimple(swarm, toolbox, 0.7, 0.3, 1, halloffame=best, verbose=False)
+        swarm, log = algorithms.eaSimple(
+            swarm, toolbox, 0.7, 0.3, 1, halloffame=best, verbose=False
+        )
         evaluated += sum(log.select("nevals"))
     return best[0].fitness.values[0]
 
 
 def with_mealpy(algorithm: Callable[[], Optimizer]) -> Callable[[int], float]:
-    field = {"obj_func": lambda z: float(fitness(z[None])[0]), "bounds": FloatVar(lb=LOW, ub=HIGH), "minmax": "min", "log_to": None}
-    return lambda seed: algorithm().solve(field, seed=seed, termination={"max_fe": EVALUATIONS}).target.fitness
+    field = {
+        "obj_func": lambda z: float(fitness(z[None])[0]),
+        "bounds": FloatVar(lb=LOW, ub=HIGH),
+        "minmax": "min",
+        "log_to": None,
+    }
+    return lambda seed: (
+        algorithm().solve(field, seed=seed, termination={"max_fe": EVALUATIONS}).target.fitness
+    )
 
 
 def mealpy_pso() -> OriginalPSO:
-    """Its velocities have no limit, a particle moves only to improve, and a coordinate beyond the field is drawn anew."""
+    """Its velocities have no limit, a particle moves only to improve, and a coordinate beyond the
+    field is drawn anew.
+    """
     return OriginalPSO(ITERATIONS, PARTICLES, c1=SETTINGS["c1"], c2=SETTINGS["c2"], w=0.73)
 
 
@@ -191,7 +235,9 @@ LIBRARIES: dict[str, Callable[[int], float]] = {
 def main() -> None:
     logging.disable(logging.INFO)
     print(f"{EVALUATIONS} evaluations a run, {SEEDS} seeds\n")
-    print(f"{'':20}{'evaluations/s':>16}{'ours is faster':>16}{'share < 8':>12}{'quartile 1':>12}{'median':>10}{'quartile 3':>12}")
+    print(
+        f"{'':20}{'evaluations/s':>16}{'ours is faster':>16}{'share < 8':>12}{'quartile 1':>12}{'median':>10}{'quartile 3':>12}"
+    )
     fastest = math.nan
     for name, run in LIBRARIES.items():
         run(0)
@@ -200,7 +246,10 @@ def main() -> None:
         rate = SEEDS * EVALUATIONS / (time.process_time() - before)
         fastest = rate if name == "bezierplan pso" else fastest
         low, median, high = np.quantile(found, [0.25, 0.5, 0.75])
-        print(f"{name:20}{rate:16,.0f}{fastest / rate:16.1f}{np.mean(found < GOOD):12.2f}{low:12.3f}{median:10.3f}{high:12.3f}", flush=True)
+        print(
+            f"{name:20}{rate:16,.0f}{fastest / rate:16.1f}{np.mean(found < GOOD):12.2f}{low:12.3f}{median:10.3f}{high:12.3f}",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

@@ -1,21 +1,28 @@
-"""Planners of OMPL beside those of the studies and the baseline `rounded`, on problems of the studies: the second part of `make compare`.
+"""Planners of OMPL beside those of the studies and the baseline `rounded`, on problems of the
+studies: the second part of `make compare`.
 
-How close the best path comes to the exact shortest one, against the CPU time of one core, for 50 seeds. Only paths that the certified
-checker accepts count, whatever their planner says of them. Budgets double from one attempt to the next, so times are known to a factor of
-two:
+How close the best path comes to the exact shortest one, against the CPU time of one core, for 50
+seeds. Only paths that the certified checker accepts count, whatever their planner says of them.
+Budgets double from one attempt to the next, so times are known to a factor of two:
 
-* PRM*, BIT* and Informed RRT*, with OMPL's defaults, are interrupted after times that double, and the path of each time is simplified by
-  OMPL's simplifier. The shorter of both counts. A simplification is charged to its own path only, as in a run that ends there. Their test
-  of a motion is exact (`ompl_planners`) but called in Python: a program in C++ would take less time than is stated here.
-* A study's planners run anew for each number of generations, with the same seed. The best of all budgets so far counts, for some keep no
-  best path. Settings are those of the study; tharwat2018's swarm has those of its profile `tuned`, and never stops early.
-* `rounded` knows the exact shortest path and rounds its corners; its CPU time includes that of finding the shortest path.
+* PRM*, BIT* and Informed RRT*, with OMPL's defaults, are interrupted after times that double, and
+  the path of each time is simplified by OMPL's simplifier. The shorter of both counts. A
+  simplification is charged to its own path only, as in a run that ends there. Their test of a
+  motion is exact (`ompl_planners`) but called in Python: a program in C++ would take less time than
+  is stated here.
+* A study's planners run anew for each number of generations, with the same seed. The best of all
+  budgets so far counts, for some keep no best path. Settings are those of the study; tharwat2018's
+  swarm has those of its profile `tuned`, and never stops early.
+* `rounded` knows the exact shortest path and rounds its corners; its CPU time includes that of
+  finding the shortest path.
 
-Compilation is charged to nobody. Lengths of unlike paths are compared: OMPL's are polylines, at whose corners a robot has to stop; so are
-those of meledje and of song2016's non-smooth method. All others have continuous tangents, for which they must swing out, and those of one
-Bezier curve continuous curvature as well. So OMPL solves an easier problem.
+Compilation is charged to nobody. Lengths of unlike paths are compared: OMPL's are polylines, at
+whose corners a robot has to stop; so are those of meledje and of song2016's non-smooth method. All
+others have continuous tangents, for which they must swing out, and those of one Bezier curve
+continuous curvature as well. So OMPL solves an easier problem.
 
-Writes planners.csv (each path), planners_times.csv (the table), planners.svg and planners.png into results/comparison.
+Writes planners.csv (each path), planners_times.csv (the table), planners.svg and planners.png into
+results/comparison.
 """
 
 import sys
@@ -48,7 +55,8 @@ try:
     import ompl_planners
 except ImportError as fault:
     sys.exit(
-        f"compare_planners: OMPL cannot be imported here ({fault}); its wheels are for Linux and for macOS 15 or later on Apple silicon"
+        f"compare_planners: OMPL cannot be imported here ({fault}); its wheels are for Linux and "
+        f"for macOS 15 or later on Apple silicon"
     )
 
 ROOT = File(__file__).resolve().parents[2]
@@ -63,8 +71,8 @@ BASELINE = "rounded"
 class Contest(NamedTuple):
     """A problem of a study with two of its planners.
 
-    budget: the setting that says how long they search. shares: of the study's own budget. values: of the factors that the experiment
-    varies. changes: other settings.
+    budget: the setting that says how long they search. shares: of the study's own budget. values:
+    of the factors that the experiment varies. changes: other settings.
     """
 
     study: str
@@ -84,19 +92,44 @@ def doubling(first: float, last: float) -> tuple[float, ...]:
 
 CONTESTS = (
     Contest(
-        *("tharwat2018", "maps", "public", ("pso", "cpso2_singer"), "iterations", doubling(1 / 8, 32)),
+        *(
+            "tharwat2018",
+            "maps",
+            "public",
+            ("pso", "cpso2_singer"),
+            "iterations",
+            doubling(1 / 8, 32),
+        ),
         values={"profile": "tuned"},
         changes={"stall_limit": 0},
     ),
-    Contest("song2016", "routes", "15_240", ("nonsmooth", "smooth"), "generations", doubling(1 / 8, 4)),
-    Contest("meledje", "operators", "env2_modified", ("random", "proposed"), "generations", doubling(1 / 8, 4)),
-    Contest("ma2020", "environments", "environment2", ("bca", "bca_q"), "generations", doubling(1 / 8, 4)),
+    Contest(
+        "song2016", "routes", "15_240", ("nonsmooth", "smooth"), "generations", doubling(1 / 8, 4)
+    ),
+    Contest(
+        "meledje",
+        "operators",
+        "env2_modified",
+        ("random", "proposed"),
+        "generations",
+        doubling(1 / 8, 4),
+    ),
+    Contest(
+        "ma2020",
+        "environments",
+        "environment2",
+        ("bca", "bca_q"),
+        "generations",
+        doubling(1 / 8, 4),
+    ),
     Contest("elhoseny2017", "maps", "hidden_u", ("mga", "mga_c"), "iterations", doubling(1 / 8, 1)),
 )
 
 
 class Arena(NamedTuple):
-    """What a contest is about: its study, problem, blocked region, and the length of the exact shortest path, in units."""
+    """What a contest is about: its study, problem, blocked region, and the length of the exact
+    shortest path, in units.
+    """
 
     contest: Contest
     study: Study
@@ -109,10 +142,18 @@ def arena(contest: Contest) -> Arena:
     study = reading.load(reading.read_config({"studies": [contest.study]}))[contest.study]
     made, _ = problems.build_all(jobs.problems_job(study, contest.experiment, "full"), study.folder)
     problem = made[contest.problem]
-    return Arena(contest, study, problem, region(problem.workspace), shortest_paths.shortest_path(problem).length)
+    return Arena(
+        contest,
+        study,
+        problem,
+        region(problem.workspace),
+        shortest_paths.shortest_path(problem).length,
+    )
 
 
-def planned(at: Arena, method: str, shares: tuple[float, ...], seed: int) -> Iterator[tuple[float, Path | None]]:
+def planned(
+    at: Arena, method: str, shares: tuple[float, ...], seed: int
+) -> Iterator[tuple[float, Path | None]]:
     """CPU seconds and path of a run of a study's method for each share of its own budget."""
     contest = at.contest
     job = jobs.job(at.study, contest.experiment, method, "full", 0)
@@ -122,35 +163,53 @@ def planned(at: Arena, method: str, shares: tuple[float, ...], seed: int) -> Ite
     if contest.budget in settings:
         settings |= contest.changes
     for share in shares:
-        longer = {contest.budget: max(1, round(share * settings[contest.budget]))} if contest.budget in settings else {}
+        longer = (
+            {contest.budget: max(1, round(share * settings[contest.budget]))}
+            if contest.budget in settings
+            else {}
+        )
         rng = execution.generator(job, condition, seed)
         before = time.process_time()
         plan = planner.plan(at.problem, rng, **settings | longer)
         yield time.process_time() - before, plan.path
 
 
-def with_ompl(at: Arena, planner: str, is_free: ompl_planners.SegmentTest, seed: int) -> Iterator[tuple[float, Path | None]]:
-    """CPU seconds and path for each time at which a planner of OMPL is interrupted. Its random numbers are one stream for all seeds."""
+def with_ompl(
+    at: Arena, planner: str, is_free: ompl_planners.SegmentTest, seed: int
+) -> Iterator[tuple[float, Path | None]]:
+    """CPU seconds and path for each time at which a planner of OMPL is interrupted. Its random
+    numbers are one stream for all seeds.
+    """
     for seconds, points in ompl_planners.attempts(planner, at.problem, is_free, TIMES):
         yield seconds, None if points is None else Path("polyline", points)
 
 
 def excess(at: Arena, path: Path | None) -> float:
-    """Length of a path over the exact shortest one's, less 1; infinite unless it joins start and target and the checker accepts it."""
+    """Length of a path over the exact shortest one's, less 1; infinite unless it joins start and
+    target and the checker accepts it.
+    """
     if path is None:
         return np.inf
     pieces = curves.bezier_pieces(path)
     joins = (tuple(pieces[0, 0]), tuple(pieces[-1, -1])) == (at.problem.start, at.problem.target)
-    return curves.length(path) / at.bound - 1 if joins and checker.check(pieces, at.blocked).feasible else np.inf
+    return (
+        curves.length(path) / at.bound - 1
+        if joins and checker.check(pieces, at.blocked).feasible
+        else np.inf
+    )
 
 
 def compete(at: Arena) -> pd.DataFrame:
-    """Attempts of all planners on a problem, as `anytime` takes them, with columns study, problem, length (in units) and budget (share of
-    the study's own; NaN for OMPL). Planners take turns, so that what else runs on the machine disturbs all alike.
+    """Attempts of all planners on a problem, as `anytime` takes them, with columns study, problem,
+    length (in units) and budget (share of the study's own; NaN for OMPL). Planners take turns, so
+    that what else runs on the machine disturbs all alike.
     """
     contest = at.contest
     is_free = ompl_planners.segment_test(at.blocked)
-    rivals = {at.study.labels[method]: (partial(planned, at, method, contest.shares), contest.shares) for method in contest.methods}
+    rivals = {
+        at.study.labels[method]: (partial(planned, at, method, contest.shares), contest.shares)
+        for method in contest.methods
+    }
     rivals |= {name: (partial(with_ompl, at, name, is_free), ()) for name in ompl_planners.PLANNERS}
     rivals[at.study.labels[BASELINE]] = (partial(planned, at, BASELINE, (1.0,)), (1.0,))
     for run, _ in rivals.values():
@@ -160,7 +219,15 @@ def compete(at: Arena) -> pd.DataFrame:
         for method, (run, shares) in rivals.items():
             for number, (seconds, path) in enumerate(run(seed)):
                 budget = shares[number] if shares else np.nan
-                rows.append({"method": method, "seed": seed, "cpu_s": seconds, "budget": budget, "excess": excess(at, path)})
+                rows.append(
+                    {
+                        "method": method,
+                        "seed": seed,
+                        "cpu_s": seconds,
+                        "budget": budget,
+                        "excess": excess(at, path),
+                    }
+                )
     attempts = pd.DataFrame(rows)
     attempts.insert(0, "problem", name_of(at))
     attempts["length"] = at.bound * (1 + attempts["excess"])
@@ -176,7 +243,9 @@ def draw(attempts: pd.DataFrame) -> Figure:
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(style.WIDE, 0.68 * style.WIDE), layout="constrained")
         panels = figure.subplots(2, 3, sharex=True, sharey=True)
-        for number, (axes, (name, own)) in enumerate(zip(panels.flat, attempts.groupby("problem", sort=False))):
+        for number, (axes, (name, own)) in enumerate(
+            zip(panels.flat, attempts.groupby("problem", sort=False))
+        ):
             draw_problem(axes, own)
             axes.set_title(f"({'abcde'[number]}) {name}", loc="left")
         for axes in panels[:, 0]:
@@ -187,7 +256,9 @@ def draw(attempts: pd.DataFrame) -> Figure:
         shared = dict(zip(*reversed(panels[0, 0].get_legend_handles_labels())))
         panels[1, 2].axis("off")
         panels[1, 2].legend(shared.values(), shared.keys(), loc="upper left", borderaxespad=0)
-        panels[1, 2].text(0, 0, NOTE, transform=panels[1, 2].transAxes, va="bottom", linespacing=1.3)
+        panels[1, 2].text(
+            0, 0, NOTE, transform=panels[1, 2].transAxes, va="bottom", linespacing=1.3
+        )
     return figure
 
 
@@ -208,9 +279,15 @@ def draw_problem(axes: Axes, attempts: pd.DataFrame) -> None:
         times = np.geomspace(own["cpu_s"].min(), own.groupby("seed")["cpu_s"].max().median(), 300)
         low, median, high = 100 * quartiles(own, times)
         axes.fill_between(
-            1e3 * times, np.minimum(low, HIGHEST), np.minimum(high, HIGHEST), where=np.isfinite(low), **style.interval_band(look["color"])
+            1e3 * times,
+            np.minimum(low, HIGHEST),
+            np.minimum(high, HIGHEST),
+            where=np.isfinite(low),
+            **style.interval_band(look["color"]),
         )
-        (line,) = axes.plot(1e3 * times, median, **look, label="_" if method in of_study else f"OMPL's {method}")
+        (line,) = axes.plot(
+            1e3 * times, median, **look, label="_" if method in of_study else f"OMPL's {method}"
+        )
         if method in of_study:
             named.append(line)
             until = own.loc[own["budget"] == 1, "cpu_s"].median()
@@ -227,7 +304,15 @@ def draw_problem(axes: Axes, attempts: pd.DataFrame) -> None:
     axes.yaxis.set_major_formatter("{x:g}")
     axes.yaxis.set_minor_locator(mpl.ticker.NullLocator())
     axes.grid(axis="y")
-    axes.legend(named, of_study, loc="upper right", frameon=True, framealpha=0.9, edgecolor="none", borderpad=0.2)
+    axes.legend(
+        named,
+        of_study,
+        loc="upper right",
+        frameon=True,
+        framealpha=0.9,
+        edgecolor="none",
+        borderpad=0.2,
+    )
 
 
 HIGHEST = 500  # room for the names above what is drawn
@@ -252,7 +337,9 @@ BASELINE_MARK = {
 
 
 def printed(table: pd.DataFrame) -> str:
-    """The table as text: for each problem and method, milliseconds and the share of seeds for each distance from the exact length."""
+    """The table as text: for each problem and method, milliseconds and the share of seeds for each
+    distance from the exact length.
+    """
     lines = [
         f"{'':34}" + "".join(f"{f'within {100 * share:g} %':>18}" for share in WITHIN),
         f"{'':34}" + f"{'ms':>10}{'seeds':>8}" * len(WITHIN),
@@ -260,21 +347,34 @@ def printed(table: pd.DataFrame) -> str:
     for problem, own in table.groupby("problem", sort=False):
         lines.append(problem)
         for method, cells in own.groupby("method", sort=False):
-            shown = (f"{1e3 * each.median_s:10.1f}" if np.isfinite(each.median_s) else f"{'-':>10}" for each in cells.itertuples())
-            lines.append(f"  {method:32}" + "".join(f"{ms}{100 * there:6.0f} %" for ms, there in zip(shown, cells["reached"])))
+            shown = (
+                f"{1e3 * each.median_s:10.1f}" if np.isfinite(each.median_s) else f"{'-':>10}"
+                for each in cells.itertuples()
+            )
+            lines.append(
+                f"  {method:32}"
+                + "".join(f"{ms}{100 * there:6.0f} %" for ms, there in zip(shown, cells["reached"]))
+            )
     return "\n".join(lines)
 
 
 def main() -> None:
     FOLDER.mkdir(parents=True, exist_ok=True)
     ompl_planners.start(seed=1)
-    print(f"CPU time until a path is near the exact shortest one, median of {SEEDS} seeds, and the share of seeds that get there\n")
+    print(
+        f"CPU time until a path is near the exact shortest one, median of {SEEDS} seeds, and the "
+        f"share of seeds that get there\n"
+    )
     found = []
     for number, contest in enumerate(CONTESTS):
         at, before = arena(contest), time.process_time()
         found.append(compete(at))
         taken = time.process_time() - before
-        print(f"problem {number + 1} of {len(CONTESTS)}: {name_of(at)}: {len(found[-1]):,} paths in {taken:.0f} CPU s", flush=True)
+        print(
+            f"problem {number + 1} of {len(CONTESTS)}: {name_of(at)}: {len(found[-1]):,} paths in "
+            f"{taken:.0f} CPU s",
+            flush=True,
+        )
     attempts = pd.concat(found, ignore_index=True)
     table = time_table(attempts, WITHIN)
     sheet.write_data(attempts, FOLDER / "planners.csv")

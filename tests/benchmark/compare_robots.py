@@ -1,15 +1,20 @@
-"""OMPL beside the baselines for a robot with a width, and for one with a turning radius: the third part of `make compare`.
+"""OMPL beside the baselines for a robot with a width, and for one with a turning radius: the third
+part of `make compare`.
 
-On the six maps of polygons of elhoseny2017: CPU time of one core until a path that the checker accepts is within 2 % of the shortest, the
-median of the seeds, and how many times that of ours. Budgets double, so OMPL's times are known to a factor of two; ours are of one run.
+On the six maps of polygons of elhoseny2017: CPU time of one core until a path that the checker
+accepts is within 2 % of the shortest, the median of the seeds, and how many times that of ours.
+Budgets double, so OMPL's times are known to a factor of two; ours are of one run.
 
-* A disc: the map grows by its radius. `rounded_shortest_path` is set beside OMPL's planners with its simplifier, as in compare_planners.py;
-  its time includes that of the exact shortest path, with which all are compared. OMPL's paths are polylines.
-* A turning radius, with headings at both ends: `dubins_search` beside OMPL's planners in its space of Dubins paths, whose motions the same
-  exact test of the same paths checks. No shortest path is known here: the shortest that any of them found stands for it. In its space of
-  Reeds and Shepp a robot also backs up, which ours does not, so their lengths cannot be compared.
+* A disc: the map grows by its radius. `rounded_shortest_path` is set beside OMPL's planners with
+  its simplifier, as in compare_planners.py; its time includes that of the exact shortest path, with
+  which all are compared. OMPL's paths are polylines.
+* A turning radius, with headings at both ends: `dubins_search` beside OMPL's planners in its space
+  of Dubins paths, whose motions the same exact test of the same paths checks. No shortest path is
+  known here: the shortest that any of them found stands for it. In its space of Reeds and Shepp a
+  robot also backs up, which ours does not, so their lengths cannot be compared.
 
-Growing the map and compiling is charged to nobody. Writes robots.csv (each path) and robots_times.csv into results/comparison.
+Growing the map and compiling is charged to nobody. Writes robots.csv (each path) and
+robots_times.csv into results/comparison.
 """
 
 import math
@@ -36,7 +41,10 @@ from bezierplan.workspaces.problem import Path, Problem
 try:
     import ompl_planners
 except ImportError as fault:
-    sys.exit(f"compare_robots: OMPL cannot be imported here ({fault}); its wheels are for Linux and for macOS 15 or later on Apple silicon")
+    sys.exit(
+        f"compare_robots: OMPL cannot be imported here ({fault}); its wheels are for Linux and "
+        f"for macOS 15 or later on Apple silicon"
+    )
 
 ROOT = File(__file__).resolve().parents[2]
 MAPS = ROOT / "config" / "studies" / "elhoseny2017" / "workspaces"
@@ -103,7 +111,9 @@ def disc(name: str) -> pd.DataFrame:
             yield seconds, math.inf if points is None else length_of(at, Path("polyline", points))
 
     rivals = {OURS: lambda: ours(at, legs.ROUNDED, settings)}
-    rivals |= {planner: lambda planner=planner: with_ompl(planner) for planner in ompl_planners.PLANNERS}
+    rivals |= {
+        planner: lambda planner=planner: with_ompl(planner) for planner in ompl_planners.PLANNERS
+    }
     return attempts_of(f"{name}, disc", rivals, SEEDS, bound)
 
 
@@ -111,15 +121,26 @@ def turning(name: str) -> pd.DataFrame:
     """Attempts of all planners with a turning radius."""
     at = arena(name, 0.0)
     is_free = ompl_planners.dubins_test(at.blocked, TURNING_RADIUS)
-    settings = {"turning_radius": TURNING_RADIUS, "start_heading": HEADINGS[0], "target_heading": HEADINGS[1]}
+    settings = {
+        "turning_radius": TURNING_RADIUS,
+        "start_heading": HEADINGS[0],
+        "target_heading": HEADINGS[1],
+    }
 
     def with_ompl(planner: str) -> Iterator[Attempt]:
-        for seconds, poses in ompl_planners.turning_attempts(planner, at.problem, TURNING_RADIUS, HEADINGS, is_free, TURNING_TIMES):
-            pieces = [] if poses is None else dubins_search._chain(poses, TURNING_RADIUS, 1, at.blocked)
+        for seconds, poses in ompl_planners.turning_attempts(
+            planner, at.problem, TURNING_RADIUS, HEADINGS, is_free, TURNING_TIMES
+        ):
+            pieces = (
+                [] if poses is None else dubins_search._chain(poses, TURNING_RADIUS, 1, at.blocked)
+            )
             yield seconds, curves.length_of(pieces) if len(pieces) else math.inf
 
     rivals = {OURS: lambda: ours(at, legs.DRIVEN, settings)}
-    rivals |= {planner: lambda planner=planner: with_ompl(planner) for planner in ompl_planners.TURNING_PLANNERS}
+    rivals |= {
+        planner: lambda planner=planner: with_ompl(planner)
+        for planner in ompl_planners.TURNING_PLANNERS
+    }
     return attempts_of(f"{name}, turning", rivals, TURNING_SEEDS, None)
 
 
@@ -134,17 +155,22 @@ def attempts_of(problem: str, rivals: dict, seeds: int, bound: float | None) -> 
         for seconds, length in run()
     ]
     attempts = pd.DataFrame(rows)
-    attempts["excess"] = attempts["length"] / (attempts["length"].min() if bound is None else bound) - 1
+    attempts["excess"] = (
+        attempts["length"] / (attempts["length"].min() if bound is None else bound) - 1
+    )
     return attempts
 
 
 def printed(table: pd.DataFrame) -> str:
-    """Milliseconds, the share of seeds that get there, and how many times ours, for each problem and planner."""
+    """Milliseconds, the share of seeds that get there, and how many times ours, for each problem
+    and planner.
+    """
     lines = []
     for problem, own in table.groupby("problem", sort=False):
         ours_s = own.loc[own["method"] == OURS, "median_s"].item()
         cells = [
-            f"{each.method} {1e3 * each.median_s:.1f} ({each.median_s / ours_s:.1f} x, {100 * each.reached:.0f} %)"
+            f"{each.method} {1e3 * each.median_s:.1f} ({each.median_s / ours_s:.1f} x, "
+            f"{100 * each.reached:.0f} %)"
             for each in own.itertuples()
         ]
         lines.append(f"{problem:26}{'   '.join(cells)}")
@@ -154,7 +180,10 @@ def printed(table: pd.DataFrame) -> str:
 def main() -> None:
     FOLDER.mkdir(parents=True, exist_ok=True)
     ompl_planners.start(seed=1)
-    print(f"CPU ms until a path is within {100 * WITHIN:g} % of the shortest (times ours, seeds that get there)\n")
+    print(
+        f"CPU ms until a path is within {100 * WITHIN:g} % of the shortest (times ours, seeds "
+        f"that get there)\n"
+    )
     found = []
     for contest in (disc, turning):
         for name in ENDS:

@@ -39,13 +39,19 @@ def workspaces() -> Iterator[tuple[str, Workspace]]:
         yield f"circles {count}", random_discs(count, rng)
     for side in (16, 20, 100, 200):
         yield f"cells {side} x {side}", random_grid(side, rng)
-    for file in sorted((Path(__file__).parents[2] / "config/studies/elhoseny2017/workspaces").glob("*.geojson")):
+    for file in sorted(
+        (Path(__file__).parents[2] / "config/studies/elhoseny2017/workspaces").glob("*.geojson")
+    ):
         yield f"polygons {file.stem}", polygons_from_geojson(file.read_text(), "m")
 
 
 def benchmark_geometry() -> None:
-    """Microseconds a check (median over random curves, half of them short) and milliseconds a bound from corner to corner."""
-    print(f"\n{'workspace':26}{'check: median us':>18}{'99 % us':>10}{'colliding':>11}{'bound: ms':>12}")
+    """Microseconds a check (median over random curves, half of them short) and milliseconds a bound
+    from corner to corner.
+    """
+    print(
+        f"\n{'workspace':26}{'check: median us':>18}{'99 % us':>10}{'colliding':>11}{'bound: ms':>12}"
+    )
     rng = np.random.default_rng(1)
     for name, workspace in workspaces():
         blocked = region(workspace)
@@ -54,14 +60,23 @@ def benchmark_geometry() -> None:
         for trial in range(401):
             first = rng.uniform((x_low, y_low), (x_high, y_high))
             reach = (x_high - x_low) * (0.05 if trial % 2 else 1.0)
-            points = np.clip(first + rng.uniform(-reach, reach, (6, 2)), (x_low, y_low), (x_high, y_high))
-            pieces = curves.bezier_pieces(Curve(("bezier", "piecewise_quadratic")[trial // 2 % 2], points))
+            points = np.clip(
+                first + rng.uniform(-reach, reach, (6, 2)), (x_low, y_low), (x_high, y_high)
+            )
+            pieces = curves.bezier_pieces(
+                Curve(("bezier", "piecewise_quadratic")[trial // 2 % 2], points)
+            )
             before = time.perf_counter()
             found = checker.check(pieces, blocked)
             seconds.append(time.perf_counter() - before)
             colliding += not found.feasible
         times = 1e6 * np.array(seconds[1:])
         inset = 0.5 * getattr(workspace, "cell", 0.02)
-        corners = Problem("bound", workspace, (x_low + inset, y_low + inset), (x_high - inset, y_high - inset))
+        corners = Problem(
+            "bound", workspace, (x_low + inset, y_low + inset), (x_high - inset, y_high - inset)
+        )
         bound = 1e3 * cpu_seconds(lambda: shortest_paths.shortest_path(corners))  # noqa: B023
-        print(f"  {name:24}{np.median(times):18.0f}{np.quantile(times, 0.99):10.0f}{colliding / 401:11.2f}{bound:12.2f}")
+        print(
+            f"  "
+            f"{name:24}{np.median(times):18.0f}{np.quantile(times, 0.99):10.0f}{colliding / 401:11.2f}{bound:12.2f}"
+        )

@@ -1,7 +1,9 @@
-"""How cost grows with what there is more of: runs, samples, obstacles, cells, studies. `make benchmark ARGS=growth`.
+"""How cost grows with what there is more of: runs, samples, obstacles, cells, studies. `make
+benchmark ARGS=growth`.
 
-Each series is CPU seconds at sizes in a geometric series. The slope of log(cost) over log(size) is the power of the size that the cost
-grows with; at most linear is a slope of at most 1. It is fitted to the upper sizes only, where a constant cost no longer hides growth.
+Each series is CPU seconds at sizes in a geometric series. The slope of log(cost) over log(size) is
+the power of the size that the cost grows with; at most linear is a slope of at most 1. It is fitted
+to the upper sizes only, where a constant cost no longer hides growth.
 """
 
 import contextlib
@@ -63,8 +65,8 @@ Work = Callable[[], object]
 class Series(NamedTuple):
     """What to measure.
 
-    kind: what there is more of, a key of `AXES`. prepare: makes the work of a size, which is not measured. reason: why the cost may grow
-    faster than the size.
+    kind: what there is more of, a key of `AXES`. prepare: makes the work of a size, which is not
+    measured. reason: why the cost may grow faster than the size.
     """
 
     kind: str
@@ -75,7 +77,9 @@ class Series(NamedTuple):
 
 
 class Slope(NamedTuple):
-    """Slope of a line through log(seconds) over log(size), its standard error, and the seconds that the line gives at size 1."""
+    """Slope of a line through log(seconds) over log(size), its standard error, and the seconds that
+    the line gives at size 1.
+    """
 
     value: float
     error: float
@@ -102,22 +106,41 @@ def geometric(first: int, last: int, number: int = 6) -> list[int]:
     return np.rint(np.geomspace(first, last, number)).astype(int).tolist()
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Repeats: runs of a study, and what is made of them
 
 
 def _repeats() -> Iterator[Series]:
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        yield Series("repeats", "runs and their checks", geometric(16, 256), lambda n: partial(_runs, _gathered(16), n))
-        made = {"tables and comparisons": _tables, "data of figures": _figures, "claims": _claims, "viewer of runs": _viewer}
+        yield Series(
+            "repeats",
+            "runs and their checks",
+            geometric(16, 256),
+            lambda n: partial(_runs, _gathered(16), n),
+        )
+        made = {
+            "tables and comparisons": _tables,
+            "data of figures": _figures,
+            "claims": _claims,
+            "viewer of runs": _viewer,
+        }
         for name, make in made.items():
-            yield Series("repeats", name, geometric(128, 4096), lambda n, make=make: partial(make, _gathered(n)))
+            yield Series(
+                "repeats",
+                name,
+                geometric(128, 4096),
+                lambda n, make=make: partial(make, _gathered(n)),
+            )
 
 
 @cache
 def _gathered(repeats: int) -> Studies:
-    """A study of that many repeats, ten runs each, and the files of its runs in the working folder."""
-    study = reading.read_study(gathering.write_study(Path(f"study{repeats}").resolve(), repeats, repeats))
+    """A study of that many repeats, ten runs each, and the files of its runs in the working
+    folder.
+    """
+    study = reading.read_study(
+        gathering.write_study(Path(f"study{repeats}").resolve(), repeats, repeats)
+    )
     gathering.write_runs(study)
     return {study.key: study}
 
@@ -126,7 +149,9 @@ def _runs(given: Studies, repeats: int) -> None:
     """A chunk of runs, made and written."""
     (study,) = given.values()
     made = problems.read(targets.shown_by(study, gathering.SCALE, "lengths")["all"].problems)
-    runs, _ = execution.run_chunk(made, jobs.job(study, "all", "pso", gathering.SCALE, 0) | {"repeats": [0, repeats]})
+    runs, _ = execution.run_chunk(
+        made, jobs.job(study, "all", "pso", gathering.SCALE, 0) | {"repeats": [0, repeats]}
+    )
     parquet.write_table(runs, "runs.parquet")
 
 
@@ -134,7 +159,9 @@ def _tables(given: Studies) -> None:
     (study,) = given.values()
     found, job = _read(given), jobs.table_job(study, "lengths", gathering.SCALE)
     published = comparison.read_published(study.published_file("lengths"), job["spec"])
-    comparison.compare(found, job["spec"], published, job["variants"], job["baselines"], job["name"])
+    comparison.compare(
+        found, job["spec"], published, job["variants"], job["baselines"], job["name"]
+    )
     tables.pivot(found, job["spec"], job["labels"])
 
 
@@ -157,24 +184,46 @@ def _claims(given: Studies) -> None:
     (key,) = given
     files = targets.judged_by_claims(given[key], gathering.SCALE)
     published = {Path(file).stem: file for file in given[key].published_files()}
-    claims_job.run(targets.claims_params(given, gathering.SCALE, key)["job"], files, published, "claims.csv", "checks.csv")
+    claims_job.run(
+        targets.claims_params(given, gathering.SCALE, key)["job"],
+        files,
+        published,
+        "claims.csv",
+        "checks.csv",
+    )
 
 
 def _viewer(given: Studies) -> None:
     (key,) = given
-    page_runs.chosen(key, "all", page.params(given, gathering.SCALE)["job"]["studies"][key]["experiments"]["all"])
+    page_runs.chosen(
+        key, "all", page.params(given, gathering.SCALE)["job"]["studies"][key]["experiments"]["all"]
+    )
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Samples of a curve, and its pieces
 
 
 def _samples() -> Iterator[Series]:
-    for study, method, problem in (("tharwat2018", "pso", "equal"), ("song2016", "smooth", "0_240"), ("ma2020", "bca", "environment1")):
+    for study, method, problem in (
+        ("tharwat2018", "pso", "equal"),
+        ("song2016", "smooth", "0_240"),
+        ("ma2020", "bca", "environment1"),
+    ):
         own = _study(study)
-        yield Series("samples", f"run of {own.planner(method)}", geometric(101, 3201), partial(_run_with_samples, own, method, problem))
+        yield Series(
+            "samples",
+            f"run of {own.planner(method)}",
+            geometric(101, 3201),
+            partial(_run_with_samples, own, method, problem),
+        )
     squares = region(_room(6, _squares))
-    yield Series("samples", "check, by pieces", geometric(32, 1024), lambda n: partial(checker.check, _along(6, n), squares))
+    yield Series(
+        "samples",
+        "check, by pieces",
+        geometric(32, 1024),
+        lambda n: partial(checker.check, _along(6, n), squares),
+    )
 
 
 def _run_with_samples(study: Study, method: str, name: str, samples: int) -> Work:
@@ -192,13 +241,15 @@ def _run(planner: str, problem: Problem, settings: dict) -> Work:
 
 
 def _along(side: int, pieces: int) -> np.ndarray:
-    """Free straight pieces (pieces, 2, 2) of a wave from left to right, between two rows of the obstacles of `_room`."""
+    """Free straight pieces (pieces, 2, 2) of a wave from left to right, between two rows of the
+    obstacles of `_room`.
+    """
     x = np.linspace(0.1, side - 0.1, pieces + 1)
     points = np.column_stack([x, side // 2 + 0.1 * np.sin(20 * x)])
     return np.stack([points[:-1], points[1:]], axis=1)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Obstacles: one in each square of a room
 
 
@@ -206,16 +257,36 @@ def _obstacles() -> Iterator[Series]:
     sides, rooms = (2, 3, 4, 6, 8, 11, 16, 23), (("circles", _discs), ("polygons", _squares))
     for name, draw in rooms:
         blocked = {side**2: region(_room(side, draw)) for side in sides}
-        yield Series("obstacles", f"run of chaotic_pso, {name}", [*blocked], partial(_run_across, draw))
-        yield Series("obstacles", f"check, {name}", [*blocked], lambda n, blocked=blocked: _check(math.isqrt(n), blocked[n]))
-    reasons = {"circles": "tangents join pairs of circles", "polygons": "lines of sight join pairs of corners"}
+        yield Series(
+            "obstacles", f"run of chaotic_pso, {name}", [*blocked], partial(_run_across, draw)
+        )
+        yield Series(
+            "obstacles",
+            f"check, {name}",
+            [*blocked],
+            lambda n, blocked=blocked: _check(math.isqrt(n), blocked[n]),
+        )
+    reasons = {
+        "circles": "tangents join pairs of circles",
+        "polygons": "lines of sight join pairs of corners",
+    }
     for name, draw in rooms:
         sizes = [side**2 for side in sides[:6]]
-        yield Series("obstacles", f"exact bound, {name}", sizes, lambda n, draw=draw: _bound(_across(n, draw)), reasons[name])
+        yield Series(
+            "obstacles",
+            f"exact bound, {name}",
+            sizes,
+            lambda n, draw=draw: _bound(_across(n, draw)),
+            reasons[name],
+        )
 
 
 def _run_across(draw: Callable, obstacles: int) -> Work:
-    return _run("chaotic_pso", _across(obstacles, draw), _study("tharwat2018").resolved("pso") | {"stall_limit": 0})
+    return _run(
+        "chaotic_pso",
+        _across(obstacles, draw),
+        _study("tharwat2018").resolved("pso") | {"stall_limit": 0},
+    )
 
 
 def _check(side: int, blocked: Region) -> Work:
@@ -233,9 +304,15 @@ def _across(obstacles: int, draw: Callable) -> Problem:
 
 
 def _room(side: int, draw: Callable) -> Workspace:
-    """A room of side x side units with an obstacle in the middle of each, drawn from its bounds, centres (n, 2) and radii (n,)."""
+    """A room of side x side units with an obstacle in the middle of each, drawn from its bounds,
+    centres (n, 2) and radii (n,).
+    """
     centres = np.stack(np.meshgrid(*[np.arange(side) + 0.5] * 2), axis=-1).reshape(-1, 2)
-    return draw((0.0, float(side), 0.0, float(side)), centres, np.random.default_rng(side).uniform(0.2, 0.35, side**2))
+    return draw(
+        (0.0, float(side), 0.0, float(side)),
+        centres,
+        np.random.default_rng(side).uniform(0.2, 0.35, side**2),
+    )
 
 
 def _discs(bounds: tuple, centres: np.ndarray, radii: np.ndarray) -> Circles:
@@ -244,17 +321,27 @@ def _discs(bounds: tuple, centres: np.ndarray, radii: np.ndarray) -> Circles:
 
 def _squares(bounds: tuple, centres: np.ndarray, radii: np.ndarray) -> Polygons:
     ring = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
-    return Polygons(bounds, tuple((centre + radius * ring,) for centre, radius in zip(centres, radii)), "unit")
+    return Polygons(
+        bounds, tuple((centre + radius * ring,) for centre, radius in zip(centres, radii)), "unit"
+    )
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Cells of a square grid
 
 
 def _cells() -> Iterator[Series]:
-    yield Series("cells", "exact bound, search", _squared(128, 640), _bounds, "corners wait in a heap, n log n")
+    yield Series(
+        "cells",
+        "exact bound, search",
+        _squared(128, 640),
+        _bounds,
+        "corners wait in a heap, n log n",
+    )
     reason = "a graph of pairs of corners; above 5,000 corners there is none"
-    yield Series("cells", "exact bound, graph", _squared(12, 60), lambda n: _bound(_diagonal(n)), reason)
+    yield Series(
+        "cells", "exact bound, graph", _squared(12, 60), lambda n: _bound(_diagonal(n)), reason
+    )
     yield Series("cells", "check", _squared(32, 512), _check_in_row)
     reason = "edges join pairs of cells; above 2,048 cells there is no table"
     yield Series("cells", "table of edges, meledje", _squared(8, 32), _tabulate_edges, reason)
@@ -270,11 +357,18 @@ def _cells() -> Iterator[Series]:
     ):
         own = _study(study)
         name = f"run of {own.planner(method)}"
-        yield Series("planners", name, _squared(16, last), lambda n, own=own, method=method: _run_on_cells(own, method, n))
+        yield Series(
+            "planners",
+            name,
+            _squared(16, last),
+            lambda n, own=own, method=method: _run_on_cells(own, method, n),
+        )
 
 
 def _bounds(cells: int) -> Work:
-    """The exact bounds on several grids, for one may need a search of more of its corners than another."""
+    """The exact bounds on several grids, for one may need a search of more of its corners than
+    another.
+    """
     made = [_from_corner(random_cells(math.isqrt(cells), 1, seed)) for seed in range(4)]
     return lambda: [shortest_paths.shortest_path(problem) for problem in made]
 
@@ -284,16 +378,28 @@ def _squared(first: int, last: int) -> list[int]:
 
 
 def _run_on_cells(study: Study, method: str, cells: int) -> Work:
-    """A run on a grid with always the same number of blocks, in which a path may be as many times longer as a side of the grid is."""
+    """A run on a grid with always the same number of blocks, in which a path may be as many times
+    longer as a side of the grid is.
+    """
     settings = study.resolved(method)
     grow = math.isqrt(cells) / 16
-    settings |= {name: int(grow * settings[name]) for name in ("longest_join", "longest_path") if name in settings}
-    return _run(study.planner(method), _from_corner(random_grid(math.isqrt(cells), np.random.default_rng(0))), settings)
+    settings |= {
+        name: int(grow * settings[name])
+        for name in ("longest_join", "longest_path")
+        if name in settings
+    }
+    return _run(
+        study.planner(method),
+        _from_corner(random_grid(math.isqrt(cells), np.random.default_rng(0))),
+        settings,
+    )
 
 
 @cache
 def _diagonal(cells: int) -> Problem:
-    """From corner to corner of a grid with a fifth of its cells occupied, one by one: as many corners as there can be."""
+    """From corner to corner of a grid with a fifth of its cells occupied, one by one: as many
+    corners as there can be.
+    """
     return _from_corner(random_cells(math.isqrt(cells), 1))
 
 
@@ -309,7 +415,11 @@ def _check_in_row(cells: int) -> Work:
     occupied[0] = False
     x = np.linspace(0.5, side - 0.5, 11)
     points = np.column_stack([x, 0.5 + 0.1 * np.sin(x)])
-    return partial(checker.check, np.stack([points[:-1], points[1:]], axis=1), region(Grid(occupied, 1.0, "cell")))
+    return partial(
+        checker.check,
+        np.stack([points[:-1], points[1:]], axis=1),
+        region(Grid(occupied, 1.0, "cell")),
+    )
 
 
 def _tabulate_edges(cells: int) -> Work:
@@ -317,7 +427,7 @@ def _tabulate_edges(cells: int) -> Work:
     return lambda: (_ground.cache_clear(), ground_of(_diagonal(cells).workspace, 1.0))
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Studies: what a start of Snakemake asks of this package
 
 
@@ -326,8 +436,18 @@ def _studies() -> Iterator[Series]:
         first = gathering.write_study(Path("study0"), 1000, 250)
         folders = [first, *(shutil.copytree(first, Path(f"study{n}")) for n in range(1, 128))]
         with mock.patch.object(stamps, "STAMPS", Path("stamps")):
-            yield Series("studies", "read and checked", geometric(1, 32), lambda n: partial(_read_first, folders[:n]))
-            yield Series("studies", "read again, jobs listed", geometric(4, 128), lambda n: partial(_list_jobs, folders[:n]))
+            yield Series(
+                "studies",
+                "read and checked",
+                geometric(1, 32),
+                lambda n: partial(_read_first, folders[:n]),
+            )
+            yield Series(
+                "studies",
+                "read again, jobs listed",
+                geometric(4, 128),
+                lambda n: partial(_list_jobs, folders[:n]),
+            )
 
 
 def _read_first(folders: list[Path]) -> None:
@@ -341,12 +461,14 @@ def _list_jobs(folders: list[Path]) -> None:
     given = reading.load(folders)
     for key, study in given.items():
         targets.problems_params(given, gathering.SCALE, key, "all")
-        for method, chunk in itertools.product(study.methods_of("all"), jobs.chunks(study, "all", gathering.SCALE)):
+        for method, chunk in itertools.product(
+            study.methods_of("all"), jobs.chunks(study, "all", gathering.SCALE)
+        ):
             targets.run_params(given, gathering.SCALE, key, "all", method, str(chunk))
     list(gathering.gathering(given))
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Table and figure
 
 
@@ -354,28 +476,50 @@ def measured() -> Iterator[tuple[Series, list[float]]]:
     """Every series with its CPU seconds, one for each size."""
     for part in (_repeats, _samples, _obstacles, _cells, _studies):
         for series in part():
-            yield series, cpu_seconds_of_each([series.prepare(size) for size in series.sizes], ROUNDS)
+            yield (
+                series,
+                cpu_seconds_of_each([series.prepare(size) for size in series.sizes], ROUNDS),
+            )
 
 
 def benchmark_growth() -> None:
-    """The slope of each series beside its limit, the figure, and the memory that gathering many runs needs."""
+    """The slope of each series beside its limit, the figure, and the memory that gathering many
+    runs needs.
+    """
     print(f"\n{'growth':40}{'sizes':>20}{'CPU ms':>22}{'slope':>8}{'+-':>7}{'at most':>9}")
     found = []
     for series, seconds in measured():
         line = slope(series.sizes, seconds)
-        sizes, costs = f"{series.sizes[0]:,} to {series.sizes[-1]:,}", f"{1e3 * seconds[0]:,.2f} to {1e3 * seconds[-1]:,.2f}"
+        sizes, costs = (
+            f"{series.sizes[0]:,} to {series.sizes[-1]:,}",
+            f"{1e3 * seconds[0]:,.2f} to {1e3 * seconds[-1]:,.2f}",
+        )
         told = f"   steeper: {series.reason or 'unexplained'}" if line.steeper else ""
         named = f"{series.kind}: {series.name}"
-        print(f"  {named:38}{sizes:>20}{costs:>22}{line.value:8.2f}{line.error:7.2f}{LIMIT:9.1f}{told}", flush=True)
-        found += [(series.kind, series.name, size, cost, *line) for size, cost in zip(series.sizes, seconds)]
+        print(
+            f"  "
+            f"{named:38}{sizes:>20}{costs:>22}{line.value:8.2f}{line.error:7.2f}{LIMIT:9.1f}{told}",
+            flush=True,
+        )
+        found += [
+            (series.kind, series.name, size, cost, *line)
+            for size, cost in zip(series.sizes, seconds)
+        ]
     FOLDER.mkdir(parents=True, exist_ok=True)
     frame = pd.DataFrame(found, columns=["kind", "name", "size", "seconds", *Slope._fields])
     sheet.write_data(frame, str(FOLDER / "growth.csv"))
-    sheet.save(draw(sheet.read_data(str(FOLDER / "growth.csv"))), str(FOLDER / "growth.svg"), str(FOLDER / "growth.png"))
+    sheet.save(
+        draw(sheet.read_data(str(FOLDER / "growth.csv"))),
+        str(FOLDER / "growth.svg"),
+        str(FOLDER / "growth.png"),
+    )
     print(f"  drawn in {os.path.relpath(FOLDER / 'growth.png')}")
     print(f"\n{f'memory to gather {RUNS:,} runs':40}{'MB':>12}{'at most':>12}")
     for script, needed in gathering.peaks(RUNS // 10, RUNS // 100).items():
-        print(f"  {script:38}{needed / 1e6:12,.0f}{MOST_MEMORY / 1e6:12,.0f}{'' if needed <= MOST_MEMORY else '   too much'}")
+        print(
+            f"  "
+            f"{script:38}{needed / 1e6:12,.0f}{MOST_MEMORY / 1e6:12,.0f}{'' if needed <= MOST_MEMORY else '   too much'}"
+        )
 
 
 AXES = {
@@ -389,7 +533,9 @@ AXES = {
 
 
 def draw(frame: pd.DataFrame) -> Figure:
-    """A panel for each kind of size: CPU seconds over size, fitted lines, and a grey line of slope 1. frame: columns as in growth.csv."""
+    """A panel for each kind of size: CPU seconds over size, fitted lines, and a grey line of slope
+    1. frame: columns as in growth.csv.
+    """
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(style.WIDE, 1.45 * style.WIDE), layout="constrained")
         for letter, (kind, label), axes in zip("abcdef", AXES.items(), figure.subplots(3, 2).flat):
@@ -406,8 +552,24 @@ def _draw_panel(axes: Axes, frame: pd.DataFrame) -> None:
         upper, first = own[-FITTED:], own.iloc[0]
         label = f"{name}: {first['value']:.2f} \u00b1 {first['error']:.2f}"
         axes.plot(own["size"], own["seconds"], **(look | {"linestyle": ""}))
-        axes.plot(upper["size"], first["at_one"] * upper["size"] ** first["value"], **(look | {"marker": ""}))
+        axes.plot(
+            upper["size"],
+            first["at_one"] * upper["size"] ** first["value"],
+            **(look | {"marker": ""}),
+        )
         axes.plot([], [], label=label, **look)
     ends = np.array([frame["size"].min(), frame["size"].max()])
-    axes.plot(ends, frame["seconds"].min() * ends / ends[0], color="0.8", linewidth=2.5, zorder=0, label="slope 1")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), title="slope \u00b1 standard error", title_fontsize=style.SMALLEST_TEXT)
+    axes.plot(
+        ends,
+        frame["seconds"].min() * ends / ends[0],
+        color="0.8",
+        linewidth=2.5,
+        zorder=0,
+        label="slope 1",
+    )
+    axes.legend(
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.25),
+        title="slope \u00b1 standard error",
+        title_fontsize=style.SMALLEST_TEXT,
+    )

@@ -1,7 +1,8 @@
 """Run time of each planner beside the least that its evaluations cost: `make benchmark ARGS=least`.
 
-A run is made once more with its kernels as plain Python functions, all but the inner ones, which stay compiled and whose calls are counted:
-nothing is added to a kernel. The least is what that many operations cost in kernels that do nothing else.
+A run is made once more with its kernels as plain Python functions, all but the inner ones, which
+stay compiled and whose calls are counted: nothing is added to a kernel. The least is what that many
+operations cost in kernels that do nothing else.
 """
 
 import sys
@@ -32,8 +33,9 @@ _SAMPLES, _POINTS, _OBSTACLES = 100, 9, 10
 Count = Callable[..., dict[str, int]]
 
 
-# ---------------------------------------------------------------------------------------------------------------------
-# What one operation costs: kernels that do nothing else and leave a trace, so that none of it is optimised away
+# --------------------------------------------------------------------------------------------------
+# What one operation costs: kernels that do nothing else and leave a trace, so that none of it is
+# optimised away
 
 OPERATIONS = {
     "terms": "a control point's share of a sample, in x and y",
@@ -79,7 +81,10 @@ def _edges(x, y, edges, found):
             dx, dy = edges[k, 2] - edges[k, 0], edges[k, 3] - edges[k, 1]
             share = ((x[s] - edges[k, 0]) * dx + (y[s] - edges[k, 1]) * dy) / (dx * dx + dy * dy)
             share = min(max(share, 0.0), 1.0)
-            nearest = min(nearest, (edges[k, 0] + share * dx - x[s]) ** 2 + (edges[k, 1] + share * dy - y[s]) ** 2)
+            nearest = min(
+                nearest,
+                (edges[k, 0] + share * dx - x[s]) ** 2 + (edges[k, 1] + share * dy - y[s]) ** 2,
+            )
         found[s] = nearest
 
 
@@ -103,11 +108,34 @@ def costs() -> dict[str, float]:
     x, y, chords = *(16 * rng.random((2, _SAMPLES))), np.empty(_SAMPLES - 1)
     weights, points = rng.random((_POINTS, _SAMPLES)), rng.random((_POINTS, 2))
     works = {
-        "terms": (_terms, (weights, points, np.zeros(_SAMPLES), np.zeros(_SAMPLES)), _POINTS * _SAMPLES),
+        "terms": (
+            _terms,
+            (weights, points, np.zeros(_SAMPLES), np.zeros(_SAMPLES)),
+            _POINTS * _SAMPLES,
+        ),
         "roots": (_roots, (x, y, chords), _SAMPLES - 1),
-        "obstacles": (_obstacles, (x, y, 16 * rng.random((_OBSTACLES, 3)), np.zeros(1, dtype=np.int64)), _OBSTACLES * _SAMPLES),
-        "edges": (_edges, (x, y, 16 * rng.random((_OBSTACLES, 4)), np.empty(_SAMPLES)), _OBSTACLES * _SAMPLES),
-        "cells": (_cells, (x, y, rng.random(256) < 0.2, 16, np.empty(_SAMPLES, dtype=np.int32), np.zeros(1, dtype=np.int64)), _SAMPLES),
+        "obstacles": (
+            _obstacles,
+            (x, y, 16 * rng.random((_OBSTACLES, 3)), np.zeros(1, dtype=np.int64)),
+            _OBSTACLES * _SAMPLES,
+        ),
+        "edges": (
+            _edges,
+            (x, y, 16 * rng.random((_OBSTACLES, 4)), np.empty(_SAMPLES)),
+            _OBSTACLES * _SAMPLES,
+        ),
+        "cells": (
+            _cells,
+            (
+                x,
+                y,
+                rng.random(256) < 0.2,
+                16,
+                np.empty(_SAMPLES, dtype=np.int32),
+                np.zeros(1, dtype=np.int64),
+            ),
+            _SAMPLES,
+        ),
     }
     times = 5_000
     return {
@@ -116,7 +144,7 @@ def costs() -> dict[str, float]:
     }
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # What a run is asked to do: the operations of a call, from its result and its arguments
 
 
@@ -143,14 +171,20 @@ def _measured_by_bca(found, genes, cells, curve, scratch, with_clearance):
     done = Counter(terms=len(genes) * samples, roots=samples - 1, cells=samples)
     if with_clearance and found[1] == 0:
         rows, columns = cells.occupied.shape
-        at = columns * np.minimum(scratch[1].astype(int), rows - 1) + np.minimum(scratch[0].astype(int), columns - 1)
+        at = columns * np.minimum(scratch[1].astype(int), rows - 1) + np.minimum(
+            scratch[0].astype(int), columns - 1
+        )
         done["obstacles"] += int((cells.first[at + 1] - cells.first[at]).sum())
     return done
 
 
 def _stretch(_, cells, occupied, columns, places, basis, stretch, *__):
     first_point, last_point, first, last = stretch
-    return {"terms": (last_point - first_point + 1) * (last - first + 1), "roots": last - first, "cells": last - first}
+    return {
+        "terms": (last_point - first_point + 1) * (last - first + 1),
+        "roots": last - first,
+        "cells": last - first,
+    }
 
 
 class _Looked:
@@ -185,7 +219,9 @@ COUNTS: dict[Dispatcher, Count] = {
     bca._measure: _measured_by_bca,
     binary_genetic._measure: _stretch,
     abc_ep._length: lambda *_: {"roots": 1},
-    ant_colony._walk: lambda _, rng, lattice, trail, heuristic, rules, path, visits, ant: {"cells": 8 * int((visits == ant).sum())},
+    ant_colony._walk: lambda _, rng, lattice, trail, heuristic, rules, path, visits, ant: {
+        "cells": 8 * int((visits == ant).sum())
+    },
     cell_paths.length: lambda _, path, lattice: {"cells": len(path)},
     cell_paths.step_between: lambda *_: {"cells": 8},
     cell_paths.forage: lambda *_: {"cells": 8},
@@ -211,8 +247,17 @@ def operations(run: Callable[[], Plan]) -> tuple[Plan, Counter]:
 
     counted = {kernel: counting(kernel, count) for kernel, count in COUNTS.items()}
     own = [module for name, module in sys.modules.items() if name.startswith("bezierplan.")]
-    kernels = [(module, name, each) for module in own for name, each in vars(module).items() if isinstance(each, Dispatcher)]
-    plain = [(module, name, counted.get(kernel, kernel.py_func)) for module, name, kernel in kernels if _leads_to_one(kernel)]
+    kernels = [
+        (module, name, each)
+        for module in own
+        for name, each in vars(module).items()
+        if isinstance(each, Dispatcher)
+    ]
+    plain = [
+        (module, name, counted.get(kernel, kernel.py_func))
+        for module, name, kernel in kernels
+        if _leads_to_one(kernel)
+    ]
     with ExitStack() as stack, np.errstate(all="ignore"):
         for module, name, function in plain:
             stack.enter_context(mock.patch.object(module, name, function))
@@ -233,7 +278,7 @@ def _called(kernel: Dispatcher) -> Iterator[Dispatcher]:
     return (each for each in own if isinstance(each, Dispatcher) and each is not kernel)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Table
 
 # Beside the first method of each planner of a study: those whose work is of another kind.
@@ -256,18 +301,22 @@ def _chosen(study: definition.Study) -> Iterator[tuple[str, str]]:
 
 
 def benchmark_least() -> None:
-    """Run time, the least that its evaluations cost, and their ratio, under the first condition of a method's first experiment; of a method
-    that tests nothing in a kernel, no ratio.
+    """Run time, the least that its evaluations cost, and their ratio, under the first condition of
+    a method's first experiment; of a method that tests nothing in a kernel, no ratio.
     """
     cost = costs()
     print(f"\n{'one operation':26}{'CPU ns':>12}")
     for name, seconds in cost.items():
         print(f"  {OPERATIONS[name] + ' (' + name + ')':60}{1e9 * seconds:8.2f}")
-    print(f"\n{'a run':34}{'ms':>10}{'least':>10}{'ratio':>8}   thousands of {', '.join(OPERATIONS)}")
+    print(
+        f"\n{'a run':34}{'ms':>10}{'least':>10}{'ratio':>8}   thousands of {', '.join(OPERATIONS)}"
+    )
     for key, study in reading.load(reading.read_config({})).items():
         for experiment, method in _chosen(study):
             job = jobs.job(study, experiment, method, "smoke", 0)
-            made, _ = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
+            made, _ = problems.build_all(
+                jobs.problems_job(study, experiment, "smoke"), study.folder
+            )
             condition = next(execution.conditions(list(job["problems"]), job["vary"]))
             run = partial(execution.run, job, condition, 0, made[condition.problem])
             taken = cpu_seconds(run, ROUNDS)
@@ -277,6 +326,7 @@ def benchmark_least() -> None:
             least = sum(cost[name] * number for name, number in done.items())
             numbers = "".join(f"{done[name] / 1e3:10,.1f}" for name in OPERATIONS)
             print(
-                f"  {key + ' ' + method:32}{1e3 * taken:10.2f}{1e3 * least:10.2f}{taken / least if least else np.nan:8.1f}{numbers}",
+                f"  "
+                f"{key + ' ' + method:32}{1e3 * taken:10.2f}{1e3 * least:10.2f}{taken / least if least else np.nan:8.1f}{numbers}",
                 flush=True,
             )

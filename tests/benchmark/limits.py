@@ -1,4 +1,6 @@
-"""What must not take longer than a promised time: the six maps of elhoseny2017, and large inputs. Each line shows the limit beside it."""
+"""What must not take longer than a promised time: the six maps of elhoseny2017, and large inputs.
+Each line shows the limit beside it.
+"""
 
 import math
 from collections.abc import Iterator
@@ -29,7 +31,9 @@ class Timed(NamedTuple):
 
 
 def _on_the_maps() -> Iterator[Timed]:
-    """The mean run of MGA-C, the exact shortest path, and what its rounding adds, each on the map where it takes longest."""
+    """The mean run of MGA-C, the exact shortest path, and what its rounding adds, each on the map
+    where it takes longest.
+    """
     study = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
     made, _ = problems.build_all(jobs.problems_job(study, "maps", "smoke"), study.folder)
     maps = list(made.values())
@@ -48,9 +52,15 @@ def _on_the_maps() -> Iterator[Timed]:
 
     def rounding(problem: Problem) -> float:
         settings = study.resolved("rounded")
-        return cpu_seconds(lambda: rounded_shortest_path.plan(problem, np.random.default_rng(0), **settings)) - exact(problem)
+        return cpu_seconds(
+            lambda: rounded_shortest_path.plan(problem, np.random.default_rng(0), **settings)
+        ) - exact(problem)
 
-    for name, work, limit in (("MGA-C", genetic, 1.5), ("exact shortest path", exact, 0.02), ("rounding", rounding, 0.005)):
+    for name, work, limit in (
+        ("MGA-C", genetic, 1.5),
+        ("exact shortest path", exact, 0.02),
+        ("rounding", rounding, 0.005),
+    ):
         seconds, hardest = max((work(problem), problem.name) for problem in maps)
         yield Timed(f"{name}, {hardest}", seconds, limit)
 
@@ -60,7 +70,9 @@ def random_cells(side: int, largest: int, seed: int = 2) -> Grid:
     rng = np.random.default_rng(seed)
     occupied = np.zeros((side, side), dtype=bool)
     while occupied.mean() < 0.2:
-        for row, column, size in zip(*rng.integers(0, side, (2, 500)), rng.integers(1, largest + 1, 500)):
+        for row, column, size in zip(
+            *rng.integers(0, side, (2, 500)), rng.integers(1, largest + 1, 500)
+        ):
             occupied[row : row + size, column : column + size] = True
     occupied[0, 0] = occupied[-1, -1] = False
     return Grid(occupied, 1.0, "cell")
@@ -69,7 +81,9 @@ def random_cells(side: int, largest: int, seed: int = 2) -> Grid:
 def star(corners: int) -> Problem:
     """A way around a star with that many corners."""
     angles = np.arange(corners) * math.tau / corners
-    ring = 5 + np.where(np.arange(corners) % 2, 4.0, 3.0)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    ring = 5 + np.where(np.arange(corners) % 2, 4.0, 3.0)[:, None] * np.column_stack(
+        [np.cos(angles), np.sin(angles)]
+    )
     return Problem("", Polygons((0.0, 10.0, 0.0, 10.0), ((ring,),), "m"), (0.1, 5.0), (9.9, 5.1))
 
 
@@ -88,15 +102,27 @@ def _large() -> Iterator[Timed]:
     """Exact bounds, a picture and a check of inputs that are as large as they may be."""
     for side, largest, limit in ((128, 1, 5.0), (1000, 1, 10.0), (1000, 3, 10.0), (1000, 30, 10.0)):
         problem = Problem("", random_cells(side, largest), (0.5, 0.5), (side - 0.5, side - 0.5))
-        yield Timed(f"{side} x {side} cells, blocks up to {largest}", cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1), limit)  # noqa: B023
+        yield Timed(
+            f"{side} x {side} cells, blocks up to {largest}",
+            cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1),
+            limit,
+        )  # noqa: B023
     problem = star(5000)
-    yield Timed("polygon with 5,000 corners", cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1), 5.0)
+    yield Timed(
+        "polygon with 5,000 corners",
+        cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1),
+        5.0,
+    )
     grid = random_cells(2000, 30)
     yield Timed("picture of 2000 x 2000 cells", cpu_seconds(lambda: draw(grid), 1), 5.0)
     share = np.linspace(0, 1, 61)
-    pieces = curves.bezier_pieces(Path("bezier", np.column_stack([1 + 8 * share, 9.5 + 0.3 * np.sin(60 * share)])))
+    pieces = curves.bezier_pieces(
+        Path("bezier", np.column_stack([1 + 8 * share, 9.5 + 0.3 * np.sin(60 * share)]))
+    )
     blocked = region(problem.workspace)
-    yield Timed("check of a curve of degree 60", cpu_seconds(lambda: checker.check(pieces, blocked)), 5.0)
+    yield Timed(
+        "check of a curve of degree 60", cpu_seconds(lambda: checker.check(pieces, blocked)), 5.0
+    )
 
 
 def benchmark_limits() -> None:

@@ -1,8 +1,9 @@
 """Planners of OMPL on our problems, with OMPL's defaults and its path simplifier.
 
-States are points and motions are straight, or states are poses and motions are Dubins paths. A motion is valid if the certified checker's
-own search for a collision finds none on it, so OMPL needs no resolution and its paths are as exact as ours. A test is a call from C++ into
-Python, which runs a compiled kernel.
+States are points and motions are straight, or states are poses and motions are Dubins paths. A
+motion is valid if the certified checker's own search for a collision finds none on it, so OMPL
+needs no resolution and its paths are as exact as ours. A test is a call from C++ into Python, which
+runs a compiled kernel.
 """
 
 import math
@@ -18,7 +19,11 @@ from bezierplan.geometry.region import Region, from_origin
 from bezierplan.planners.parts import dubins
 from bezierplan.workspaces.problem import Problem
 
-PLANNERS = {"PRM*": geometric.PRMstar, "BIT*": geometric.BITstar, "Informed RRT*": geometric.InformedRRTstar}
+PLANNERS = {
+    "PRM*": geometric.PRMstar,
+    "BIT*": geometric.BITstar,
+    "Informed RRT*": geometric.InformedRRTstar,
+}
 
 TURNING_PLANNERS = {"BIT*": geometric.BITstar, "RRT*": geometric.RRTstar}
 """Those that find a way for a robot with a turning radius on maps of polygons in seconds."""
@@ -31,15 +36,19 @@ _SHORTEST_SLICE = 5e-4
 
 
 def start(seed: int) -> None:
-    """Seed OMPL's random numbers, once a process and before anything else of OMPL is used, and silence its log."""
+    """Seed OMPL's random numbers, once a process and before anything else of OMPL is used, and
+    silence its log.
+    """
     util.setLogLevel(util.LOG_NONE)
     util.RNG.setSeed(seed)
 
 
 def segment_test(blocked: Region) -> SegmentTest:
-    """A test whether the segment from (x, y) to (end_x, end_y), in units, stays out of a blocked region.
+    """A test whether the segment from (x, y) to (end_x, end_y), in units, stays out of a blocked
+    region.
 
-    It is compiled anew for each region, whose numbers become constants: with the region as an argument it would take half as long again.
+    It is compiled anew for each region, whose numbers become constants: with the region as an
+    argument it would take half as long again.
     """
     shift_x, shift_y = from_origin(np.zeros(2), blocked)
 
@@ -53,13 +62,18 @@ def segment_test(blocked: Region) -> SegmentTest:
 
 
 def dubins_test(blocked: Region, radius: float) -> DubinsTest:
-    """A test whether the shortest Dubins path of a radius from (x, y, heading) to another pose stays out of a blocked region."""
+    """A test whether the shortest Dubins path of a radius from (x, y, heading) to another pose
+    stays out of a blocked region.
+    """
     shift = from_origin(np.zeros(2), blocked)
 
     @njit
     def is_free(x, y, heading, end_x, end_y, end_heading):
         words, pieces = np.empty((dubins.WORDS, 8)), np.empty((dubins.MOST_PIECES, 4, 2))
-        one, other = np.array([x + shift[0], y + shift[1], heading]), np.array([end_x + shift[0], end_y + shift[1], end_heading])
+        one, other = (
+            np.array([x + shift[0], y + shift[1], heading]),
+            np.array([end_x + shift[0], end_y + shift[1], end_heading]),
+        )
         dubins.words_between(one, other, radius, words)
         count = dubins.pieces_of(one, other, words[np.argmin(words[:, 7])], radius, pieces)
         return first_collision(pieces[:count], blocked)[0] == math.inf
@@ -80,10 +94,16 @@ class DubinsMotions(base.MotionValidator):
 
 
 def turning_attempts(
-    planner: str, problem: Problem, radius: float, headings: tuple[float, float], is_free: DubinsTest, times: np.ndarray
+    planner: str,
+    problem: Problem,
+    radius: float,
+    headings: tuple[float, float],
+    is_free: DubinsTest,
+    times: np.ndarray,
 ) -> Iterator[tuple[float, np.ndarray | None]]:
-    """As `attempts`, of poses (n, 3) that Dubins paths of a radius join, with headings at both ends. They are not simplified: OMPL's
-    simplifier takes distances to be the same both ways, and they are not.
+    """As `attempts`, of poses (n, 3) that Dubins paths of a radius join, with headings at both
+    ends. They are not simplified: OMPL's simplifier takes distances to be the same both ways, and
+    they are not.
     """
     begin = time.process_time()
     space = base.DubinsStateSpace(radius)
@@ -110,10 +130,17 @@ def turning_attempts(
     for until in times:
         while searched < until:
             before = time.process_time()
-            search.solve(base.timedPlannerTerminationCondition(max(until - searched, _SHORTEST_SLICE)))
+            search.solve(
+                base.timedPlannerTerminationCondition(max(until - searched, _SHORTEST_SLICE))
+            )
             searched += time.process_time() - before
         found = definition.hasExactSolution()
-        yield searched, np.array([_pose(state) for state in definition.getSolutionPath().getStates()]) if found else None
+        yield (
+            searched,
+            np.array([_pose(state) for state in definition.getSolutionPath().getStates()])
+            if found
+            else None,
+        )
 
 
 def _pose(state: base.State) -> tuple[float, float, float]:
@@ -131,12 +158,17 @@ class Motions(base.MotionValidator):
         return self.is_free(begin[0], begin[1], end[0], end[1])
 
 
-def attempts(planner: str, problem: Problem, is_free: SegmentTest, times: np.ndarray) -> Iterator[tuple[float, np.ndarray | None]]:
-    """Paths of one run: polylines (n, 2) in units, or None, each with the CPU seconds that a run with that budget takes.
+def attempts(
+    planner: str, problem: Problem, is_free: SegmentTest, times: np.ndarray
+) -> Iterator[tuple[float, np.ndarray | None]]:
+    """Paths of one run: polylines (n, 2) in units, or None, each with the CPU seconds that a run
+    with that budget takes.
 
-    planner: a key of `PLANNERS`. is_free: the `segment_test` of the problem's region. times: (t,) CPU seconds, ascending, after each of
-    which the search is interrupted and gives its path as it is, then simplified; None if it has none yet. Simplified paths are copies, of
-    which nothing goes back into the search. A user simplifies once, at the end: so a simplification is no part of later paths' times.
+    planner: a key of `PLANNERS`. is_free: the `segment_test` of the problem's region. times: (t,)
+    CPU seconds, ascending, after each of which the search is interrupted and gives its path as it
+    is, then simplified; None if it has none yet. Simplified paths are copies, of which nothing goes
+    back into the search. A user simplifies once, at the end: so a simplification is no part of
+    later paths' times.
     """
     begin = time.process_time()
     space = base.RealVectorStateSpace(2)
@@ -159,8 +191,11 @@ def attempts(planner: str, problem: Problem, is_free: SegmentTest, times: np.nda
     for until in times:
         while searched < until:
             before = time.process_time()
-            # PRM* asks its condition in a second thread, which would wait for ever for Python's lock; so this one, in wall time, is OMPL's.
-            search.solve(base.timedPlannerTerminationCondition(max(until - searched, _SHORTEST_SLICE)))
+            # PRM* asks its condition in a second thread, which would wait for ever for Python's
+            # lock; so this one, in wall time, is OMPL's.
+            search.solve(
+                base.timedPlannerTerminationCondition(max(until - searched, _SHORTEST_SLICE))
+            )
             searched += time.process_time() - before
         if not definition.hasExactSolution():
             yield searched, None

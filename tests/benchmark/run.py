@@ -1,7 +1,8 @@
-"""Speed of the inner loops: `make benchmark`, or of some of its parts: `make benchmark ARGS="tharwat2018 runs"`.
+"""Speed of the inner loops: `make benchmark`, or of some of its parts: `make benchmark
+ARGS="tharwat2018 runs"`.
 
-CPU time of one core. Checks and bounds are timed by kind and size of workspace, start-up in processes of its own; `compare.py` sets the
-chaotic swarm beside other libraries.
+CPU time of one core. Checks and bounds are timed by kind and size of workspace, start-up in
+processes of its own; `compare.py` sets the chaotic swarm beside other libraries.
 """
 
 import os
@@ -28,16 +29,26 @@ SOURCE = sys.path[0]
 
 
 def benchmark_start() -> None:
-    """CPU seconds of what every run job imports, of the check of the configuration, and of `bezierplan list`."""
+    """CPU seconds of what every run job imports, of the check of the configuration, and of
+    `bezierplan list`.
+    """
     print(f"\n{'start-up':26}{'CPU s':>18}")
     for name, command in {
-        "imports of a run job": ["-c", "import pyarrow.parquet; from bezierplan.running import execution, problems"],
+        "imports of a run job": [
+            "-c",
+            "import pyarrow.parquet; from bezierplan.running import execution, problems",
+        ],
         "bezierplan list": ["-m", "bezierplan", "list"],
     }.items():
         seconds = []
         for _ in range(ROUNDS):
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            subprocess.run([sys.executable, *command], env=os.environ | {"PYTHONPATH": SOURCE}, stdout=subprocess.DEVNULL, check=True)
+            subprocess.run(
+                [sys.executable, *command],
+                env=os.environ | {"PYTHONPATH": SOURCE},
+                stdout=subprocess.DEVNULL,
+                check=True,
+            )
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
             seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
         print(f"  {name:24}{min(seconds):18.2f}")

@@ -23,8 +23,8 @@ def _milliseconds(run: Callable[[int], object]) -> float:
 
 
 def methods(study: definition.Study) -> Iterator[tuple[str, str]]:
-    """Every method with the first experiment that it takes part in; baselines are the same everywhere and left out, and so are drives
-    through worlds that move (`simulation.py`).
+    """Every method with the first experiment that it takes part in; baselines are the same
+    everywhere and left out, and so are drives through worlds that move (`simulation.py`).
     """
     seen = set(study.baselines)
     for experiment, description in study.experiments.items():
@@ -42,7 +42,9 @@ def benchmark_runs() -> None:
     for key, study in reading.load(reading.read_config({})).items():
         for experiment, method in methods(study):
             job = jobs.job(study, experiment, method, "smoke", 0)
-            made, _ = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
+            made, _ = problems.build_all(
+                jobs.problems_job(study, experiment, "smoke"), study.folder
+            )
             condition = next(execution.conditions(list(job["problems"]), job["vary"]))
             problem = made[condition.problem]
             taken = _milliseconds(lambda number: execution.run(job, condition, number, problem))  # noqa: B023

@@ -1,5 +1,7 @@
-"""binary_genetic beside the bare minimum of work that its runs ask for: a compiled loop that evaluates as many curves of the same kind,
-with the same sparsity, measures them and looks up the same number of cells, and does nothing else."""
+"""binary_genetic beside the bare minimum of work that its runs ask for: a compiled loop that
+evaluates as many curves of the same kind, with the same sparsity, measures them and looks up the
+same number of cells, and does nothing else.
+"""
 
 import numpy as np
 from numba import njit
@@ -14,7 +16,9 @@ from bezierplan.workspaces.problem import Problem
 
 @njit(cache=True)
 def bare_minimum(cells, occupied, basis, first_point, last_point, first_sample, x, y):
-    """Total length and occupied samples of the curves of all chromosomes (n, control points): no search, no bookkeeping."""
+    """Total length and occupied samples of the curves of all chromosomes (n, control points): no
+    search, no bookkeeping.
+    """
     columns = occupied.shape[1]
     length, bad = 0.0, 0
     for i in range(len(cells)):
@@ -41,17 +45,35 @@ def benchmark_binary_genetic() -> None:
     grid = files.load(study.workspaces["figure2"].plain(), study.folder)
     problem = Problem("0_240", grid, grid.centre(0), grid.centre(240))
     runs = 20
-    print(f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}{'bare minimum/s':>16}{'times the minimum':>20}")
+    print(
+        f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}{'bare minimum/s':>16}{'times the minimum':>20}"
+    )
     for method in study.experiments["routes"].methods:
         settings = study.resolved(method)
         evaluations = runs * settings["population"] * (settings["generations"] + 1)
-        seconds = cpu_seconds(lambda: [binary_genetic.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023
+        seconds = cpu_seconds(
+            lambda: [
+                binary_genetic.plan(problem, np.random.default_rng(seed), **settings)
+                for seed in range(runs)
+            ]
+        )  # noqa: B023
         basis = curves.sample_matrix(settings["curve"], settings["genes"] + 2, settings["samples"])
         stretches = binary_genetic.stretches(basis)
-        cells = np.random.default_rng(0).integers(0, grid.occupied.size, (evaluations // runs, settings["genes"] + 2))
+        cells = np.random.default_rng(0).integers(
+            0, grid.occupied.size, (evaluations // runs, settings["genes"] + 2)
+        )
         first_sample = np.append(stretches[:, 2], len(basis))
         x, y = np.empty((2, len(basis)))
-        arguments = (cells, grid.occupied, np.ascontiguousarray(basis.T), stretches[:, 0], stretches[:, 1], first_sample, x, y)
+        arguments = (
+            cells,
+            grid.occupied,
+            np.ascontiguousarray(basis.T),
+            stretches[:, 0],
+            stretches[:, 1],
+            first_sample,
+            x,
+            y,
+        )
         least = runs * cpu_seconds(lambda: bare_minimum(*arguments))  # noqa: B023
         rates = f"{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.1f}{evaluations / least:16,.0f}"
         print(f"  {method:14}{rates}{seconds / least:20.2f}")

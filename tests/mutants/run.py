@@ -1,8 +1,10 @@
-"""Plants each fault of mutants.yaml in a copy of the tree, and runs the test that must catch it there.
+"""Plants each fault of mutants.yaml in a copy of the tree, and runs the test that must catch it
+there.
 
     python tests/mutants/run.py [--jobs N] [WORD ...]
 
-WORD: only faults whose description, file or test contains one of the words. Exits with 1 unless every fault is caught.
+WORD: only faults whose description, file or test contains one of the words. Exits with 1 unless
+every fault is caught.
 """
 
 import argparse
@@ -28,15 +30,26 @@ TIME_LIMIT = 300
 WORDS = "pytest.txt"
 FORKS = multiprocessing.get_context("forkserver")
 # What takes long to import: processes begin with it.
-MODULES = ["numba", "pandas", "pyarrow.parquet", "scipy.stats", "scipy.interpolate", "matplotlib.figure", "shapely"]
-# The status that multiprocessing gives a process whose true one another thread has read: a start polls the children of all threads.
+MODULES = [
+    "numba",
+    "pandas",
+    "pyarrow.parquet",
+    "scipy.stats",
+    "scipy.interpolate",
+    "matplotlib.figure",
+    "shapely",
+]
+# The status that multiprocessing gives a process whose true one another thread has read: a start
+# polls the children of all threads.
 LOST = 255
 # What no test of a fault needs; compiled kernels are copied, because most of them do not change.
 LEFT_OUT = shutil.ignore_patterns(".git", ".venv", ".snakemake", "results", "__pycache__")
 
 
 class Mutant(NamedTuple):
-    """A planted fault: its description, the file, the text that it replaces and the new text, and the test that must catch it."""
+    """A planted fault: its description, the file, the text that it replaces and the new text, and
+    the test that must catch it.
+    """
 
     fault: str
     file: str
@@ -51,15 +64,22 @@ def load() -> list[Mutant]:
 
 
 def planted(mutant: Mutant, tree: Path = ROOT) -> str:
-    """The text of a mutant's file in a tree with the fault in it. Raises ValueError unless the old text stands there exactly once."""
+    """The text of a mutant's file in a tree with the fault in it. Raises ValueError unless the old
+    text stands there exactly once.
+    """
     text = (tree / mutant.file).read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
-        raise ValueError(f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; expected once")
+        raise ValueError(
+            f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; "
+            f"expected once"
+        )
     return text.replace(mutant.old, mutant.new)
 
 
 def run_tests(tree: Path, tests: list[str], *options: str) -> int | None:
-    """Exit status of pytest on tests in a tree, in a process of its own; None after `TIME_LIMIT` seconds a test. Its words go to a file."""
+    """Exit status of pytest on tests in a tree, in a process of its own; None after `TIME_LIMIT`
+    seconds a test. Its words go to a file.
+    """
     process = FORKS.Process(target=_pytest, args=(tree, [*options, *tests]))
     process.start()
     process.join(TIME_LIMIT * len(tests))
@@ -82,17 +102,25 @@ def _pytest(tree: Path, arguments: list[str]) -> None:
 
 
 def failing(tree: Path, mutants: list[Mutant]) -> set[str]:
-    """Tests of mutants that fail without a fault. Raises RuntimeError if pytest cannot run them at all."""
+    """Tests of mutants that fail without a fault. Raises RuntimeError if pytest cannot run them at
+    all.
+    """
     status = run_tests(tree, sorted({each.test for each in mutants}), "--tb=no")
     words = (tree / WORDS).read_text()
-    found = {line.split()[1].partition("[")[0] for line in words.splitlines() if line.startswith(("FAILED ", "ERROR tests"))}
+    found = {
+        line.split()[1].partition("[")[0]
+        for line in words.splitlines()
+        if line.startswith(("FAILED ", "ERROR tests"))
+    }
     if status and not found:
         raise RuntimeError(words)
     return found
 
 
 def outcome(mutant: Mutant, trees: queue.Queue) -> str:
-    """`caught`, `survived`, or why the test could not be run, with the fault planted in one of the trees."""
+    """`caught`, `survived`, or why the test could not be run, with the fault planted in one of the
+    trees.
+    """
     tree = trees.get()
     file = tree / mutant.file
     clean = file.read_text(encoding="utf-8")
@@ -111,12 +139,28 @@ def outcome(mutant: Mutant, trees: queue.Queue) -> str:
 def main() -> int:
     """Run the mutants that the command line selects; returns the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many run at a time (default: one a core)")
-    parser.add_argument("words", nargs="*", metavar="WORD", help="only faults whose description, file or test contains a word")
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        default=os.cpu_count(),
+        help="how many run at a time (default: one a core)",
+    )
+    parser.add_argument(
+        "words",
+        nargs="*",
+        metavar="WORD",
+        help="only faults whose description, file or test contains a word",
+    )
     arguments = parser.parse_args()
-    os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"))
+    os.environ.update(
+        dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+    )
     FORKS.set_forkserver_preload(MODULES)
-    wanted = [each for each in load() if not arguments.words or any(word in " ".join(each) for word in arguments.words)]
+    wanted = [
+        each
+        for each in load()
+        if not arguments.words or any(word in " ".join(each) for word in arguments.words)
+    ]
     with tempfile.TemporaryDirectory() as folder:
         trees: queue.Queue = queue.Queue()
         for number in range(max(1, min(arguments.jobs, len(wanted)))):

@@ -1,7 +1,9 @@
-"""Pack the results of a scale with all that made them as an RO-Crate for an archive: `make archive`.
+"""Pack the results of a scale with all that made them as an RO-Crate for an archive: `make
+archive`.
 
-The crate follows the profile Workflow Run Crate 0.5 (https://w3id.org/ro/wfrun/workflow/0.5): the workflow with its code, configuration and
-environment as kept in git, one run of it, and what it made. The validator must accept it before it is zipped.
+The crate follows the profile Workflow Run Crate 0.5 (https://w3id.org/ro/wfrun/workflow/0.5): the
+workflow with its code, configuration and environment as kept in git, one run of it, and what it
+made. The validator must accept it before it is zipped.
 """
 
 import json
@@ -16,10 +18,16 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PROFILE = "https://w3id.org/ro/wfrun/{}/0.5"
-# Logs name places of the machine, and runs of alternatives and interpretations are many files that `snakemake alternatives interpretations`
-# makes again.
+# Logs name places of the machine, and runs of alternatives and interpretations are many files that
+# `snakemake alternatives interpretations` makes again.
 LEFT_OUT = ("logs", "sensitivity", "interpretations")
-MEDIA = {".html": "text/html", ".csv": "text/csv", ".md": "text/markdown", ".txt": "text/plain", ".yaml": "application/yaml"}
+MEDIA = {
+    ".html": "text/html",
+    ".csv": "text/csv",
+    ".md": "text/markdown",
+    ".txt": "text/plain",
+    ".yaml": "application/yaml",
+}
 
 
 def main() -> None:
@@ -30,7 +38,10 @@ def main() -> None:
     given = parser.parse_args()
     results = Path("results", given.scale)
     if not (results / "index.html").is_file():
-        sys.exit(f"{results}/index.html: not found; make it with snakemake {'all' if given.scale == 'full' else given.scale}")
+        sys.exit(
+            f"{results}/index.html: not found; make it with snakemake "
+            f"{'all' if given.scale == 'full' else given.scale}"
+        )
     version = code_version()
     folder = given.into / f"bezierplan-{given.scale}-{version}"
     shutil.rmtree(folder, ignore_errors=True)
@@ -49,13 +60,21 @@ def code_version() -> str:
 
 
 def code_files() -> list[Path]:
-    """What git keeps, without results: the workflow, its configuration, environment, tests and documents."""
-    return [Path(name) for name in _git("ls-files", "-z").split("\0") if name and (ROOT / name).is_file()]
+    """What git keeps, without results: the workflow, its configuration, environment, tests and
+    documents.
+    """
+    return [
+        Path(name)
+        for name in _git("ls-files", "-z").split("\0")
+        if name and (ROOT / name).is_file()
+    ]
 
 
 def result_files(results: Path) -> list[Path]:
     """The files of a scale that go into the archive."""
-    found = (file for file in sorted(results.rglob("*")) if file.is_file() and file.suffix != ".log")
+    found = (
+        file for file in sorted(results.rglob("*")) if file.is_file() and file.suffix != ".log"
+    )
     return [file for file in found if not set(file.relative_to(results).parts[:-1]) & set(LEFT_OUT)]
 
 
@@ -80,47 +99,105 @@ def describe(folder: Path, scale: str, version: str) -> None:
 
     def file(name: str, /, **more):
         media = {"encodingFormat": MEDIA[Path(name).suffix]} if Path(name).suffix in MEDIA else {}
-        return crate.add_file(folder / name, name, properties={"contentSize": str((folder / name).stat().st_size)} | media | more)
+        return crate.add_file(
+            folder / name,
+            name,
+            properties={"contentSize": str((folder / name).stat().st_size)} | media | more,
+        )
 
     results = f"results/{scale}"
-    made = datetime.fromtimestamp((folder / results / "index.html").stat().st_mtime, UTC).isoformat(timespec="seconds")
-    licence = thing(f"https://spdx.org/licenses/{cited['license']}", "CreativeWork", name=f"{cited['license']} licence")
+    made = datetime.fromtimestamp((folder / results / "index.html").stat().st_mtime, UTC).isoformat(
+        timespec="seconds"
+    )
+    licence = thing(
+        f"https://spdx.org/licenses/{cited['license']}",
+        "CreativeWork",
+        name=f"{cited['license']} licence",
+    )
     authors = [_author(thing, number, author) for number, author in enumerate(cited["authors"])]
-    crate.name, crate.description, crate.license = f"{cited['title']}: results at scale {scale}", cited["abstract"], licence
+    crate.name, crate.description, crate.license = (
+        f"{cited['title']}: results at scale {scale}",
+        cited["abstract"],
+        licence,
+    )
     crate.datePublished = made
     crate.root_dataset["author"] = authors
     crate.root_dataset["version"] = version
     crate.root_dataset["conformsTo"] = [
         thing(PROFILE.format("process"), "CreativeWork", name="Process Run Crate", version="0.5"),
         thing(PROFILE.format("workflow"), "CreativeWork", name="Workflow Run Crate", version="0.5"),
-        thing("https://w3id.org/workflowhub/workflow-ro-crate/1.0", "CreativeWork", name="Workflow RO-Crate", version="1.0"),
+        thing(
+            "https://w3id.org/workflowhub/workflow-ro-crate/1.0",
+            "CreativeWork",
+            name="Workflow RO-Crate",
+            version="1.0",
+        ),
     ]
     snakemake = _locked(folder / "environment.txt", "snakemake")
-    flow = crate.add_workflow(folder / "Snakefile", "Snakefile", main=True, lang="snakemake", lang_version=snakemake)
-    flow["name"], flow["version"], flow["license"], flow["author"] = cited["title"], version, licence, authors
+    flow = crate.add_workflow(
+        folder / "Snakefile", "Snakefile", main=True, lang="snakemake", lang_version=snakemake
+    )
+    flow["name"], flow["version"], flow["license"], flow["author"] = (
+        cited["title"],
+        version,
+        licence,
+        authors,
+    )
     flow["softwareRequirements"] = [file("environment.txt"), file("environment-build.txt")]
     parameters = {
-        name: thing(f"#{name}", "FormalParameter", name=name, additionalType="Dataset", conformsTo={"@id": _FORMAL}, **more)
+        name: thing(
+            f"#{name}",
+            "FormalParameter",
+            name=name,
+            additionalType="Dataset",
+            conformsTo={"@id": _FORMAL},
+            **more,
+        )
         for name, more in (("configuration", {"valueRequired": True}), ("results", {}))
     }
     flow["input"], flow["output"] = parameters["configuration"], parameters["results"]
 
-    page = file(f"{results}/index.html", name="All results on one page", description="Opens in any browser, without a network")
-    tables = [
-        file(name) for name in _there(folder, *(f"{results}/{each}" for each in ("summary.md", "numbers.csv", "claims.csv", "worth.csv")))
-    ]
-    made_folder = crate.add_dataset(folder / results, results, properties={"name": f"Results at scale {scale}"})
-    config = crate.add_dataset(
-        folder / "config", "config", properties={"name": "The five studies: experiments, maps, published numbers, claims"}
+    page = file(
+        f"{results}/index.html",
+        name="All results on one page",
+        description="Opens in any browser, without a network",
     )
-    config["exampleOfWork"], made_folder["exampleOfWork"] = parameters["configuration"], parameters["results"]
+    tables = [
+        file(name)
+        for name in _there(
+            folder,
+            *(
+                f"{results}/{each}"
+                for each in ("summary.md", "numbers.csv", "claims.csv", "worth.csv")
+            ),
+        )
+    ]
+    made_folder = crate.add_dataset(
+        folder / results, results, properties={"name": f"Results at scale {scale}"}
+    )
+    config = crate.add_dataset(
+        folder / "config",
+        "config",
+        properties={"name": "The five studies: experiments, maps, published numbers, claims"},
+    )
+    config["exampleOfWork"], made_folder["exampleOfWork"] = (
+        parameters["configuration"],
+        parameters["results"],
+    )
     made_folder["hasPart"] = [page, *tables]
     for name in ("README.md", "results/README.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE"):
         file(name)
     for name in ("src", "workflow", "tests", "docs"):
         crate.add_dataset(folder / name, name)
-    run = thing("#run", "CreateAction", name=f"Run of {cited['title']} at scale {scale}", endTime=made)
-    run["instrument"], run["object"], run["result"], run["agent"] = flow, config, [made_folder, page, *tables], authors
+    run = thing(
+        "#run", "CreateAction", name=f"Run of {cited['title']} at scale {scale}", endTime=made
+    )
+    run["instrument"], run["object"], run["result"], run["agent"] = (
+        flow,
+        config,
+        [made_folder, page, *tables],
+        authors,
+    )
     run["actionStatus"] = "http://schema.org/CompletedActionStatus"
     crate.root_dataset["mentions"] = run
     (folder / "ro-crate-metadata.json").write_text(
@@ -137,14 +214,21 @@ def check(folder: Path) -> list[str]:
     from rocrate_validator.models import Severity
 
     settings = services.ValidationSettings(
-        rocrate_uri=folder, profile_identifier="workflow-run-crate-0.5", requirement_severity=Severity.REQUIRED
+        rocrate_uri=folder,
+        profile_identifier="workflow-run-crate-0.5",
+        requirement_severity=Severity.REQUIRED,
     )
     _serve_context_without_network()
-    return [f"{issue.check.identifier}: {issue.message}" for issue in services.validate(settings).get_issues()]
+    return [
+        f"{issue.check.identifier}: {issue.message}"
+        for issue in services.validate(settings).get_issues()
+    ]
 
 
 def _serve_context_without_network() -> None:
-    """Let the validator's session fall back to rocrate's copy of the JSON-LD context, a later version, with the names of version 1.1."""
+    """Let the validator's session fall back to rocrate's copy of the JSON-LD context, a later
+    version, with the names of version 1.1.
+    """
     import io
     from importlib import resources
 
@@ -162,7 +246,9 @@ def _serve_context_without_network() -> None:
                 return super().send(request, **more)
             except Unreachable:
                 head = {"Content-Type": "application/ld+json"}
-                return self.build_response(request, HTTPResponse(io.BytesIO(body), head, 200, preload_content=False))
+                return self.build_response(
+                    request, HTTPResponse(io.BytesIO(body), head, 200, preload_content=False)
+                )
 
     HttpRequester().session.mount("https://w3id.org/ro/crate/1.1/context", OrCopy())
 
@@ -171,12 +257,16 @@ def _author(thing, number: int, author: dict):
     """A person or an organisation as in CITATION.cff."""
     names = [author[key] for key in ("given-names", "family-names") if key in author]
     kind = "Person" if names else "Organization"
-    return thing(author.get("orcid", f"#author{number}"), kind, name=" ".join(names) or author["name"])
+    return thing(
+        author.get("orcid", f"#author{number}"), kind, name=" ".join(names) or author["name"]
+    )
 
 
 def _locked(requirements: Path, package: str) -> str:
     """The version of a package in an environment."""
-    return re.search(rf"^{package}==([^ \\]+)", requirements.read_text(encoding="utf-8"), re.MULTILINE).group(1)
+    return re.search(
+        rf"^{package}==([^ \\]+)", requirements.read_text(encoding="utf-8"), re.MULTILINE
+    ).group(1)
 
 
 def _there(folder: Path, *names: str) -> list[str]:
@@ -185,7 +275,9 @@ def _there(folder: Path, *names: str) -> list[str]:
 
 def _git(*words: str) -> str:
     try:
-        return subprocess.run(["git", "-C", ROOT, *words], check=True, capture_output=True, text=True).stdout
+        return subprocess.run(
+            ["git", "-C", ROOT, *words], check=True, capture_output=True, text=True
+        ).stdout
     except (OSError, subprocess.CalledProcessError):
         sys.exit(f"{ROOT}: not a git checkout; the archive names the commit whose code it holds")
 

@@ -1,4 +1,6 @@
-"""Run what an alternative of an assumption changes, and judge its claims on these runs and the other methods' runs in force."""
+"""Run what an alternative of an assumption changes, and judge its claims on these runs and the
+other methods' runs in force.
+"""
 
 from bezierplan.running import log
 
@@ -8,5 +10,13 @@ with log.job(snakemake) as output:
     from bezierplan.analysis.claims import job
     from bezierplan.running import again, inputs
 
-    files = again.with_chunks(inputs.experiments(snakemake.input), snakemake.params.chunks, Path(output.runs))
-    job.run(snakemake.params.job, files, inputs.part(snakemake.input, "published"), output.claims, output.checks)
+    files = again.with_chunks(
+        inputs.experiments(snakemake.input), snakemake.params.chunks, Path(output.runs)
+    )
+    job.run(
+        snakemake.params.job,
+        files,
+        inputs.part(snakemake.input, "published"),
+        output.claims,
+        output.checks,
+    )

@@ -8,7 +8,9 @@ with log.job(snakemake) as output:
     from bezierplan.running import problems, rides, rows, worlds
 
     file = snakemake.input.problems
-    runs, times, traces = rides.run_chunk(problems.read(file), worlds.read(file), snakemake.params.job)
+    runs, times, traces = rides.run_chunk(
+        problems.read(file), worlds.read(file), snakemake.params.job
+    )
     rows.write(runs, output.runs)
     parquet.write_table(times, output.times)
     parquet.write_table(traces, output.traces, compression="zstd")

@@ -8,5 +8,8 @@ with log.job(snakemake) as output:
     from bezierplan.figures import job
     from bezierplan.running import inputs
 
-    files, published = inputs.experiments(snakemake.input), inputs.part(snakemake.input, "published")
+    files, published = (
+        inputs.experiments(snakemake.input),
+        inputs.part(snakemake.input, "published"),
+    )
     job.draw(snakemake.params.job, files, published, Path(snakemake.params.folder), output)

@@ -1,4 +1,6 @@
-"""Search for the interpretation of a paper that explains its published numbers, and draw the specification curve."""
+"""Search for the interpretation of a paper that explains its published numbers, and draw the
+specification curve.
+"""
 
 from bezierplan.running import log
 
@@ -11,7 +13,9 @@ with log.job(snakemake) as output:
 
     job, params = snakemake.params.job, snakemake.params
     published = inputs.part(snakemake.input, "published")
-    found = interpretations.found_by(job, published, Path(params.folder), Path(params.kept), snakemake.threads)
+    found = interpretations.found_by(
+        job, published, Path(params.folder), Path(params.kept), snakemake.threads
+    )
     for name, table in found.items():
         table.to_csv(output[name], index=False, float_format="%.10g", lineterminator="\n")
     choices = [choice["id"] for choice in job["screened"]["choices"]]

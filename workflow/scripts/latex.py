@@ -8,5 +8,7 @@ with log.job(snakemake) as output:
     from bezierplan.analysis import latex
     from bezierplan.running import inputs
 
-    tables = latex.captioned(inputs.part(snakemake.input, "tables"), snakemake.params.captions, snakemake.wildcards.study)
+    tables = latex.captioned(
+        inputs.part(snakemake.input, "tables"), snakemake.params.captions, snakemake.wildcards.study
+    )
     Path(output[0]).write_text(latex.document(tables), encoding="utf-8")

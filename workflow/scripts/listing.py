@@ -10,5 +10,7 @@ with log.job(snakemake) as output:
 
     job = snakemake.params.job
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
-    table = listing.table(job["spec"], inputs.part(snakemake.input, "published"), functions, job["labels"])
+    table = listing.table(
+        job["spec"], inputs.part(snakemake.input, "published"), functions, job["labels"]
+    )
     table.to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

@@ -9,4 +9,6 @@ with log.job(snakemake) as output:
     from bezierplan.running import inputs
 
     problems = inputs.part(snakemake.input, inputs.PROBLEMS)
-    job.draw_narrow(snakemake.params.job, problems, snakemake.input.data, Path(snakemake.params.folder), output)
+    job.draw_narrow(
+        snakemake.params.job, problems, snakemake.input.data, Path(snakemake.params.folder), output
+    )

@@ -9,4 +9,11 @@ with log.job(snakemake) as output:
 
     folder = Path(snakemake.output.page).parent
     verified = snakemake.input.verified[0]
-    job.write(snakemake.params.job, folder, list(snakemake.input.summary), output.page, snakemake.threads, verified)
+    job.write(
+        snakemake.params.job,
+        folder,
+        list(snakemake.input.summary),
+        output.page,
+        snakemake.threads,
+        verified,
+    )

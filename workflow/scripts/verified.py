@@ -7,5 +7,8 @@ with log.job(snakemake) as output:
 
     tasks = []
     for problems, bounds, runs, drives in snakemake.params.job:
-        tasks += [recheck.Task(problems, "", tuple(runs)), recheck.Task(problems, bounds, tuple(drives))]
+        tasks += [
+            recheck.Task(problems, "", tuple(runs)),
+            recheck.Task(problems, bounds, tuple(drives)),
+        ]
     recheck.write(recheck.verify(tasks, snakemake.threads), output[0])

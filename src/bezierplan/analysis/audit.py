@@ -1,11 +1,14 @@
-"""A paper's own numbers checked against each other and against exact bounds: contradictions that need no runs.
+"""A paper's own numbers checked against each other and against exact bounds: contradictions that
+need no runs.
 
-Columns: study, item (table or text), place (which cell), rule (in words), printed, limit, consistent (whether the number obeys the rule;
-empty if the rule cannot tell), arithmetic (of the rules that hold for any paper: how the number was checked).
+Columns: study, item (table or text), place (which cell), rule (in words), printed, limit,
+consistent (whether the number obeys the rule; empty if the rule cannot tell), arithmetic (of the
+rules that hold for any paper: how the number was checked).
 
-The rules that hold for any paper follow from what a metric is (`metrics.Metric`: its step, its least and largest value, whether it is a
-rank) and from how a table is laid out: `of_cells` checks the statistics of one cell, `of_ranks` mean ranks, `of_orders` the order of rows,
-`of_digits` last digits. `analysis.possible` has the closed forms.
+The rules that hold for any paper follow from what a metric is (`metrics.Metric`: its step, its
+least and largest value, whether it is a rank) and from how a table is laid out: `of_cells` checks
+the statistics of one cell, `of_ranks` mean ranks, `of_orders` the order of rows, `of_digits` last
+digits. `analysis.possible` has the closed forms.
 """
 
 import importlib
@@ -25,7 +28,8 @@ from bezierplan.running import problems
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
 
-# Metrics that are path lengths or never less, and their statistics that need not be the value of any single path.
+# Metrics that are path lengths or never less, and their statistics that need not be the value of
+# any single path.
 _AT_LEAST_A_LENGTH = ("length", "objective")
 _SPREADS = ("std", "iqr", "range")
 _PRINTED = ("metric", "statistic", "n", "unit", "value")
@@ -33,25 +37,34 @@ _PRINTED = ("metric", "statistic", "n", "unit", "value")
 # From the lowest to the highest.
 _IN_ORDER = ("min", "quartile1", "median", "quartile3", "max")
 
-# Last digits are tested where so many numbers of a metric are printed, whose standard deviation is so many units of the last digit: then
-# each digit is about equally likely, whatever is measured. A distribution is inconsistent if chance makes one as uneven so seldom.
+# Last digits are tested where so many numbers of a metric are printed, whose standard deviation is
+# so many units of the last digit: then each digit is about equally likely, whatever is measured. A
+# distribution is inconsistent if chance makes one as uneven so seldom.
 LEAST_NUMBERS, _LEAST_SPREAD, DIGITS_LEVEL = 30, 10, 0.01
 
 
-def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], primary: dict[str, dict]) -> list[dict]:
+def below_bound(
+    tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], primary: dict[str, dict]
+) -> list[dict]:
     """Check every published length against the exact shortest length of its problem.
 
-    tables: published numbers, by table, as from `read_published`. bounds: of the same tables' experiments, one row per problem, indexed by
-    name. primary: of a table, column -> the value of the primary interpretation. The allowance is half a unit of the last printed digit.
+    tables: published numbers, by table, as from `read_published`. bounds: of the same tables'
+    experiments, one row per problem, indexed by name. primary: of a table, column -> the value of
+    the primary interpretation. The allowance is half a unit of the last printed digit.
 
-    A number's problem is the one that its row names, as problem or as workspace; without either, that of the primary interpretation, or the
-    only one of the experiment. Numbers that cover several problems are left out.
+    A number's problem is the one that its row names, as problem or as workspace; without either,
+    that of the primary interpretation, or the only one of the experiment. Numbers that cover
+    several problems are left out.
     """
     rows = []
     for name, table in tables.items():
         keys = _keys(table)
-        for _, row in table[table["metric"].isin(_AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)].iterrows():
-            bound = bounds[name]["bound"].get(_problem(primary.get(name, {}) | row.to_dict(), bounds[name]), math.nan)
+        for _, row in table[
+            table["metric"].isin(_AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
+        ].iterrows():
+            bound = bounds[name]["bound"].get(
+                _problem(primary.get(name, {}) | row.to_dict(), bounds[name]), math.nan
+            )
             if math.isnan(bound):
                 continue
             rows.append(
@@ -68,9 +81,17 @@ def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame]
 
 
 def _problem(place: dict, bounds: pd.DataFrame) -> str | None:
-    """The problem of a published number, from the columns that describe it; None if it is ambiguous."""
+    """The problem of a published number, from the columns that describe it; None if it is
+    ambiguous.
+    """
     named = place.get("problem", place.get("workspace"))
-    return named if named in bounds.index else bounds.index[0] if named is None and len(bounds) == 1 else None
+    return (
+        named
+        if named in bounds.index
+        else bounds.index[0]
+        if named is None and len(bounds) == 1
+        else None
+    )
 
 
 def _keys(table: pd.DataFrame) -> list[str]:
@@ -93,8 +114,9 @@ def _half_a_digit(printed: str) -> float:
 class Cell(NamedTuple):
     """The statistics of one metric that a table prints in one place.
 
-    texts: statistic -> the number as printed. n: how many values are behind them, None if the paper does not say; with `exact` false they
-    are only those of some of these runs, and how many is not printed.
+    texts: statistic -> the number as printed. n: how many values are behind them, None if the paper
+    does not say; with `exact` false they are only those of some of these runs, and how many is not
+    printed.
     """
 
     item: str
@@ -104,23 +126,40 @@ class Cell(NamedTuple):
     n: int | None
     exact: bool
 
-    def row(self, statistic: str, rule: str, limit: float, consistent: bool | None, arithmetic: str) -> dict:
+    def row(
+        self, statistic: str, rule: str, limit: float, consistent: bool | None, arithmetic: str
+    ) -> dict:
         """A row of the audit about one of its numbers."""
         place, value = f"{self.place}, statistic={statistic}", float(self.texts[statistic])
         return _row(self.item, place, rule, value, limit, consistent, arithmetic)
 
 
-def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool | None, arithmetic: str) -> dict:
-    described = {"item": item, "place": place, "rule": rule, "printed": printed, "limit": float(limit)}
+def _row(
+    item: str,
+    place: str,
+    rule: str,
+    printed: float,
+    limit: float,
+    consistent: bool | None,
+    arithmetic: str,
+) -> dict:
+    described = {
+        "item": item,
+        "place": place,
+        "rule": rule,
+        "printed": printed,
+        "limit": float(limit),
+    }
     return described | {"consistent": consistent, "arithmetic": arithmetic}
 
 
 def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, dict[str, Any]]) -> list[dict]:
     """All rows of the rules that hold for any paper.
 
-    tables: published numbers, by table, as from `read_published`. layouts: of each table, `columns`, the key columns within whose values
-    its rows are ranked; `selected`, metrics of which only some runs count; `monotone`, the orders that its rows must keep, each with
-    metric, statistic, along, direction and because.
+    tables: published numbers, by table, as from `read_published`. layouts: of each table,
+    `columns`, the key columns within whose values its rows are ranked; `selected`, metrics of which
+    only some runs count; `monotone`, the orders that its rows must keep, each with metric,
+    statistic, along, direction and because.
     """
     rows = []
     for name, table in tables.items():
@@ -139,8 +178,19 @@ def cells(item: str, table: pd.DataFrame, selected: list[str]) -> list[Cell]:
         first, metric = rows.iloc[0], rows["metric"].iloc[0]
         numbers = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(numbers.min()) if len(numbers) else None
-        exact = not METRICS[metric].feasible_only and metric not in selected and numbers.nunique() == 1
-        cells_read.append(Cell(item, _place(first, keys, "metric"), metric, dict(zip(rows["statistic"], rows["printed"])), n, exact))
+        exact = (
+            not METRICS[metric].feasible_only and metric not in selected and numbers.nunique() == 1
+        )
+        cells_read.append(
+            Cell(
+                item,
+                _place(first, keys, "metric"),
+                metric,
+                dict(zip(rows["statistic"], rows["printed"])),
+                n,
+                exact,
+            )
+        )
     return cells_read
 
 
@@ -152,7 +202,9 @@ def of_cells(cell: Cell) -> list[dict]:
 
 
 def _in_range(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
-    """No mean or quantile lies beyond what a single run can have, for metrics that have two ends."""
+    """No mean or quantile lies beyond what a single run can have, for metrics that have two
+    ends.
+    """
     metric = METRICS[cell.metric]
     if isinstance(metric.least, str) or math.isinf(metric.most) or math.isinf(metric.least):
         return []
@@ -168,7 +220,9 @@ def _in_range(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
 
 
 def _of_steps(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
-    """Counts and extremes of whole numbers are whole numbers, and their means and standard deviations those of whole numbers."""
+    """Counts and extremes of whole numbers are whole numbers, and their means and standard
+    deviations those of whole numbers.
+    """
     if METRICS[cell.metric].step is None:
         return []
     step, rows = Fraction(METRICS[cell.metric].step), []
@@ -177,13 +231,25 @@ def _of_steps(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
         if name in numbers:
             nearest = round(numbers[name].value / step) * step
             fits = numbers[name].low <= nearest <= numbers[name].high
-            rows.append(cell.row(name, f"an extreme of {values} is one of them", nearest, fits, f"nearest: {_text(nearest)}"))
+            rows.append(
+                cell.row(
+                    name,
+                    f"an extreme of {values} is one of them",
+                    nearest,
+                    fits,
+                    f"nearest: {_text(nearest)}",
+                )
+            )
     if "count" in numbers and cell.n:
         value = numbers["count"].value
         fits = value.denominator == 1 and 0 <= value <= cell.n
         rows.append(
             cell.row(
-                "count", f"a count of {cell.n} runs is a whole number up to {cell.n}", cell.n, fits, f"0 <= {_text(value)} <= {cell.n}"
+                "count",
+                f"a count of {cell.n} runs is a whole number up to {cell.n}",
+                cell.n,
+                fits,
+                f"0 <= {_text(value)} <= {cell.n}",
             )
         )
     for name in ("mean", "share"):
@@ -199,31 +265,69 @@ def _grim(cell: Cell, name: str, mean: Printed, step: Fraction, values: str) -> 
     nearest = possible.nearest_mean(mean, cell.n, step)
     text = cell.texts[name]
     if not cell.exact:
-        return cell.row(name, rule, nearest, None, f"only some of the {cell.n} runs count, and how many is not printed")
+        return cell.row(
+            name,
+            rule,
+            nearest,
+            None,
+            f"only some of the {cell.n} runs count, and how many is not printed",
+        )
     if not possible.grim_decides(mean, cell.n, step):
-        apart = f"means of {cell.n} lie {_text(step / cell.n)} apart, printed numbers {_text(2 * mean.half)}: every one is possible"
+        apart = (
+            f"means of {cell.n} lie {_text(step / cell.n)} apart, printed numbers "
+            f"{_text(2 * mean.half)}: every one is possible"
+        )
         return cell.row(name, rule, nearest, None, apart)
     found = possible.sums(mean, cell.n, step)
     nearby = f"nearest possible: {_text(nearest * cell.n)} / {cell.n} = {float(nearest):.6g}"
-    return cell.row(name, rule, nearest, len(found) > 0, f"{text} x {cell.n} = {_text(mean.value * cell.n)}; {nearby}")
+    return cell.row(
+        name,
+        rule,
+        nearest,
+        len(found) > 0,
+        f"{text} x {cell.n} = {_text(mean.value * cell.n)}; {nearby}",
+    )
 
 
 def _grimmer(cell: Cell, mean: Printed, std: Printed, step: Fraction, values: str) -> dict:
-    rule = f"GRIMMER: {cell.n} {values} with the printed mean can have the printed standard deviation"
+    rule = (
+        f"GRIMMER: {cell.n} {values} with the printed mean can have the printed standard deviation"
+    )
     if not cell.exact:
-        return cell.row("std", rule, math.nan, None, f"only some of the {cell.n} runs count, and how many is not printed")
+        return cell.row(
+            "std",
+            rule,
+            math.nan,
+            None,
+            f"only some of the {cell.n} runs count, and how many is not printed",
+        )
     sums = possible.grimmer(mean, std, cell.n, step)
     if sums is None:
-        squares = [(cell.n - 1) * (each / step) ** 2 + (mean.value / step) ** 2 * cell.n for each in (max(std.low, Fraction(0)), std.high)]
-        told = f"sum {_text(mean.value / step * cell.n)}; no sum of squares from {float(squares[0]):.6g} to {float(squares[1]):.6g} fits it"
+        squares = [
+            (cell.n - 1) * (each / step) ** 2 + (mean.value / step) ** 2 * cell.n
+            for each in (max(std.low, Fraction(0)), std.high)
+        ]
+        told = (
+            f"sum {_text(mean.value / step * cell.n)}; no sum of squares from "
+            f"{float(squares[0]):.6g} to {float(squares[1]):.6g} fits it"
+        )
         return cell.row("std", rule, math.nan, False, told)
     total, squares = sums
     exact = math.sqrt((squares - total**2 / cell.n) / (cell.n - 1)) * float(step)
-    told = f"sum {total}, sum of squares {squares}: sqrt(({squares} - {total}^2 / {cell.n}) / {cell.n - 1}) = {exact:.6g}"
+    told = (
+        f"sum {total}, sum of squares {squares}: sqrt(({squares} - {total}^2 / {cell.n}) / "
+        f"{cell.n - 1}) = {exact:.6g}"
+    )
     if step != 1:
         told = f"in steps of {_text(step)}: {told}"
     decides = possible.grimmer_decides(mean, std, cell.n, step)
-    return cell.row("std", rule, exact, True if decides else None, told if decides else f"{told}; no number could fail here")
+    return cell.row(
+        "std",
+        rule,
+        exact,
+        True if decides else None,
+        told if decides else f"{told}; no number could fail here",
+    )
 
 
 def _in_order(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
@@ -231,34 +335,77 @@ def _in_order(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
     rows = []
     for low, high in itertools.pairwise(name for name in _IN_ORDER if name in numbers):
         fits = possible.in_order(numbers[low], numbers[high])
-        rows.append(cell.row(low, f"{low} <= {high}", numbers[high].value, fits, f"{cell.texts[low]} <= {cell.texts[high]}"))
+        rows.append(
+            cell.row(
+                low,
+                f"{low} <= {high}",
+                numbers[high].value,
+                fits,
+                f"{cell.texts[low]} <= {cell.texts[high]}",
+            )
+        )
     if not {"min", "max", "mean"} <= set(numbers) or not cell.n or cell.n < 2:
         return rows
     low, high = possible.mean_limits(numbers["min"], numbers["max"], cell.n)
     fits = low <= numbers["mean"].high and numbers["mean"].low <= high
     limit = low if numbers["mean"].high < low else high
-    rule = f"a mean of {cell.n} values lies between (max + {cell.n - 1} min) / {cell.n} and (min + {cell.n - 1} max) / {cell.n}"
-    return [*rows, cell.row("mean", rule, limit, fits, f"{float(low):.6g} <= {cell.texts['mean']} <= {float(high):.6g}")]
+    rule = (
+        f"a mean of {cell.n} values lies between (max + {cell.n - 1} min) / {cell.n} and (min "
+        f"+ {cell.n - 1} max) / {cell.n}"
+    )
+    return [
+        *rows,
+        cell.row(
+            "mean",
+            rule,
+            limit,
+            fits,
+            f"{float(low):.6g} <= {cell.texts['mean']} <= {float(high):.6g}",
+        ),
+    ]
 
 
 def _of_spread(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
-    """A standard deviation against the range, and against the mean and the ends of what is possible."""
+    """A standard deviation against the range, and against the mean and the ends of what is
+    possible.
+    """
     rows, metric, std = [], METRICS[cell.metric], numbers["std"]
     if {"min", "max"} <= set(numbers):
         low, _ = possible.std_of_range(numbers["min"], numbers["max"], cell.n)
         # Fewer values can have a larger one.
         fewest = cell.n if cell.exact else 2
         _, high = possible.std_of_range(numbers["min"], numbers["max"], fewest)
-        rule = "a standard deviation lies between (max - min) / sqrt(2 (n - 1)) and (max - min) / 2 x sqrt(n / (n - 1))"
+        rule = (
+            "a standard deviation lies between (max - min) / sqrt(2 (n - 1)) and (max - min) / "
+            "2 x sqrt(n / (n - 1))"
+        )
         told = f"n = {cell.n}: {low:.6g} <= {cell.texts['std']} <= {high:.6g}"
-        rows.append(cell.row("std", rule, low if std.high < low else high, low <= std.high and std.low <= high, told))
+        rows.append(
+            cell.row(
+                "std",
+                rule,
+                low if std.high < low else high,
+                low <= std.high and std.low <= high,
+                told,
+            )
+        )
     least = numbers["min"].low if "min" in numbers else _finite(metric.least)
     most = numbers["max"].high if "max" in numbers else _finite(metric.most)
     if "mean" in numbers and least is not None:
         limit = possible.std_of_mean(numbers["mean"], cell.n, least, most if cell.exact else None)
-        ends = f"none below {_text(least)}" + (f" or above {_text(most)}" if most is not None and cell.exact else "")
+        ends = f"none below {_text(least)}" + (
+            f" or above {_text(most)}" if most is not None and cell.exact else ""
+        )
         rule = f"the largest standard deviation of values with this mean, {ends}"
-        rows.append(cell.row("std", rule, limit, float(std.low) <= limit, f"n = {cell.n}: {cell.texts['std']} <= {limit:.6g}"))
+        rows.append(
+            cell.row(
+                "std",
+                rule,
+                limit,
+                float(std.low) <= limit,
+                f"n = {cell.n}: {cell.texts['std']} <= {limit:.6g}",
+            )
+        )
     return rows
 
 
@@ -267,10 +414,12 @@ def _finite(end: float | str) -> Fraction | None:
 
 
 def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> list[dict]:
-    """Mean ranks of k rows lie between 1 and k and add to k (k + 1) / 2; their order beside that of the mean objectives.
+    """Mean ranks of k rows lie between 1 and k and add to k (k + 1) / 2; their order beside that of
+    the mean objectives.
 
-    columns: the key columns within whose values rows are ranked; those that the file lacks do not matter. An order that differs is no
-    contradiction: a mean says how far runs lie apart, a rank does not.
+    columns: the key columns within whose values rows are ranked; those that the file lacks do not
+    matter. An order that differs is no contradiction: a mean says how far runs lie apart, a rank
+    does not.
     """
     keys, rows = _keys(table), []
     ranks = table[(table["metric"] == "rank") & (table["statistic"] == "mean")]
@@ -281,20 +430,51 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> list[dict]:
             continue
         numbers = [possible.printed(text) for text in texts]
         total = possible.rank_sum(count)
-        added = f"{' + '.join(texts)} = {_text(sum(each.value for each in numbers))}; {count} x {count + 1} / 2 = {total}"
+        added = (
+            f"{' + '.join(texts)} = {_text(sum(each.value for each in numbers))}; {count} x "
+            f"{count + 1} / 2 = {total}"
+        )
         cell = _place(group.iloc[0], within, "metric") + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        rows.append(_row(item, cell, rule, float(sum(each.value for each in numbers)), total, possible.are_ranks(numbers), added))
+        rows.append(
+            _row(
+                item,
+                cell,
+                rule,
+                float(sum(each.value for each in numbers)),
+                total,
+                possible.are_ranks(numbers),
+                added,
+            )
+        )
         for (_, row), number in zip(group.iterrows(), numbers):
             fits = number.high >= 1 and number.low <= count
             told = f"1 <= {row['printed']} <= {count}"
             rule = f"a mean rank of {count} rows lies between 1 and {count}"
-            rows.append(_row(item, _place(row, keys, "metric"), rule, row["value"], 1 if number.high < 1 else count, fits, told))
-        rows += _against_means(item, cell, group, table[(table["metric"] == "objective") & (table["statistic"] == "mean")], keys)
+            rows.append(
+                _row(
+                    item,
+                    _place(row, keys, "metric"),
+                    rule,
+                    row["value"],
+                    1 if number.high < 1 else count,
+                    fits,
+                    told,
+                )
+            )
+        rows += _against_means(
+            item,
+            cell,
+            group,
+            table[(table["metric"] == "objective") & (table["statistic"] == "mean")],
+            keys,
+        )
     return rows
 
 
-def _against_means(item: str, cell: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]) -> list[dict]:
+def _against_means(
+    item: str, cell: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]
+) -> list[dict]:
     """Pairs of rows whose mean ranks are in another order than their means."""
     both = ranks.merge(means, on=keys, suffixes=("", "_mean"))
     pairs, apart = 0, []
@@ -304,11 +484,19 @@ def _against_means(item: str, cell: str, ranks: pd.DataFrame, means: pd.DataFram
         if possible.in_order(second, first):
             continue
         pairs += 1
-        if not possible.in_order(possible.printed(lower["printed"]), possible.printed(upper["printed"])):
-            apart.append(f"{lower['printed_mean']} < {upper['printed_mean']} but {lower['printed']} > {upper['printed']}")
+        if not possible.in_order(
+            possible.printed(lower["printed"]), possible.printed(upper["printed"])
+        ):
+            apart.append(
+                f"{lower['printed_mean']} < {upper['printed_mean']} but {lower['printed']} > "
+                f"{upper['printed']}"
+            )
     if not pairs:
         return []
-    rule = "pairs of rows whose mean ranks and mean objectives are in different orders, which can be, but seldom is"
+    rule = (
+        "pairs of rows whose mean ranks and mean objectives are in different orders, which can "
+        "be, but seldom is"
+    )
     return [
         _row(
             item,
@@ -332,23 +520,48 @@ def of_orders(item: str, table: pd.DataFrame, rule: dict[str, str]) -> list[dict
         ordered = [row for _, row in group.sort_values(rule["along"], kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
             first, second = possible.printed(before["printed"]), possible.printed(row["printed"])
-            fits = possible.in_order(first, second) if rule["direction"] == "up" else possible.in_order(second, first)
-            words = f"{rule['metric']} goes {rule['direction']} along {rule['along']}: {rule['because']}"
+            fits = (
+                possible.in_order(first, second)
+                if rule["direction"] == "up"
+                else possible.in_order(second, first)
+            )
+            words = (
+                f"{rule['metric']} goes {rule['direction']} along {rule['along']}: "
+                f"{rule['because']}"
+            )
             told = f"{before['printed']} {sign} {row['printed']}"
-            rows.append(_row(item, _place(row, keys, "metric", "statistic"), words, row["value"], before["value"], fits, told))
+            rows.append(
+                _row(
+                    item,
+                    _place(row, keys, "metric", "statistic"),
+                    words,
+                    row["value"],
+                    before["value"],
+                    fits,
+                    told,
+                )
+            )
     return rows
 
 
 def of_digits(tables: dict[str, pd.DataFrame]) -> list[dict]:
-    """Last digits of all numbers of a metric: an exact test of equal chances, where there are enough numbers that spread widely.
+    """Last digits of all numbers of a metric: an exact test of equal chances, where there are
+    enough numbers that spread widely.
 
-    A number that several tables repeat counts once, and numbers of 1 to n runs, such as counts, are left out.
+    A number that several tables repeat counts once, and numbers of 1 to n runs, such as counts, are
+    left out.
     """
-    together = pd.concat([table.assign(item=name) for name, table in tables.items()], ignore_index=True) if tables else pd.DataFrame()
+    together = (
+        pd.concat([table.assign(item=name) for name, table in tables.items()], ignore_index=True)
+        if tables
+        else pd.DataFrame()
+    )
     rows = []
     for metric, every in together.groupby("metric", sort=False) if len(together) else []:
         printed_rows = every[~every["statistic"].isin(["count", "share"])]
-        printed_rows = printed_rows.drop_duplicates([column for column in printed_rows if column not in ("item", "n")])
+        printed_rows = printed_rows.drop_duplicates(
+            [column for column in printed_rows if column not in ("item", "n")]
+        )
         texts = printed_rows["printed"].to_list()
         if len(texts) < LEAST_NUMBERS:
             continue
@@ -359,9 +572,22 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> list[dict]:
         counts = [digits.count(each) for each in range(10)]
         p = possible.digits_p(counts)
         rule = "last digits are equally likely: exact test of the sum of squared counts"
-        told = f"0 to 9: {' '.join(map(str, counts))}; p = {p:.3g}, inconsistent below {DIGITS_LEVEL:g}"
+        told = (
+            f"0 to 9: {' '.join(map(str, counts))}; p = {p:.3g}, inconsistent below "
+            f"{DIGITS_LEVEL:g}"
+        )
         items = ", ".join(printed_rows["item"].unique())
-        rows.append(_row(items, f"metric={metric}, {len(texts)} numbers", rule, max(counts), len(texts) / 10, p >= DIGITS_LEVEL, told))
+        rows.append(
+            _row(
+                items,
+                f"metric={metric}, {len(texts)} numbers",
+                rule,
+                max(counts),
+                len(texts) / 10,
+                p >= DIGITS_LEVEL,
+                told,
+            )
+        )
     return rows
 
 
@@ -369,22 +595,35 @@ def _text(number: Fraction) -> str:
     return f"{float(number):.10g}"
 
 
-def audited(job: dict, problem_files: Mapping[str, str], bound_files: Mapping[str, str], files: Mapping[str, str]) -> pd.DataFrame:
+def audited(
+    job: dict,
+    problem_files: Mapping[str, str],
+    bound_files: Mapping[str, str],
+    files: Mapping[str, str],
+) -> pd.DataFrame:
     """The audit of a job (`study.targets.audit_params`) as a table with `COLUMNS`.
 
-    problem_files and bound_files: by experiment, problems of those alone whose printed lengths are identified. files: of published
-    numbers, by table.
+    problem_files and bound_files: by experiment, problems of those alone whose printed lengths are
+    identified. files: of published numbers, by table.
     """
     published = {name: read_published(file) for name, file in files.items()}
-    bounds = {name: pd.read_parquet(file).set_index("problem") for name, file in bound_files.items()}
+    bounds = {
+        name: pd.read_parquet(file).set_index("problem") for name, file in bound_files.items()
+    }
     of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
     compared = {table: published[table] for table in of_tables}
     # Numbers to which a workspace was fitted lie above its bound by construction.
-    independent = {name: table for name, table in compared.items() if not job["layouts"][name]["fitted"]}
-    rows = below_bound(independent, of_tables, job["primary"]) + of_any_paper(compared, job["layouts"])
+    independent = {
+        name: table for name, table in compared.items() if not job["layouts"][name]["fitted"]
+    }
+    rows = below_bound(independent, of_tables, job["primary"]) + of_any_paper(
+        compared, job["layouts"]
+    )
     made = {name: problems.read(file) for name, file in problem_files.items()}
     for name, layout in job["layouts"].items():
-        rows += identified.of_table(name, published[name], layout["identify"], made.get(job["tables"][name], {}))
+        rows += identified.of_table(
+            name, published[name], layout["identify"], made.get(job["tables"][name], {})
+        )
     if job["module"]:
         rows += importlib.import_module(job["module"]).audit(published)
     return table(job["study"], rows)

@@ -1,35 +1,36 @@
 """Every published number of a table next to ours.
 
-One row for each group of runs, metric and statistic; an empty cell means that there is no such number.
+One row for each group of runs, metric and statistic; an empty cell means that there is no such
+number.
 
-| column | meaning |
-| --- | --- |
-| key columns | columns of the runs table that identify the rows: those left of `metric` in the published file, then the table's others |
-| metric | what is measured, a name of `metrics.METRICS` |
-| statistic | the statistic that the paper prints; `unstated` if it does not say, in which case ours is the median |
-| unit | unit of the metric; `-` for a number without one |
-| n_published | runs behind the published number, if the paper states it |
-| value_published | the published number; a variant of a published method is compared with that method's number |
-| n_ours | our runs that count: feasible ones for metrics of feasible paths, all for the others |
-| n_asked | runs among which these are: the others failed, or have no such value |
-| value_ours | the statistic of these runs |
-| value_ours_scaled | the same for n_published runs (`statistics.scaled`): counts and extremes depend on their number |
-| best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
-| low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
-| low95_predicted, high95_predicted | 95 % prediction interval for the number printed by an experiment of n_published runs |
-| quantile_published | quantile of the published number in experiments of n_published runs; in our runs if n_published is empty |
-| in_range | whether it lies in the central 95 %. Ours are rounded like the printed one, ties count; empty for times, and below six runs |
-| can_fail | whether a number on the published one's side of ours could have been rejected (`statistics.can_fail`) |
-| power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the published one |
-| identified | cells of the paths whose length the published number is to the last digit (`identified`), and the chance of a match |
-| verdict | identified; disagrees; inconclusive; agrees |
-| why | why it is inconclusive: not defined by the paper, or the interval has no end there, or contains most of the numbers that matter |
-| possible | whether the metric can have the published value, and ranks add up. A length below the bound of our map is judged all the same |
-| share_claimed | share of all runs whose path passed the planner's own test |
-| share_feasible | share of all runs whose path the certified checker accepts |
-| bound | least length of the problem, of the metric's kind (`metrics.Metric`); for several problems, the median over the runs |
-| gap | median over the feasible runs of that kind of length / bound - 1 |
-| primary | whether the row is the paper's interpretation: no variant of a method, and what the table's `primary` names |
+| column | meaning | | --- | --- | | key columns | columns of the runs table that identify the rows:
+those left of `metric` in the published file, then the table's others | | metric | what is measured,
+a name of `metrics.METRICS` | | statistic | the statistic that the paper prints; `unstated` if it
+does not say, in which case ours is the median | | unit | unit of the metric; `-` for a number
+without one | | n_published | runs behind the published number, if the paper states it | |
+value_published | the published number; a variant of a published method is compared with that
+method's number | | n_ours | our runs that count: feasible ones for metrics of feasible paths, all
+for the others | | n_asked | runs among which these are: the others failed, or have no such value |
+| value_ours | the statistic of these runs | | value_ours_scaled | the same for n_published runs
+(`statistics.scaled`): counts and extremes depend on their number | | best, mean, median, quartile1,
+quartile3 | of the same runs; best is the lowest | | low95_ours, high95_ours | 95 % bootstrap
+interval of value_ours; empty below two runs, and for min, max and range | | low95_predicted,
+high95_predicted | 95 % prediction interval for the number printed by an experiment of n_published
+runs | | quantile_published | quantile of the published number in experiments of n_published runs;
+in our runs if n_published is empty | | in_range | whether it lies in the central 95 %. Ours are
+rounded like the printed one, ties count; empty for times, and below six runs | | can_fail | whether
+a number on the published one's side of ours could have been rejected (`statistics.can_fail`) | |
+power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the
+published one | | identified | cells of the paths whose length the published number is to the last
+digit (`identified`), and the chance of a match | | verdict | identified; disagrees; inconclusive;
+agrees | | why | why it is inconclusive: not defined by the paper, or the interval has no end there,
+or contains most of the numbers that matter | | possible | whether the metric can have the published
+value, and ranks add up. A length below the bound of our map is judged all the same | |
+share_claimed | share of all runs whose path passed the planner's own test | | share_feasible |
+share of all runs whose path the certified checker accepts | | bound | least length of the problem,
+of the metric's kind (`metrics.Metric`); for several problems, the median over the runs | | gap |
+median over the feasible runs of that kind of length / bound - 1 | | primary | whether the row is
+the paper's interpretation: no variant of a method, and what the table's `primary` names |
 """
 
 import math
@@ -45,67 +46,128 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 LEAST_POWER = 0.5
-"""Share of the numbers that matter which an interval has to exclude before a number in it agrees."""
+"""Share of the numbers that matter which an interval has to exclude before a number in it
+agrees.
+"""
 
 MATTERS = 0.1
-"""Where the paper prints too few numbers of other methods in a place, numbers that differ from ours by this share are those that matter."""
+"""Where the paper prints too few numbers of other methods in a place, numbers that differ from ours
+by this share are those that matter.
+"""
 
 LEAST_RIVALS = 2
-"""Numbers of other methods that a place needs to be those that matter: a power against a single one is all or nothing."""
+"""Numbers of other methods that a place needs to be those that matter: a power against a single one
+is all or nothing.
+"""
 
 VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
 
-NO_END, TOO_WIDE = "interval without an end on that side", "interval that contains most numbers of the competing methods"
+NO_END, TOO_WIDE = (
+    "interval without an end on that side",
+    "interval that contains most numbers of the competing methods",
+)
 """Why a number in the interval is inconclusive: the test could not have failed, or has no power."""
 
 UNDEFINED = "quantity that the paper does not define"
-"""Why a number is inconclusive wherever it lies: if it disagrees, that refutes our definition alone."""
+"""Why a number is inconclusive wherever it lies: if it disagrees, that refutes our definition
+alone.
+"""
 
 _COLUMNS = [
-    *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "n_asked", "value_ours"),
+    *(
+        "metric",
+        "statistic",
+        "unit",
+        "n_published",
+        "value_published",
+        "n_ours",
+        "n_asked",
+        "value_ours",
+    ),
     "value_ours_scaled",
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *("low95_predicted", "high95_predicted", "quantile_published", "in_range", "can_fail", "power", "verdict", "why"),
+    *(
+        "low95_predicted",
+        "high95_predicted",
+        "quantile_published",
+        "in_range",
+        "can_fail",
+        "power",
+        "verdict",
+        "why",
+    ),
     *("identified", "possible", "share_claimed", "share_feasible", "bound", "gap", "primary"),
 ]
 
 
 def read_published(file: str | None, spec: dict) -> pd.DataFrame:
-    """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a file, empty, with the table's keys."""
+    """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a
+    file, empty, with the table's keys.
+    """
     if file is None:
-        return pd.DataFrame(columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"])
+        return pd.DataFrame(
+            columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"]
+        )
     return as_read(published_table(file), spec)
 
 
 def as_read(published: pd.DataFrame, spec: dict) -> pd.DataFrame:
-    """Published numbers under the metrics that a table assigns to them: `reads` maps the paper's word to the metric, and is optional."""
+    """Published numbers under the metrics that a table assigns to them: `reads` maps the paper's
+    word to the metric, and is optional.
+    """
     return published.assign(metric=published["metric"].replace(spec.get("reads", {})))
 
 
 def compare(
-    results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], baselines: list[str], name: str
+    results: Results,
+    spec: dict,
+    published: pd.DataFrame,
+    variant_of: dict[str, str],
+    baselines: list[str],
+    name: str,
 ) -> pd.DataFrame:
-    """The published numbers of a table next to ours, in the order of the table; the columns are described above.
+    """The published numbers of a table next to ours, in the order of the table; the columns are
+    described above.
 
-    spec: as for `tables.pivot`. published: as from `read_published`. variant_of: method -> the method whose published numbers it is
-    compared with. baselines: methods without a published number. Variants of the table's methods and baselines get rows, whether or not
-    the table shows them. name: `study/table`, which seeds each row's random draws.
+    spec: as for `tables.pivot`. published: as from `read_published`. variant_of: method -> the
+    method whose published numbers it is compared with. baselines: methods without a published
+    number. Variants of the table's methods and baselines get rows, whether or not the table shows
+    them. name: `study/table`, which seeds each row's random draws.
     """
     key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = key_columns + [key for key in tables.keys(spec) if key not in key_columns]
     spec = _with_variants(spec, variant_of, baselines) if "method" in keys else spec
     both = _side_by_side(tables.cells(results, spec, keys), published, key_columns, variant_of)
-    order = tables.in_order(both, spec, list(results.problems)).sort_values([*keys, "value", "metric", "statistic"]).index
+    order = (
+        tables.in_order(both, spec, list(results.problems))
+        .sort_values([*keys, "value", "metric", "statistic"])
+        .index
+    )
     both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
-    printed = {column: published[column].to_numpy() for column in [*key_columns, "metric", "statistic", "value"]}
-    rows = [_described(row, keys, name, _rivals(row, key_columns, printed)) for row in both.to_dict("records")]
+    printed = {
+        column: published[column].to_numpy()
+        for column in [*key_columns, "metric", "statistic", "value"]
+    }
+    rows = [
+        _described(row, keys, name, _rivals(row, key_columns, printed))
+        for row in both.to_dict("records")
+    ]
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
-    found = pd.Series([_identified(row, spec.get("identify", []), results.problems) for row in both.to_dict("records")], dtype=object)
-    table["identified"], table["verdict"] = found, table["verdict"].astype(object).mask(found.notna(), "identified")
+    found = pd.Series(
+        [
+            _identified(row, spec.get("identify", []), results.problems)
+            for row in both.to_dict("records")
+        ],
+        dtype=object,
+    )
+    table["identified"], table["verdict"] = (
+        found,
+        table["verdict"].astype(object).mask(found.notna(), "identified"),
+    )
     undefined = _undefined(both, spec) & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
     table["why"] = table["why"].astype(object).mask(undefined, UNDEFINED)
@@ -114,20 +176,33 @@ def compare(
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
 
-def _is_primary(table: pd.DataFrame, primary: dict[str, Any], variant_of: dict[str, str]) -> np.ndarray:
-    """Which rows (n,) are the paper's interpretation. primary: column -> the value that it has there."""
+def _is_primary(
+    table: pd.DataFrame, primary: dict[str, Any], variant_of: dict[str, str]
+) -> np.ndarray:
+    """Which rows (n,) are the paper's interpretation. primary: column -> the value that it has
+    there.
+    """
     read = [table[column].to_numpy() == value for column, value in primary.items()]
     named = [~table["method"].isin(variant_of).to_numpy()] if "method" in table else []
     return np.logical_and.reduce([np.ones(len(table), dtype=bool), *read, *named])
 
 
-def _identified(row: dict[str, Any], entries: list[dict], problems: dict[str, Problem]) -> str | None:
-    """The paths whose length a published number is, in words; None if no enumeration that counts finds one, or chance may well have."""
+def _identified(
+    row: dict[str, Any], entries: list[dict], problems: dict[str, Problem]
+) -> str | None:
+    """The paths whose length a published number is, in words; None if no enumeration that counts
+    finds one, or chance may well have.
+    """
     if pd.isna(row["value_published"]) or row.get("problem") not in problems:
         return None
     for entry in entries:
         if entry.get("counts", True) and identified.applies(entry, row):
-            found = identified.in_problem(problems[row["problem"]], row["value_published"], int(row["decimals"]), entry["edges"])
+            found = identified.in_problem(
+                problems[row["problem"]],
+                row["value_published"],
+                int(row["decimals"]),
+                entry["edges"],
+            )
             if found and found.paths and found.chance < identified.UNLIKELY:
                 return identified.in_words(found)
     return None
@@ -135,68 +210,117 @@ def _identified(row: dict[str, Any], entries: list[dict], problems: dict[str, Pr
 
 def _undefined(both: pd.DataFrame, spec: dict) -> pd.Series:
     """Which rows (n,) hold a quantity that the paper does not define."""
-    return both["metric"].isin({entry["metric"] for entry in spec["values"] if not entry.get("defined", True)})
+    return both["metric"].isin(
+        {entry["metric"] for entry in spec["values"] if not entry.get("defined", True)}
+    )
 
 
 def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: dict) -> np.ndarray:
-    """Which rows (n,) hold published mean ranks that no runs have, for those of all rows of the table do not add up."""
+    """Which rows (n,) hold published mean ranks that no runs have, for those of all rows of the
+    table do not add up.
+    """
     impossible = np.zeros(len(both), dtype=bool)
     ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
-    ours = (both["metric"] == "rank") & (both["statistic"] == "mean") & both["value_published"].notna() & both["decimals"].notna()
+    ours = (
+        (both["metric"] == "rank")
+        & (both["statistic"] == "mean")
+        & both["value_published"].notna()
+        & both["decimals"].notna()
+    )
     if ranks.empty or not ours.any():
         return impossible
     half = Fraction(10) ** -int(both.loc[ours, "decimals"].iloc[0]) / 2
-    within = [column for column in spec.get("columns", []) if column in published and column not in ("value", "statistic")]
+    within = [
+        column
+        for column in spec.get("columns", [])
+        if column in published and column not in ("value", "statistic")
+    ]
     for place, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
-        if len(own) > 1 and not possible.are_ranks([possible.Printed(Fraction(str(value)), half) for value in own["value"]]):
+        if len(own) > 1 and not possible.are_ranks(
+            [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
+        ):
             impossible |= (ours & (both[within] == list(place)).all(axis=1)).to_numpy()
     return impossible
 
 
-def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, key_columns: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
-    """Our cells with n_published and value_published, plus published numbers without runs; statistics are named as published.
+def _side_by_side(
+    ours: pd.DataFrame, published: pd.DataFrame, key_columns: list[str], variant_of: dict[str, str]
+) -> pd.DataFrame:
+    """Our cells with n_published and value_published, plus published numbers without runs;
+    statistics are named as published.
 
     key_columns: the key columns of the published numbers.
     """
-    theirs = published.rename(columns={"n": "n_published", "value": "value_published", "statistic": "printed"}).drop(columns="unit")
+    theirs = published.rename(
+        columns={"n": "n_published", "value": "value_published", "statistic": "printed"}
+    ).drop(columns="unit")
     # An unstated statistic is compared with the median.
-    theirs = theirs.astype({key: ours[key].dtype for key in key_columns}).assign(statistic=theirs["printed"].replace("unstated", "median"))
+    theirs = theirs.astype({key: ours[key].dtype for key in key_columns}).assign(
+        statistic=theirs["printed"].replace("unstated", "median")
+    )
     ours = ours.assign(statistic=ours["statistic"].replace("unstated", "median"))
     if "method" in key_columns:
         ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
-    both = ours.merge(theirs.drop(columns="printed"), how="outer", on=[*key_columns, "metric", "statistic"])
+    both = ours.merge(
+        theirs.drop(columns="printed"), how="outer", on=[*key_columns, "metric", "statistic"]
+    )
     if "method" in key_columns:
-        both = both.assign(printed_method=both["method"], method=both["own_method"].fillna(both["method"]))
+        both = both.assign(
+            printed_method=both["method"], method=both["own_method"].fillna(both["method"])
+        )
     printed = dict(zip(zip(theirs["metric"], theirs["statistic"]), theirs["printed"]))
-    return both.assign(statistic=[printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])])
+    return both.assign(
+        statistic=[
+            printed.get(quantity, quantity[1])
+            for quantity in zip(both["metric"], both["statistic"])
+        ]
+    )
 
 
 def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str]) -> dict:
-    """The table's description, with the variants of its methods and the baselines appended to the selection."""
+    """The table's description, with the variants of its methods and the baselines appended to the
+    selection.
+    """
     where = spec.get("where", {})
     if "method" not in where:
         return spec
     methods = where["method"] if isinstance(where["method"], list) else [where["method"]]
-    variants = [variant for variant, method in variant_of.items() if method in methods and variant not in methods]
+    variants = [
+        variant
+        for variant, method in variant_of.items()
+        if method in methods and variant not in methods
+    ]
     beside = variants + [baseline for baseline in baselines if baseline not in methods]
     return spec | {"where": where | {"method": methods + beside}, "beside": beside}
 
 
-def _rivals(row: dict[str, Any], key_columns: list[str], printed: dict[str, np.ndarray]) -> np.ndarray:
+def _rivals(
+    row: dict[str, Any], key_columns: list[str], printed: dict[str, np.ndarray]
+) -> np.ndarray:
     """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys.
 
     printed: the columns of all its numbers (m,), by name; key_columns: those that are keys.
     """
     if "method" not in key_columns or pd.isna(row["value_published"]):
         return np.empty(0)
-    same_place = np.logical_and.reduce([printed[key] == row[key] for key in ("metric", "statistic", *key_columns) if key != "method"])
+    same_place = np.logical_and.reduce(
+        [
+            printed[key] == row[key]
+            for key in ("metric", "statistic", *key_columns)
+            if key != "method"
+        ]
+    )
     # A variant's own name is in no published row; its number is that of its published method.
     own = printed["method"] == row.get("printed_method", row["method"])
     return printed["value"][same_place & ~own].astype(float)
 
 
-def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:
-    """Our side of one row, and the published number's position in it; empty for a published number without runs of ours."""
+def _described(
+    row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarray
+) -> dict[str, Any]:
+    """Our side of one row, and the published number's position in it; empty for a published number
+    without runs of ours.
+    """
     if pd.isna(row["runs"]):
         return {"n_ours": 0, "n_asked": 0, "in_range": None, "can_fail": None, "possible": None}
     numbers = row["numbers"]
@@ -204,15 +328,28 @@ def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarr
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
     groups = row["groups"] or None
     # Runs of one group are alike: the groups are the units whose mean is uncertain.
-    units = np.array([statistics.statistic(statistic, group) for group in groups]) if groups else numbers
+    units = (
+        np.array([statistics.statistic(statistic, group) for group in groups])
+        if groups
+        else numbers
+    )
     low, high = math.nan, math.nan
     if not metrics.METRICS[row["metric"]].of_group:
-        low, high = statistics.interval("mean" if groups else statistic, units, generator(f"{row_name}/interval"))
+        low, high = statistics.interval(
+            "mean" if groups else statistic, units, generator(f"{row_name}/interval")
+        )
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
     placed = statistics.prediction(
-        statistic, numbers, published, size, row["decimals"], generator(f"{row_name}/prediction"), single, groups
+        statistic,
+        numbers,
+        published,
+        size,
+        row["decimals"],
+        generator(f"{row_name}/prediction"),
+        single,
+        groups,
     )
     # Seconds of another machine are shown, not judged.
     in_range = None if row["unit"] == "s" else placed.in_range
@@ -222,21 +359,38 @@ def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarr
         "value_ours": statistics.statistic(statistic, numbers),
         "value_ours_scaled": statistics.scaled(statistic, numbers, int(row["asked"]), size),
         "best": statistics.statistic("min", numbers),
-        **{each: statistics.statistic(each, numbers) for each in ("mean", "median", "quartile1", "quartile3")},
+        **{
+            each: statistics.statistic(each, numbers)
+            for each in ("mean", "median", "quartile1", "quartile3")
+        },
         "low95_ours": low,
         "high95_ours": high,
         "low95_predicted": placed.low,
         "high95_predicted": placed.high,
         "quantile_published": placed.quantile,
         "in_range": in_range,
-        **_judged(row, in_range, statistics.statistic(statistic, numbers), (placed.low, placed.high), size, rivals),
+        **_judged(
+            row,
+            in_range,
+            statistics.statistic(statistic, numbers),
+            (placed.low, placed.high),
+            size,
+            rivals,
+        ),
     }
 
 
 def _judged(
-    row: dict[str, Any], in_range: bool | None, ours: float, predicted: tuple[float, float], size: int | None, rivals: np.ndarray
+    row: dict[str, Any],
+    in_range: bool | None,
+    ours: float,
+    predicted: tuple[float, float],
+    size: int | None,
+    rivals: np.ndarray,
 ) -> dict[str, Any]:
-    """Whether the test of one row could have failed, its power, and its verdict; empty if it is not judged."""
+    """Whether the test of one row could have failed, its power, and its verdict; empty if it is not
+    judged.
+    """
     published = row["value_published"]
     if pd.isna(published):
         return {"can_fail": None, "possible": None}
@@ -247,15 +401,31 @@ def _judged(
         return judged | {"can_fail": None}
     ends = (predicted[0] - half, predicted[1] + half)
     can_fail = not in_range or statistics.can_fail(published, ours, predicted, limits)
-    power = statistics.power(rivals if len(rivals) >= LEAST_RIVALS else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
-    why = "" if not in_range else NO_END if not can_fail else _without_power(len(rivals) >= LEAST_RIVALS) if power < LEAST_POWER else ""
+    power = statistics.power(
+        rivals if len(rivals) >= LEAST_RIVALS else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends
+    )
+    why = (
+        ""
+        if not in_range
+        else NO_END
+        if not can_fail
+        else _without_power(len(rivals) >= LEAST_RIVALS)
+        if power < LEAST_POWER
+        else ""
+    )
     verdict = "disagrees" if not in_range else "inconclusive" if why else "agrees"
     return judged | {"can_fail": can_fail, "power": power, "verdict": verdict, "why": why}
 
 
 def _without_power(rivals: bool) -> str:
-    """Why an interval that excludes too few of the numbers that matter is inconclusive. rivals: whether these are printed ones."""
-    return TOO_WIDE if rivals else f"interval that contains numbers {MATTERS:.0%} off ours".replace("%", " %")
+    """Why an interval that excludes too few of the numbers that matter is inconclusive. rivals:
+    whether these are printed ones.
+    """
+    return (
+        TOO_WIDE
+        if rivals
+        else f"interval that contains numbers {MATTERS:.0%} off ours".replace("%", " %")
+    )
 
 
 def _limits(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:

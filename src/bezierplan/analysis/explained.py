@@ -1,30 +1,34 @@
-"""What the search for an interpretation found (`analysis.search`): three tables and a section of the summary.
+"""What the search for an interpretation found (`analysis.search`): three tables and a section of
+the summary.
 
 Columns of interpretations.csv, one row per interpretation, the best first:
 
-| column | meaning |
-| --- | --- |
-| study, interpretation | its changes, such as `O2=0.9, O7=clamp`; `default` without any |
-| in_words | what the paper's experiment would have been: each choice made, in words |
-| confirmed | whether it was one of the best, which are judged by more runs; only these are compared in what follows |
-| one column per choice | its value, empty for the default |
-| in_range, numbers | how many of the published numbers lie in range, and of how many |
-| by_chance | how many would if each printed number were exchanged with another of its kind in the same table (expected value) |
-| impossible | printed means and extremes below the exact bound of their map under this interpretation; with one, it is ruled out |
-| score | sum of the logarithms of the tables' likelihoods, by which interpretations that are not ruled out are compared |
-| in_range_<table> | in_range by table |
-| fresh_in_range, fresh_score | those of the best interpretation by runs of its own, with other seeds, that the search did not see |
+| column | meaning | | --- | --- | | study, interpretation | its changes, such as `O2=0.9,
+O7=clamp`; `default` without any | | in_words | what the paper's experiment would have been: each
+choice made, in words | | confirmed | whether it was one of the best, which are judged by more runs;
+only these are compared in what follows | | one column per choice | its value, empty for the default
+| | in_range, numbers | how many of the published numbers lie in range, and of how many | |
+by_chance | how many would if each printed number were exchanged with another of its kind in the
+same table (expected value) | | impossible | printed means and extremes below the exact bound of
+their map under this interpretation; with one, it is ruled out | | score | sum of the logarithms of
+the tables' likelihoods, by which interpretations that are not ruled out are compared | |
+in_range_<table> | in_range by table | | fresh_in_range, fresh_score | those of the best
+interpretation by runs of its own, with other seeds, that the search did not see |
 
-Columns of explained.csv, one row per published number, those that no interpretation gives first: study, table, the table's keys, metric,
-statistic, value_published; default and best, whether it lies in range under the default interpretation and under the best one; tried, how
-many interpretations of the choices that concern it were tried, and interpretations, in how many of these it is in range; settings, how many
-different settings of its methods alone were among them; missed_by, how far it lies out of range under the interpretation that comes
-nearest, which is named by nearest, and so what it would take to explain the number.
+Columns of explained.csv, one row per published number, those that no interpretation gives first:
+study, table, the table's keys, metric, statistic, value_published; default and best, whether it
+lies in range under the default interpretation and under the best one; tried, how many
+interpretations of the choices that concern it were tried, and interpretations, in how many of these
+it is in range; settings, how many different settings of its methods alone were among them;
+missed_by, how far it lies out of range under the interpretation that comes nearest, which is named
+by nearest, and so what it would take to explain the number.
 
-Columns of held_out.csv, one row per table: the interpretation that is best on all other tables, and how many of this table's numbers lie in
-range under that interpretation (`chosen`), under the default (`default`) and at most (`most`), of how many (`numbers`); the logarithm of
-the likelihood of the table under the best interpretation (`score_best`) and under the default (`score_default`); and, where the paper says
-that its numbers rise or fall along a column, that of a straight line there (`score_line`, along `line_along`; see `yardstick`).
+Columns of held_out.csv, one row per table: the interpretation that is best on all other tables, and
+how many of this table's numbers lie in range under that interpretation (`chosen`), under the
+default (`default`) and at most (`most`), of how many (`numbers`); the logarithm of the likelihood
+of the table under the best interpretation (`score_best`) and under the default (`score_default`);
+and, where the paper says that its numbers rise or fall along a column, that of a straight line
+there (`score_line`, along `line_along`; see `yardstick`).
 """
 
 import itertools
@@ -40,7 +44,9 @@ DEFAULT = "default"
 
 
 class Evaluated(NamedTuple):
-    """An interpretation with its numbers, one row each, as from `numbers_of`, and the logarithm of the likelihood of each table."""
+    """An interpretation with its numbers, one row each, as from `numbers_of`, and the logarithm of
+    the likelihood of each table.
+    """
 
     interpretation: Interpretation
     numbers: pd.DataFrame
@@ -58,13 +64,18 @@ class Evaluated(NamedTuple):
 
     @property
     def rank(self) -> tuple[bool, float]:
-        """By which interpretations are compared, the higher, the better: whether it is not ruled out, and its score."""
+        """By which interpretations are compared, the higher, the better: whether it is not ruled
+        out, and its score.
+        """
         return not self.impossible, self.score
 
 
 def name_of(interpretation: Interpretation) -> str:
     """An interpretation in words."""
-    return ", ".join(f"{choice}={value}" for choice, value in sorted(interpretation.items())) or DEFAULT
+    return (
+        ", ".join(f"{choice}={value}" for choice, value in sorted(interpretation.items()))
+        or DEFAULT
+    )
 
 
 def together(interpretation: Interpretation, parts: list[Evaluated]) -> Evaluated:
@@ -73,32 +84,53 @@ def together(interpretation: Interpretation, parts: list[Evaluated]) -> Evaluate
     for each in parts:
         for table, likelihood in each.likelihoods.items():
             likelihoods[table] = likelihoods.get(table, 0.0) + likelihood
-    return Evaluated(interpretation, pd.concat([each.numbers for each in parts], ignore_index=True), likelihoods)
+    return Evaluated(
+        interpretation, pd.concat([each.numbers for each in parts], ignore_index=True), likelihoods
+    )
 
 
 def in_words(interpretation: Interpretation, choices: list[dict]) -> str:
     """The choices that an interpretation makes, each with what the paper leaves open."""
-    made = [f"{choice['detail']}: {interpretation[choice['id']]}" for choice in choices if choice["id"] in interpretation]
+    made = [
+        f"{choice['detail']}: {interpretation[choice['id']]}"
+        for choice in choices
+        if choice["id"] in interpretation
+    ]
     return "; ".join(made)
 
 
 def interpretations_table(
-    study: str, confirmed: list[Evaluated], screened: list[Evaluated], fresh: Evaluated, choices: list[dict]
+    study: str,
+    confirmed: list[Evaluated],
+    screened: list[Evaluated],
+    fresh: Evaluated,
+    choices: list[dict],
 ) -> pd.DataFrame:
-    """interpretations.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out. fresh: the very
-    best, judged by runs with other seeds.
+    """interpretations.csv. confirmed: the best, judged by more runs. screened: all, of which those
+    confirmed are left out. fresh: the very best, judged by runs with other seeds.
     """
     rows, again = [], {name_of(evaluated.interpretation) for evaluated in confirmed}
     rest = [evaluated for evaluated in screened if name_of(evaluated.interpretation) not in again]
-    ordered = [sorted(given, key=lambda evaluated: evaluated.rank, reverse=True) for given in (confirmed, rest)]
+    ordered = [
+        sorted(given, key=lambda evaluated: evaluated.rank, reverse=True)
+        for given in (confirmed, rest)
+    ]
     for evaluated in itertools.chain(*ordered):
         numbers = evaluated.numbers
         by_table = numbers.groupby("table")["in_range"].sum()
         rows.append(
-            {"study": study, "interpretation": name_of(evaluated.interpretation), "in_words": in_words(evaluated.interpretation, choices)}
+            {
+                "study": study,
+                "interpretation": name_of(evaluated.interpretation),
+                "in_words": in_words(evaluated.interpretation, choices),
+            }
             | {"confirmed": name_of(evaluated.interpretation) in again}
             | {choice["id"]: evaluated.interpretation.get(choice["id"], "") for choice in choices}
-            | {"in_range": int(numbers["in_range"].sum()), "numbers": len(numbers), "by_chance": by_chance(numbers)}
+            | {
+                "in_range": int(numbers["in_range"].sum()),
+                "numbers": len(numbers),
+                "by_chance": by_chance(numbers),
+            }
             | {"impossible": evaluated.impossible, "score": evaluated.score}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
@@ -107,27 +139,51 @@ def interpretations_table(
 
 
 def by_chance(numbers: pd.DataFrame) -> float:
-    """Expected count of numbers in range if each were exchanged with another of the same table, metric and statistic."""
+    """Expected count of numbers in range if each were exchanged with another of the same table,
+    metric and statistic.
+    """
     expected = 0.0
     for _, group in numbers.groupby(["table", "metric", "statistic"], sort=False):
         values = group["value_published"].to_numpy(dtype=float)
-        inside = (group["low"].to_numpy()[:, None] <= values) & (values <= group["high"].to_numpy()[:, None])
+        inside = (group["low"].to_numpy()[:, None] <= values) & (
+            values <= group["high"].to_numpy()[:, None]
+        )
         if len(values) > 1:
             expected += (inside.sum() - np.trace(inside)) / (len(values) - 1)
     return float(expected)
 
 
-def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[Evaluated]], shared: set[str]) -> pd.DataFrame:
-    """explained.csv. confirmed: the default first. of_parts: as from the search, in whose order the numbers stand. shared: ids of the
-    choices that concern several parts.
+def explained_table(
+    study: str, confirmed: list[Evaluated], of_parts: list[list[Evaluated]], shared: set[str]
+) -> pd.DataFrame:
+    """explained.csv. confirmed: the default first. of_parts: as from the search, in whose order the
+    numbers stand. shared: ids of the choices that concern several parts.
     """
     best, default = max(confirmed, key=lambda each: each.rank), confirmed[0]
     described = default.numbers.drop(columns=["low", "high", "in_range", "possible"])
-    explained_by = {"default": default.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
-    told: dict[str, list] = {"interpretations": [], "tried": [], "settings": [], "missed_by": [], "nearest": []}
+    explained_by = {
+        "default": default.numbers["in_range"].to_numpy(),
+        "best": best.numbers["in_range"].to_numpy(),
+    }
+    told: dict[str, list] = {
+        "interpretations": [],
+        "tried": [],
+        "settings": [],
+        "missed_by": [],
+        "nearest": [],
+    }
     for tried in of_parts:
         inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
-        own = {name_of({choice: value for choice, value in each.interpretation.items() if choice not in shared}) for each in tried}
+        own = {
+            name_of(
+                {
+                    choice: value
+                    for choice, value in each.interpretation.items()
+                    if choice not in shared
+                }
+            )
+            for each in tried
+        }
         missed = np.array([_missed(each.numbers) for each in tried])
         nearest = missed.argmin(axis=0)
         told["interpretations"] += inside.tolist()
@@ -136,48 +192,78 @@ def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[
         least = missed.min(axis=0)
         told["missed_by"] += np.where(np.isinf(least), np.nan, least).tolist()
         told["nearest"] += [name_of(tried[place].interpretation) for place in nearest]
-    table = described.assign(study=study, **explained_by, **told)[["study", *described.columns, *explained_by, *told]]
+    table = described.assign(study=study, **explained_by, **told)[
+        ["study", *described.columns, *explained_by, *told]
+    ]
     return table.sort_values("interpretations", kind="stable")
 
 
 def _missed(numbers: pd.DataFrame) -> np.ndarray:
-    """By how much printed numbers (n,) miss the range of what would be printed, each in its unit; infinite where nothing would be."""
+    """By how much printed numbers (n,) miss the range of what would be printed, each in its unit;
+    infinite where nothing would be.
+    """
     value = numbers["value_published"].to_numpy(dtype=float)
-    missed = np.maximum.reduce([numbers["low"].to_numpy() - value, value - numbers["high"].to_numpy(), np.zeros(len(value))])
+    missed = np.maximum.reduce(
+        [
+            numbers["low"].to_numpy() - value,
+            value - numbers["high"].to_numpy(),
+            np.zeros(len(value)),
+        ]
+    )
     return np.where(np.isnan(missed), np.inf, missed)
 
 
-def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tuple[str, float]]) -> pd.DataFrame:
-    """held_out.csv. confirmed: the default first. lines: of some tables, along which column a line is laid, and how likely it makes them
-    (`yardstick`).
+def held_out_table(
+    study: str, confirmed: list[Evaluated], lines: dict[str, tuple[str, float]]
+) -> pd.DataFrame:
+    """held_out.csv. confirmed: the default first. lines: of some tables, along which column a line
+    is laid, and how likely it makes them (`yardstick`).
     """
     rows, best = [], max(confirmed, key=lambda each: each.rank)
     for table in confirmed[0].likelihoods:
-        counts = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in confirmed]
+        counts = [
+            int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum())
+            for each in confirmed
+        ]
         others = [(each.rank[0], each.score - each.likelihoods[table]) for each in confirmed]
         chosen = max(range(len(confirmed)), key=lambda n: others[n])
         numbers = int((confirmed[0].numbers["table"] == table).sum())
-        row = {"study": study, "table": table, "interpretation": name_of(confirmed[chosen].interpretation), "chosen": counts[chosen]}
-        scores = {"score_best": best.likelihoods[table], "score_default": confirmed[0].likelihoods[table]}
+        row = {
+            "study": study,
+            "table": table,
+            "interpretation": name_of(confirmed[chosen].interpretation),
+            "chosen": counts[chosen],
+        }
+        scores = {
+            "score_best": best.likelihoods[table],
+            "score_default": confirmed[0].likelihoods[table],
+        }
         along, score = lines.get(table, ("", math.nan))
         rows.append(
-            row | {"default": counts[0], "most": max(counts), "numbers": numbers} | scores | {"score_line": score, "line_along": along}
+            row
+            | {"default": counts[0], "most": max(counts), "numbers": numbers}
+            | scores
+            | {"score_line": score, "line_along": along}
         )
     return pd.DataFrame(rows)
 
 
 def yardstick(published: pd.DataFrame, along: str) -> float:
-    """How likely printed numbers are by a straight line alone: the logarithm of the likelihood of each, as predicted from the others of its
-    row by least squares, summed. No interpretation explains numbers that it does not make more likely than this.
+    """How likely printed numbers are by a straight line alone: the logarithm of the likelihood of
+    each, as predicted from the others of its row by least squares, summed. No interpretation
+    explains numbers that it does not make more likely than this.
 
-    published: as from `comparison.read_published`. along: the column that the line runs along. Rows with fewer than four numbers, which
-    leave no degree of freedom to predict one from, and seconds are left out.
+    published: as from `comparison.read_published`. along: the column that the line runs along. Rows
+    with fewer than four numbers, which leave no degree of freedom to predict one from, and seconds
+    are left out.
     """
     from scipy.stats import t
 
     keys = [key for key in published.columns[: published.columns.get_loc("metric")] if key != along]
     total = 0.0
-    for _, row in published[published["unit"] != "s"].groupby([*keys, "metric", "statistic"], sort=False):
+    for _, row in published[published["unit"] != "s"].groupby(
+        [*keys, "metric", "statistic"], sort=False
+    ):
         if len(row) < 4:
             continue
         x, y = row[along].to_numpy(dtype=float), row["value"].to_numpy(dtype=float)
@@ -188,36 +274,57 @@ def yardstick(published: pd.DataFrame, along: str) -> float:
             freedom = rest.sum() - 2
             variance = ((y[rest] - design @ line) ** 2).sum() / freedom
             at = np.array([1.0, x[left_out]])
-            spread = math.sqrt(max(variance * (1 + at @ np.linalg.solve(design.T @ design, at)), (1e-3 * y[left_out]) ** 2))
+            spread = math.sqrt(
+                max(
+                    variance * (1 + at @ np.linalg.solve(design.T @ design, at)),
+                    (1e-3 * y[left_out]) ** 2,
+                )
+            )
             total += float(t.logpdf(y[left_out], freedom, at @ line, spread))
     return total
 
 
-def section(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame, titles: dict[str, str]) -> list[str]:
-    """Paragraphs of the summary: a heading, what is compared, and a few sentences for each study; none without rows.
+def section(
+    interpretations: pd.DataFrame,
+    explained: pd.DataFrame,
+    held_out: pd.DataFrame,
+    titles: dict[str, str],
+) -> list[str]:
+    """Paragraphs of the summary: a heading, what is compared, and a few sentences for each study;
+    none without rows.
 
-    interpretations, explained, held_out: the three tables, of all studies. titles: of the studies, by name.
+    interpretations, explained, held_out: the three tables, of all studies. titles: of the studies,
+    by name.
     """
     if interpretations.empty:
         return []
     parts = [
         "## Interpretations that explain the printed numbers",
-        "What a paper leaves open is varied together, and each such interpretation is scored by the joint likelihood of the printed "
+        "What a paper leaves open is varied together, and each such interpretation is scored by "
+        "the joint likelihood of the printed "
         "numbers among "
-        "what experiments of the paper's size would print, by a search that judges the best ones by more runs. A number is in range if it "
-        "lies in the central 95 % of these; but an interpretation whose runs vary widely refuses nothing, so beside the count stands how "
+        "what experiments of the paper's size would print, by a search that judges the best ones "
+        "by more runs. A number is in range if it "
+        "lies in the central 95 % of these; but an interpretation whose runs vary widely refuses "
+        "nothing, so beside the count stands how "
         "many "
-        "would be in range if printed numbers were exchanged. Numbers of a quantity that the paper does not define have no vote. "
-        "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` for each printed "
+        "would be in range if printed numbers were exchanged. Numbers of a quantity that the "
+        "paper does not define have no vote. "
+        "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` "
+        "for each printed "
         "number, `<study>_held_out.csv` for each table.",
     ]
     for study, own in interpretations.groupby("study", sort=False):
-        parts.append(f"**{titles[study]}.** {sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}")
+        parts.append(
+            f"**{titles[study]}.** "
+            f"{sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}"
+        )
     return parts
 
 
 def brief(interpretations: pd.DataFrame) -> pd.DataFrame:
-    """One row for each study, in a few words: the most likely interpretation, and what it explains beside the default.
+    """One row for each study, in a few words: the most likely interpretation, and what it explains
+    beside the default.
 
     interpretations: the tables of all studies.
     """
@@ -237,9 +344,14 @@ def brief(interpretations: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame.from_dict(rows, orient="index").rename_axis("study")
 
 
-def sentences(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> str:
+def sentences(
+    interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame
+) -> str:
     """The verdict, from the tables of one study."""
-    best, default = interpretations.iloc[0], interpretations[interpretations["interpretation"] == DEFAULT].iloc[0]
+    best, default = (
+        interpretations.iloc[0],
+        interpretations[interpretations["interpretation"] == DEFAULT].iloc[0],
+    )
     return " ".join(
         filter(
             None,
@@ -257,20 +369,33 @@ def sentences(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: 
 
 
 def _most_likely(best: pd.Series, default: pd.Series, tried: int) -> str:
-    """Which experiment the numbers are most likely from, and how much more likely than from the default."""
+    """Which experiment the numbers are most likely from, and how much more likely than from the
+    default.
+    """
     if best["impossible"]:
         return f"Under each of {tried} interpretations some printed number is impossible."
     if best["interpretation"] == DEFAULT:
         return (
-            f"The printed numbers are most likely from the experiment of the default interpretation: none of {tried} interpretations is "
+            f"The printed numbers are most likely from the experiment of the default "
+            f"interpretation: none of {tried} interpretations is "
             f"more likely. It has "
             f"{_counted(default)}."
         )
-    level = ": it explains their level, not how they differ" if best["in_range"] <= best["by_chance"] + 0.5 else ""
-    against = "under the default, some printed number is impossible" if default["impossible"] else _ratio(best, default)
+    level = (
+        ": it explains their level, not how they differ"
+        if best["in_range"] <= best["by_chance"] + 0.5
+        else ""
+    )
+    against = (
+        "under the default, some printed number is impossible"
+        if default["impossible"]
+        else _ratio(best, default)
+    )
     return (
-        f"Of {tried} interpretations, the printed numbers are most likely from an experiment in which these choices differ from ours: "
-        f"{best['in_words']} ({best['interpretation']}); {against}. It has {_counted(best)}{level}; the default has {_counted(default)}."
+        f"Of {tried} interpretations, the printed numbers are most likely from an experiment in "
+        f"which these choices differ from ours: "
+        f"{best['in_words']} ({best['interpretation']}); {against}. It has "
+        f"{_counted(best)}{level}; the default has {_counted(default)}."
     )
 
 
@@ -279,7 +404,8 @@ def _judged_anew(best: pd.Series) -> str:
     if best["impossible"]:
         return ""
     return (
-        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']:.0f} of {best['numbers']} in range and a log-likelihood of "
+        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']:.0f} of "
+        f"{best['numbers']} in range and a log-likelihood of "
         f"{best['fresh_score']:.1f} (by the runs that chose it, {best['score']:.1f})."
     )
 
@@ -287,13 +413,17 @@ def _judged_anew(best: pd.Series) -> str:
 def _ratio(best: pd.Series, default: pd.Series) -> str:
     """How much more likely than under the default interpretation the numbers are."""
     difference = best["score"] - default["score"]
-    return f"log-likelihood ratio against the default {difference:+.1f} ({_times(difference)} as likely)"
+    return (
+        f"log-likelihood ratio against the default {difference:+.1f} ({_times(difference)} as "
+        f"likely)"
+    )
 
 
 def _counted(row: pd.Series) -> str:
     """How many numbers are in range under an interpretation."""
     return (
-        f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} if those of one kind in one table were exchanged)"
+        f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} if "
+        f"those of one kind in one table were exchanged)"
     )
 
 
@@ -310,21 +440,32 @@ def _beside_a_line(held_out: pd.DataFrame) -> str:
         else "so the interpretation describes them better than such a line"
     )
     return (
-        f"A straight line in the column {along}, which predicts each number from the others of its row, has a log-likelihood "
-        f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely interpretation: {verdict}."
+        f"A straight line in the column {along}, which predicts each number from the others of "
+        f"its row, has a log-likelihood "
+        f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely "
+        f"interpretation: {verdict}."
     )
 
 
 def _never(explained: pd.DataFrame) -> str:
     """Which numbers no interpretation explains, by table and method."""
-    never = explained[(explained["interpretations"] == 0) & ~explained[["default", "best"]].any(axis=1)]
+    never = explained[
+        (explained["interpretations"] == 0) & ~explained[["default", "best"]].any(axis=1)
+    ]
     if never.empty:
         return "Each number is in range under some interpretation."
     keys = ["table", "method"] if "method" in never else ["table"]
     counts = never.groupby(keys, sort=False).size()
-    named = ", ".join(f"{count} of {' for '.join(map(str, key if isinstance(key, tuple) else (key,)))}" for key, count in counts.items())
+    named = ", ".join(
+        f"{count} of {' for '.join(map(str, key if isinstance(key, tuple) else (key,)))}"
+        for key, count in counts.items()
+    )
     share = (never["missed_by"] / never["value_published"].abs()).median()
-    nearest = "" if math.isnan(share) else f" The nearest misses them by {100 * share:.2g} % of their value (median)."
+    nearest = (
+        ""
+        if math.isnan(share)
+        else f" The nearest misses them by {100 * share:.2g} % of their value (median)."
+    )
     return f"No interpretation explains {len(never)} of the numbers: {named}.{nearest}"
 
 
@@ -335,7 +476,10 @@ def _searched(explained: pd.DataFrame) -> str:
     settings = explained.groupby("method", sort=True)["settings"].max()
     if settings.nunique() == 1:
         return f"Each method was tried under {settings.iloc[0]} different settings of its own."
-    return f"Different settings tried of each method alone: {', '.join(f'{method} {count}' for method, count in settings.items())}."
+    return (
+        f"Different settings tried of each method alone: "
+        f"{', '.join(f'{method} {count}' for method, count in settings.items())}."
+    )
 
 
 def _ruled_out(interpretations: pd.DataFrame) -> str:
@@ -344,8 +488,10 @@ def _ruled_out(interpretations: pd.DataFrame) -> str:
     if not ruled_out:
         return ""
     return (
-        f"{ruled_out} of {len(interpretations)} interpretations {'is' if ruled_out == 1 else 'are'} ruled out: under "
-        f"{'it' if ruled_out == 1 else 'them'} a printed mean or extreme lies below the exact bound of its map."
+        f"{ruled_out} of {len(interpretations)} interpretations "
+        f"{'is' if ruled_out == 1 else 'are'} ruled out: under "
+        f"{'it' if ruled_out == 1 else 'them'} a printed mean or extreme lies below the exact "
+        f"bound of its map."
     )
 
 
@@ -354,7 +500,8 @@ def _held_out(held_out: pd.DataFrame) -> str:
     if len(held_out) < 2:
         return ""
     return (
-        f"Chosen for each table on the others alone, interpretations bring {held_out['chosen'].sum()} into range, the default "
+        f"Chosen for each table on the others alone, interpretations bring "
+        f"{held_out['chosen'].sum()} into range, the default "
         f"{held_out['default'].sum()}: {_advice(held_out)}."
     )
 
@@ -366,9 +513,13 @@ def _times(difference: float) -> str:
 
 
 def _advice(held_out: pd.DataFrame) -> str:
-    """Whether the tables that an interpretation was not chosen on speak for a change of the default."""
+    """Whether the tables that an interpretation was not chosen on speak for a change of the
+    default.
+    """
     worse = held_out[held_out["chosen"] < held_out["default"]]
-    against = ", ".join(f"{row.table} ({row.chosen} instead of {row.default})" for row in worse.itertuples())
+    against = ", ".join(
+        f"{row.table} ({row.chosen} instead of {row.default})" for row in worse.itertuples()
+    )
     if len(worse):
         return f"held out, {against} {'speaks' if len(worse) == 1 else 'speak'} against a change"
     better = (held_out["chosen"] > held_out["default"]).any()

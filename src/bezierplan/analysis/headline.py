@@ -1,4 +1,6 @@
-"""The outcome in a few sentences and one table with a row for each study: what README, page and summary show first."""
+"""The outcome in a few sentences and one table with a row for each study: what README, page and
+summary show first.
+"""
 
 from typing import NamedTuple
 
@@ -22,11 +24,16 @@ COLUMNS = {
 """Columns of the table -> their headings; the name of the study stands before them."""
 
 LEGEND = (
-    "*agree*: the published number lies in the range (95 %) of what an experiment of the paper's size would print, judging by our runs, "
-    "and the range excludes most of what the paper prints of other methods. *identified*: it is to the last digit the length of a path "
-    "that we can name. *disagree*: it lies outside. *inconclusive*: the range is too wide or has no end on that side, or the paper "
-    "does not define the quantity. *typical deviation*: median of |ours - published| / |published|. *partly*: holds in some of the "
-    "comparisons. The baseline is the exact shortest path with rounded corners, which needs no search."
+    "*agree*: the published number lies in the range (95 %) of what an experiment of the paper's "
+    "size would print, judging by our runs, "
+    "and the range excludes most of what the paper prints of other methods. *identified*: it is "
+    "to the last digit the length of a path "
+    "that we can name. *disagree*: it lies outside. *inconclusive*: the range is too wide or has "
+    "no end on that side, or the paper "
+    "does not define the quantity. *typical deviation*: median of |ours - published| / "
+    "|published|. *partly*: holds in some of the "
+    "comparisons. The baseline is the exact shortest path with rounded corners, which needs no "
+    "search."
 )
 
 _NUMBERS = {
@@ -37,7 +44,10 @@ _NUMBERS = {
 }
 _CLAIMS = {
     "supported": ("is supported", "are supported"),
-    "partly": ("is supported in part of its comparisons", "are supported in part of their comparisons"),
+    "partly": (
+        "is supported in part of its comparisons",
+        "are supported in part of their comparisons",
+    ),
     "contradicted": ("is contradicted", "are contradicted"),
     "no effect": ("shows no effect", "show no effect"),
     "undecided": ("is undecided", "are undecided"),
@@ -46,31 +56,41 @@ _CLAIMS = {
 
 
 class Headline(NamedTuple):
-    """sentences: numbers, claims, and methods beside the baseline, as far as there are any. table: by study, text in `COLUMNS`."""
+    """sentences: numbers, claims, and methods beside the baseline, as far as there are any. table:
+    by study, text in `COLUMNS`.
+    """
 
     sentences: list[str]
     table: pd.DataFrame
 
 
 def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
-    """One row per study: the published numbers that count, in total and by verdict of the test (`comparison`), and claims by verdict.
+    """One row per study: the published numbers that count, in total and by verdict of the test
+    (`comparison`), and claims by verdict.
 
-    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary interpretations and variants count.
+    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary interpretations and
+    variants count.
     """
     judged = numbers[numbers["counted"]]
     deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
-    verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
-    counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=comparison.VERDICTS, fill_value=0)
+    verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(
+        columns=VERDICTS, fill_value=0
+    )
+    counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(
+        columns=comparison.VERDICTS, fill_value=0
+    )
     counts.insert(0, "numbers", counts.sum(axis=1))
     table = counts.join(verdicts, how="outer").fillna(0).astype(int)
     return table.join(_stable(deciding)) if "interpretations" in deciding else table
 
 
-def headline(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str]) -> Headline:
+def headline(
+    numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str]
+) -> Headline:
     """The headline of some studies.
 
-    numbers: as from `summary.numbers`. claims: as from `claims.judge`. measured: as from `worth.measured`, of all studies. titles: of the
-    studies, by name.
+    numbers: as from `summary.numbers`. claims: as from `claims.judge`. measured: as from
+    `worth.measured`, of all studies. titles: of the studies, by name.
     """
     counts = outcome(numbers, claims)
     sentences = [
@@ -82,7 +102,9 @@ def headline(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame
     rows = {
         study: {
             "paper": titles[study].partition(":")[0],
-            "numbers": _of([row["identified"] + row["agrees"], row["disagrees"], row["inconclusive"]]),
+            "numbers": _of(
+                [row["identified"] + row["agrees"], row["disagrees"], row["inconclusive"]]
+            ),
             "deviation": _percent(deviation(counted[counted["study"] == study])),
             "claims": _of(_fewer(row)),
             "robust": row.get("stable") if isinstance(row.get("stable"), str) else "",
@@ -101,12 +123,15 @@ def markdown(found: Headline) -> str:
 
 
 def deviation(numbers: pd.DataFrame) -> float:
-    """The median of |ours - published| / |published|, NaN without numbers other than 0. Ours are scaled to the paper's number of runs.
+    """The median of |ours - published| / |published|, NaN without numbers other than 0. Ours are
+    scaled to the paper's number of runs.
 
     Quantities that the paper does not define say nothing.
     """
     numbers = numbers[numbers["why"] != comparison.UNDEFINED]
-    published, ours = (numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled"))
+    published, ours = (
+        numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled")
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(ours - published) / np.abs(published)
     finite = relative[np.isfinite(relative)]
@@ -114,7 +139,9 @@ def deviation(numbers: pd.DataFrame) -> float:
 
 
 def beside_baseline(measured: pd.DataFrame) -> str:
-    """Whether a method that is feasible as often as the baseline gives a shorter path; empty without methods."""
+    """Whether a method that is feasible as often as the baseline gives a shorter path; empty
+    without methods.
+    """
     if measured.empty:
         return ""
     reliable = measured[measured["feasible"] >= measured["feasible_baseline"]]
@@ -122,19 +149,29 @@ def beside_baseline(measured: pd.DataFrame) -> str:
     if reliable.empty:
         return f"No method is feasible as often as the baseline, {worth.BASELINE}."
     if not shorter:
-        return f"No method that is feasible as often as the baseline, {worth.BASELINE}, gives a shorter path."
+        return (
+            f"No method that is feasible as often as the baseline, {worth.BASELINE}, gives a "
+            f"shorter path."
+        )
     gives = "gives" if shorter == 1 else "give"
-    return f"Of {len(reliable)} methods feasible as often as the baseline, {worth.BASELINE}, {shorter} {gives} a shorter path."
+    return (
+        f"Of {len(reliable)} methods feasible as often as the baseline, {worth.BASELINE}, "
+        f"{shorter} {gives} a shorter path."
+    )
 
 
 def _stable(claims: pd.DataFrame) -> pd.Series:
-    """How many of a study's claims have the same verdict under all interpretations, out of those on which alternatives were tried, as
-    text.
+    """How many of a study's claims have the same verdict under all interpretations, out of those on
+    which alternatives were tried, as text.
     """
     tried = claims[claims["interpretations"].fillna("") != ""]
     agree = tried["interpretations"].str.split(" of ")
     stable = (agree.str[0] == agree.str[1]).groupby(tried["study"]).agg(["sum", "size"])
-    return pd.Series({study: f"{same} of {total}" for study, same, total in stable.itertuples()}, name="stable", dtype=object)
+    return pd.Series(
+        {study: f"{same} of {total}" for study, same, total in stable.itertuples()},
+        name="stable",
+        dtype=object,
+    )
 
 
 def _sentence(noun: str, counts: pd.Series, words: dict[str, tuple[str, str]]) -> str:
@@ -151,14 +188,28 @@ def _by_our_criterion(claims: pd.DataFrame) -> str:
     """How many claims fail by a criterion of ours alone, in words; empty if none does."""
     if "own_criterion" not in claims:
         return ""
-    deciding = claims[claims["primary"] & ~claims["finding"].astype(bool) & claims["own_criterion"].astype(bool)]
+    deciding = claims[
+        claims["primary"] & ~claims["finding"].astype(bool) & claims["own_criterion"].astype(bool)
+    ]
     count = int(deciding["verdict"].isin(["contradicted", "no effect"]).sum())
-    return f" {count} of them {'fails' if count == 1 else 'fail'} by our criterion alone, where the paper gives no number." if count else ""
+    return (
+        f" {count} of them {'fails' if count == 1 else 'fail'} by our criterion alone, where the "
+        f"paper gives no number."
+        if count
+        else ""
+    )
 
 
 def _fewer(row: pd.Series) -> list[int]:
-    """Counts of claims in four kinds: supported, partly, contradicted or no effect, undecided or untestable."""
-    return [row["supported"], row["partly"], row["contradicted"] + row["no effect"], row["undecided"] + row["untestable"]]
+    """Counts of claims in four kinds: supported, partly, contradicted or no effect, undecided or
+    untestable.
+    """
+    return [
+        row["supported"],
+        row["partly"],
+        row["contradicted"] + row["no effect"],
+        row["undecided"] + row["untestable"],
+    ]
 
 
 def _of(counts: list[int]) -> str:
@@ -170,9 +221,18 @@ def _percent(share: float) -> str:
 
 
 def _measured(rows: pd.DataFrame) -> dict[str, str]:
-    """What the methods of a study are beside the baseline: the least and the largest of each column."""
+    """What the methods of a study are beside the baseline: the least and the largest of each
+    column.
+    """
     if rows.empty:
         return dict.fromkeys(("feasible", "length", "cpu"), "")
-    feasible, baseline = worth.span(100 * rows["feasible"], 2), worth.span(100 * rows["feasible_baseline"], 3)
+    feasible, baseline = (
+        worth.span(100 * rows["feasible"], 2),
+        worth.span(100 * rows["feasible_baseline"], 3),
+    )
     length = worth.span(rows["length"], 3) if rows["length"].notna().any() else ""
-    return {"feasible": f"{feasible} % ({baseline} %)", "length": length, "cpu": worth.span(rows["cpu"], 2)}
+    return {
+        "feasible": f"{feasible} % ({baseline} %)",
+        "length": length,
+        "cpu": worth.span(rows["cpu"], 2),
+    }

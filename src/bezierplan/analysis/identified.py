@@ -1,10 +1,12 @@
 """Printed lengths that are those of paths through cell centres, to the last digit.
 
-Lengths of polylines between cell centres are sums of a few square roots of whole numbers, so a length with four decimals can tell which
-paths it belongs to. `identify` enumerates every free polyline with a limited number of edges between two cells, keeps those whose length
-rounds to the printed one, and says how likely a number nearby would match by chance.
+Lengths of polylines between cell centres are sums of a few square roots of whole numbers, so a
+length with four decimals can tell which paths it belongs to. `identify` enumerates every free
+polyline with a limited number of edges between two cells, keeps those whose length rounds to the
+printed one, and says how likely a number nearby would match by chance.
 
-Lengths are in cells throughout. An edge is free if it passes through no occupied cell; it may touch one.
+Lengths are in cells throughout. An edge is free if it passes through no occupied cell; it may touch
+one.
 """
 
 import itertools
@@ -21,7 +23,9 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
 NEARBY = 0.05
-"""Numbers up to this far from the printed one, in cells, are what chance may have printed in its place."""
+"""Numbers up to this far from the printed one, in cells, are what chance may have printed in its
+place.
+"""
 
 UNLIKELY = 0.1
 """A number counts as identified if chance matches less than this share of the numbers nearby."""
@@ -37,8 +41,8 @@ _ROUNDING = 1e-9
 class Identified(NamedTuple):
     """Paths whose length rounds to a printed one.
 
-    paths: the cells of each of those with fewest edges. chance: share of the numbers nearby, as printed, that some path matches. length: of
-    the first path, in cells; NaN without one.
+    paths: the cells of each of those with fewest edges. chance: share of the numbers nearby, as
+    printed, that some path matches. length: of the first path, in cells; NaN without one.
     """
 
     paths: list[tuple[int, ...]]
@@ -47,14 +51,18 @@ class Identified(NamedTuple):
 
 
 class Ways(NamedTuple):
-    """Free edges between cells. cells: numbers (n,) of the free ones. lengths: (n, n), in cells, infinite where an edge is not free."""
+    """Free edges between cells. cells: numbers (n,) of the free ones. lengths: (n, n), in cells,
+    infinite where an edge is not free.
+    """
 
     cells: np.ndarray
     lengths: np.ndarray
 
 
 def ways(grid: Grid) -> Ways:
-    """All free edges between centres of free cells, of which no one passes along others: an edge is what a planner draws."""
+    """All free edges between centres of free cells, of which no one passes along others: an edge is
+    what a planner draws.
+    """
     import shapely
 
     _, columns = grid.occupied.shape
@@ -65,7 +73,9 @@ def ways(grid: Grid) -> Ways:
     edges = shapely.linestrings(np.stack([centres[first], centres[second]], axis=1))
     # Slightly smaller cells, so that an edge may touch a side or a corner.
     y, x = np.nonzero(grid.occupied)
-    blocked = shapely.union_all(shapely.box(x + _ROUNDING, y + _ROUNDING, x + 1 - _ROUNDING, y + 1 - _ROUNDING))
+    blocked = shapely.union_all(
+        shapely.box(x + _ROUNDING, y + _ROUNDING, x + 1 - _ROUNDING, y + 1 - _ROUNDING)
+    )
     shapely.prepare(blocked)
     free = ~shapely.intersects(blocked, edges)
     lengths = np.full((len(cells), len(cells)), np.inf)
@@ -74,8 +84,11 @@ def ways(grid: Grid) -> Ways:
     return Ways(cells, lengths)
 
 
-def identify(ways: Ways, start: int, target: int, printed: float, half: float, most_edges: int) -> Identified:
-    """The free polylines of at most `most_edges` edges between two cells whose length is printed so.
+def identify(
+    ways: Ways, start: int, target: int, printed: float, half: float, most_edges: int
+) -> Identified:
+    """The free polylines of at most `most_edges` edges between two cells whose length is printed
+    so.
 
     printed, half: the number and half a unit of its last digit, in cells.
     """
@@ -83,8 +96,16 @@ def identify(ways: Ways, start: int, target: int, printed: float, half: float, m
     reached = _reached(ways, first, printed + NEARBY + half, last, most_edges)
     every = np.unique(np.concatenate([level[last] for level in reached]))
     paths = _paths(ways, reached, last, printed, half)
-    length = sum(ways.lengths[one, other] for one, other in itertools.pairwise(paths[0])) if paths else math.nan
-    return Identified([tuple(int(ways.cells[place]) for place in path) for path in paths], _chance(every, printed, half), length)
+    length = (
+        sum(ways.lengths[one, other] for one, other in itertools.pairwise(paths[0]))
+        if paths
+        else math.nan
+    )
+    return Identified(
+        [tuple(int(ways.cells[place]) for place in path) for path in paths],
+        _chance(every, printed, half),
+        length,
+    )
 
 
 def applies(entry: dict, row: dict) -> bool:
@@ -94,7 +115,9 @@ def applies(entry: dict, row: dict) -> bool:
 
 
 def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Identified | None:
-    """`identify` for a printed length in the problem's unit; None unless start and target are centres of cells of a grid."""
+    """`identify` for a printed length in the problem's unit; None unless start and target are
+    centres of cells of a grid.
+    """
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return None
@@ -105,7 +128,14 @@ def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Ide
     if not np.allclose([grid.centre(first), grid.centre(last)], [problem.start, problem.target]):
         return None
     half = 0.5 * 10.0**-decimals / grid.cell
-    return identify(_ways_of(grid.occupied.tobytes(), grid.occupied.shape), first, last, value / grid.cell, half, edges)
+    return identify(
+        _ways_of(grid.occupied.tobytes(), grid.occupied.shape),
+        first,
+        last,
+        value / grid.cell,
+        half,
+        edges,
+    )
 
 
 @lru_cache(maxsize=4)
@@ -117,15 +147,22 @@ def in_words(identification: Identified) -> str:
     """The paths and the chance of a match."""
     shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
     more = len(identification.paths) - len(shown)
-    cells = f"cells {' or '.join(shown)}{f' or {more} others' if more else ''}" if shown else "no such path"
+    cells = (
+        f"cells {' or '.join(shown)}{f' or {more} others' if more else ''}"
+        if shown
+        else "no such path"
+    )
     return f"{cells}; of the numbers nearby, {100 * identification.chance:.2g} % match by chance"
 
 
-def of_table(item: str, published: pd.DataFrame, entries: list[dict], problems: dict[str, Problem]) -> list[dict]:
-    """Rows of the audit: each published number for which an enumeration is declared, and one row a declaration with the chance of all.
+def of_table(
+    item: str, published: pd.DataFrame, entries: list[dict], problems: dict[str, Problem]
+) -> list[dict]:
+    """Rows of the audit: each published number for which an enumeration is declared, and one row a
+    declaration with the chance of all.
 
-    published: with the column `printed`, as from `audit.read_published`. problems: by name; a number's is in its column `problem`. A number
-    that no path has is no contradiction.
+    published: with the column `printed`, as from `audit.read_published`. problems: by name; a
+    number's is in its column `problem`. A number that no path has is no contradiction.
     """
     rows = []
     for entry in entries:
@@ -134,16 +171,23 @@ def of_table(item: str, published: pd.DataFrame, entries: list[dict], problems: 
             problem = problems.get(row.get("problem", row.get("workspace")))
             if not applies(entry, row) or problem is None:
                 continue
-            path = in_problem(problem, row["value"], possible.decimals(row["printed"]), entry["edges"])
+            path = in_problem(
+                problem, row["value"], possible.decimals(row["printed"]), entry["edges"]
+            )
             if path is None:
                 continue
             tried.append(path)
-            keys = [key for key in row if key not in ("metric", "statistic", "n", "unit", "value", "printed")]
+            keys = [
+                key
+                for key in row
+                if key not in ("metric", "statistic", "n", "unit", "value", "printed")
+            ]
             rows.append(
                 {
                     "item": item,
                     "place": ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"]),
-                    "rule": f"{entry['because']}: the length of a free polyline of at most {entry['edges']} edges through cell centres",
+                    "rule": f"{entry['because']}: the length of a free polyline of at most "
+                    f"{entry['edges']} edges through cell centres",
                     "printed": row["value"],
                     "limit": path.length * problem.workspace.cell,
                     "consistent": True if path.paths else None,
@@ -153,10 +197,27 @@ def of_table(item: str, published: pd.DataFrame, entries: list[dict], problems: 
         if tried:
             matched = sum(bool(path.paths) for path in tried)
             chance = at_least(matched, [path.chance for path in tried])
-            words = f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
-            place = ", ".join(f"{key}={' or '.join(map(str, one_or_list(wanted)))}" for key, wanted in entry.get("where", {}).items())
-            together = {"item": item, "place": place, "rule": f"{entry['because']}: all numbers together", "printed": matched}
-            rows.append(together | {"limit": len(tried), "consistent": True if matched == len(tried) else None, "arithmetic": words})
+            words = (
+                f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
+            )
+            place = ", ".join(
+                f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
+                for key, wanted in entry.get("where", {}).items()
+            )
+            together = {
+                "item": item,
+                "place": place,
+                "rule": f"{entry['because']}: all numbers together",
+                "printed": matched,
+            }
+            rows.append(
+                together
+                | {
+                    "limit": len(tried),
+                    "consistent": True if matched == len(tried) else None,
+                    "arithmetic": words,
+                }
+            )
     return rows
 
 
@@ -169,24 +230,36 @@ def at_least(count: int, chances: list[float]) -> float:
 
 
 def _reached(ways: Ways, first: int, most: float, last: int, edges: int) -> list[list[np.ndarray]]:
-    """By number of edges and cell: the lengths, each once, of the polylines from the first place, as far as they can still end in time."""
+    """By number of edges and cell: the lengths, each once, of the polylines from the first place,
+    as far as they can still end in time.
+    """
     from scipy.sparse import csgraph
 
-    left = most - csgraph.dijkstra(np.where(np.isfinite(ways.lengths), ways.lengths, 0), indices=last) + _ROUNDING
+    left = (
+        most
+        - csgraph.dijkstra(np.where(np.isfinite(ways.lengths), ways.lengths, 0), indices=last)
+        + _ROUNDING
+    )
     count = len(ways.cells)
     levels = [[np.zeros(1) if cell == first else np.empty(0) for cell in range(count)]]
     neighbours = [np.flatnonzero(np.isfinite(row)) for row in ways.lengths]
     for _ in range(edges):
         before, level = levels[-1], []
         for cell in range(count):
-            parts = [before[other] + ways.lengths[other, cell] for other in neighbours[cell] if len(before[other])]
+            parts = [
+                before[other] + ways.lengths[other, cell]
+                for other in neighbours[cell]
+                if len(before[other])
+            ]
             found = np.concatenate(parts) if parts else np.empty(0)
             level.append(np.unique(np.round(found[found <= left[cell]], 8)))
         levels.append(level)
     return levels
 
 
-def _paths(ways: Ways, reached: list[list[np.ndarray]], last: int, printed: float, half: float) -> list[tuple[int, ...]]:
+def _paths(
+    ways: Ways, reached: list[list[np.ndarray]], last: int, printed: float, half: float
+) -> list[tuple[int, ...]]:
     """Places of the matching polylines with fewest edges, found backwards from their ends."""
     for edges in range(1, len(reached)):
         if not _near(reached[edges][last], printed, half).any():
@@ -198,9 +271,17 @@ def _paths(ways: Ways, reached: list[list[np.ndarray]], last: int, printed: floa
 
 
 def _walk(
-    ways: Ways, reached: list[list[np.ndarray]], left: int, path: tuple[int, ...], length: float, half: float, paths: list[tuple[int, ...]]
+    ways: Ways,
+    reached: list[list[np.ndarray]],
+    left: int,
+    path: tuple[int, ...],
+    length: float,
+    half: float,
+    paths: list[tuple[int, ...]],
 ) -> None:
-    """Extend a path, given from its end, by all places from which the rest of its length is left."""
+    """Extend a path, given from its end, by all places from which the rest of its length is
+    left.
+    """
     if not left:
         paths.append(path[::-1])
         return
@@ -217,7 +298,9 @@ def _near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
 
 def _chance(lengths: np.ndarray, printed: float, half: float) -> float:
     """Share of the printed numbers within `NEARBY` to which some length rounds."""
-    numbers = printed + 2 * half * np.arange(-round(NEARBY / (2 * half)), round(NEARBY / (2 * half)) + 1)
+    numbers = printed + 2 * half * np.arange(
+        -round(NEARBY / (2 * half)), round(NEARBY / (2 * half)) + 1
+    )
     at = np.searchsorted(lengths, numbers)
     padded = np.concatenate([[-np.inf], lengths, [np.inf]])
     return float(np.mean(np.minimum(numbers - padded[at], padded[at + 1] - numbers) <= half + 1e-7))

@@ -1,11 +1,15 @@
-"""How likely are a paper's published numbers under an interpretation of what it leaves open? `search` looks for the best interpretation.
+"""How likely are a paper's published numbers under an interpretation of what it leaves open?
+`search` looks for the best interpretation.
 
-An interpretation assigns a value to some choices (`study.choices`), by id; all others keep the value in force. It is scored by the joint
-likelihood of the numbers of each table and part: whole experiments are drawn from our runs, so that numbers from the same runs stay
-correlated, and the published numbers are placed in the multivariate t distribution of these draws. Numbers of different parts, which are
-methods that no metric compares with each other, count as independent given the interpretation. Beside the score stands how many published
-numbers lie in the central 95 % of what experiments of the paper's size would print (`statistics.prediction`). An interpretation under which
-a printed mean or extreme lies below the exact bound of its map is ruled out, whatever its score: no runs at all could have it.
+An interpretation assigns a value to some choices (`study.choices`), by id; all others keep the
+value in force. It is scored by the joint likelihood of the numbers of each table and part: whole
+experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the
+published numbers are placed in the multivariate t distribution of these draws. Numbers of different
+parts, which are methods that no metric compares with each other, count as independent given the
+interpretation. Beside the score stands how many published numbers lie in the central 95 % of what
+experiments of the paper's size would print (`statistics.prediction`). An interpretation under which
+a printed mean or extreme lies below the exact bound of its map is ruled out, whatever its score: no
+runs at all could have it.
 """
 
 import hashlib
@@ -50,12 +54,19 @@ FINALISTS = 10
 
 
 def job_under(job: dict, interpretation: Interpretation, choices: list[dict]) -> dict:
-    """A job of runs under an interpretation: with its settings, and only in the world that it names."""
-    settings, problems = dict(job["settings"]), {name: dict(place.get("settings", {})) for name, place in job["problems"].items()}
+    """A job of runs under an interpretation: with its settings, and only in the world that it
+    names.
+    """
+    settings, problems = (
+        dict(job["settings"]),
+        {name: dict(place.get("settings", {})) for name, place in job["problems"].items()},
+    )
     # Choices for some problems alone are stronger than those for all.
     for choice in sorted(choices, key=lambda choice: "problems" in choice):
         if choice["id"] in interpretation and job["method"] in choice.get("methods", []):
-            made = {choice["setting"]: interpretation[choice["id"]]} | choice["along"].get(job["method"], {})
+            made = {choice["setting"]: interpretation[choice["id"]]} | choice["along"].get(
+                job["method"], {}
+            )
             if "problems" in choice:
                 for name in problems.keys() & set(choice["problems"]):
                     problems[name] |= made
@@ -63,14 +74,25 @@ def job_under(job: dict, interpretation: Interpretation, choices: list[dict]) ->
             settings |= made
             for own in problems.values():
                 own.pop(choice["setting"], None)
-    bare = {name: {key: value for key, value in place.items() if key != "settings"} for name, place in job["problems"].items()}
-    met = {name: place | ({"settings": problems[name]} if problems[name] else {}) for name, place in bare.items()}
+    bare = {
+        name: {key: value for key, value in place.items() if key != "settings"}
+        for name, place in job["problems"].items()
+    }
+    met = {
+        name: place | ({"settings": problems[name]} if problems[name] else {})
+        for name, place in bare.items()
+    }
     return job | {"settings": settings, "problems": met}
 
 
 def in_world(spec: dict, job: dict, interpretation: Interpretation) -> tuple[dict, dict]:
-    """A table's description and one of its jobs, restricted to the paper's interpretation of the world."""
-    world = {column: interpretation.get(column, value) for column, value in spec.get("primary", {}).items()}
+    """A table's description and one of its jobs, restricted to the paper's interpretation of the
+    world.
+    """
+    world = {
+        column: interpretation.get(column, value)
+        for column, value in spec.get("primary", {}).items()
+    }
     where = spec["where"] | world
 
     def wanted(column: str, value: Any) -> bool:
@@ -80,44 +102,77 @@ def in_world(spec: dict, job: dict, interpretation: Interpretation) -> tuple[dic
     problems = {
         name: place
         for name, place in job["problems"].items()
-        if wanted("problem", name) and all(wanted(column, place[column]) for column in place if column != "settings")
+        if wanted("problem", name)
+        and all(wanted(column, place[column]) for column in place if column != "settings")
     }
-    vary = {column: [value for value in values if wanted(column, value)] for column, values in job["vary"].items()}
+    vary = {
+        column: [value for value in values if wanted(column, value)]
+        for column, values in job["vary"].items()
+    }
     return spec | {"where": where}, job | {"problems": problems, "vary": vary}
 
 
-def under_metrics(spec: dict, published: pd.DataFrame, interpretation: Interpretation, choices: list[dict]) -> tuple[dict, pd.DataFrame]:
-    """A table's description and its published numbers, with the metrics that an interpretation assigns to printed words, and the keys that
-    it changes.
+def under_metrics(
+    spec: dict, published: pd.DataFrame, interpretation: Interpretation, choices: list[dict]
+) -> tuple[dict, pd.DataFrame]:
+    """A table's description and its published numbers, with the metrics that an interpretation
+    assigns to printed words, and the keys that it changes.
 
     A metric that the table has in another entry already stays once.
     """
-    metric = {choice["metric"]: interpretation[choice["id"]] for choice in choices if "metric" in choice and choice["id"] in interpretation}
-    renamed = [entry | {"metric": metric.get(entry["metric"], entry["metric"])} for entry in spec["values"]]
+    metric = {
+        choice["metric"]: interpretation[choice["id"]]
+        for choice in choices
+        if "metric" in choice and choice["id"] in interpretation
+    }
+    renamed = [
+        entry | {"metric": metric.get(entry["metric"], entry["metric"])} for entry in spec["values"]
+    ]
     entries = {(entry["metric"], str(entry["statistic"])): entry for entry in renamed}
-    keys = {choice["table"]: interpretation[choice["id"]] for choice in choices if "table" in choice and choice["id"] in interpretation}
-    return spec | keys | {"values": [*entries.values()]}, published.assign(metric=published["metric"].replace(metric))
+    keys = {
+        choice["table"]: interpretation[choice["id"]]
+        for choice in choices
+        if "table" in choice and choice["id"] in interpretation
+    }
+    return spec | keys | {"values": [*entries.values()]}, published.assign(
+        metric=published["metric"].replace(metric)
+    )
 
 
-def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str) -> tuple[pd.DataFrame, float]:
-    """The published numbers of a table under an interpretation, and the logarithm of their joint likelihood.
+def numbers_of(
+    results: Results, spec: dict, published: pd.DataFrame, name: str
+) -> tuple[pd.DataFrame, float]:
+    """The published numbers of a table under an interpretation, and the logarithm of their joint
+    likelihood.
 
-    results: the runs of the table's methods. spec: its description, restricted to the interpretation's world. published: as from
-    `comparison.read_published`. name: seeds the draws. Columns: the table's keys, metric, statistic, value_published, low, high, in_range,
-    possible (it does not lie below what every run has at least).
-    Seconds are left out; with fewer than `statistics.LEAST_RUNS` runs no number is in range.
+    results: the runs of the table's methods. spec: its description, restricted to the
+    interpretation's world. published: as from `comparison.read_published`. name: seeds the draws.
+    Columns: the table's keys, metric, statistic, value_published, low, high, in_range, possible (it
+    does not lie below what every run has at least). Seconds are left out; with fewer than
+    `statistics.LEAST_RUNS` runs no number is in range.
     """
     keys_printed = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = keys_printed + [key for key in tables.keys(spec) if key not in keys_printed]
     ours = tables.cells(results, spec, keys).assign(printed=lambda table: table["statistic"])
     ours["statistic"] = ours["statistic"].replace("unstated", "median")
     theirs = published.assign(statistic=published["statistic"].replace("unstated", "median"))
-    theirs = theirs.astype({key: ours[key].dtype for key in keys_printed}).rename(columns={"value": "value_published"})
-    both = theirs.merge(ours.drop(columns="value"), on=[*keys_printed, "metric", "statistic"], how="left")
+    theirs = theirs.astype({key: ours[key].dtype for key in keys_printed}).rename(
+        columns={"value": "value_published"}
+    )
+    both = theirs.merge(
+        ours.drop(columns="value"), on=[*keys_printed, "metric", "statistic"], how="left"
+    )
     runs = select(results.runs, spec["where"])
-    measured = {metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()}
-    # A constant that nothing lies below, such as the first rank, tells no interpretation from another.
-    bounded = {entry["metric"] for entry in spec["values"] if isinstance(entry.get("least", metrics.METRICS[entry["metric"]].least), str)}
+    measured = {
+        metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()
+    }
+    # A constant that nothing lies below, such as the first rank, tells no interpretation from
+    # another.
+    bounded = {
+        entry["metric"]
+        for entry in spec["values"]
+        if isinstance(entry.get("least", metrics.METRICS[entry["metric"]].least), str)
+    }
     rows, draws, least = [], [], []
     for number, row in both.iterrows():
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
@@ -126,37 +181,77 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -int(row["decimals"])
         value, single = row["value_published"], (row["least"], row["most"])
         *_, low, high = statistics.prediction(
-            row["statistic"], row["numbers"], value, size, None, generator(f"{name}/{number}"), single, row["groups"] or None
+            row["statistic"],
+            row["numbers"],
+            value,
+            size,
+            None,
+            generator(f"{name}/{number}"),
+            single,
+            row["groups"] or None,
         )
-        # Without enough runs nothing is in range: an interpretation under which most runs fail explains nothing.
+        # Without enough runs nothing is in range: an interpretation under which most runs fail
+        # explains nothing.
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
-        described = {key: row[key] for key in [*keys_printed, "metric", "statistic", "value_published"]}
+        described = {
+            key: row[key] for key in [*keys_printed, "metric", "statistic", "value_published"]
+        }
         inside = bool(enough and low - half <= value <= high + half)
-        below = row["metric"] in bounded and row["statistic"] in _BOUNDED and value + half < row["least"] * (1 - _ROUNDING)
-        rows.append(described | {"low": low - half, "high": high + half, "in_range": inside, "possible": not below})
-        own = runs[np.logical_and.reduce([runs[key] == row[key] for key in keys_printed])].assign(value=measured[row["metric"]])
+        below = (
+            row["metric"] in bounded
+            and row["statistic"] in _BOUNDED
+            and value + half < row["least"] * (1 - _ROUNDING)
+        )
+        rows.append(
+            described
+            | {"low": low - half, "high": high + half, "in_range": inside, "possible": not below}
+        )
+        own = runs[np.logical_and.reduce([runs[key] == row[key] for key in keys_printed])].assign(
+            value=measured[row["metric"]]
+        )
         draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))
         least.append(max(half / math.sqrt(3), _least_of_count(row, size)))
-    frame = pd.DataFrame(rows, columns=[*keys_printed, "metric", "statistic", "value_published", "low", "high", "in_range", "possible"])
-    return frame, _likelihood(frame["value_published"].to_numpy(dtype=float), np.array(draws), np.array(least), results)
+    frame = pd.DataFrame(
+        rows,
+        columns=[
+            *keys_printed,
+            "metric",
+            "statistic",
+            "value_published",
+            "low",
+            "high",
+            "in_range",
+            "possible",
+        ],
+    )
+    return frame, _likelihood(
+        frame["value_published"].to_numpy(dtype=float), np.array(draws), np.array(least), results
+    )
 
 
 def _experiments(runs: pd.DataFrame, row: pd.Series, name: str) -> np.ndarray:
-    """A number of a table in experiments of the paper's size, drawn as a whole from its runs (EXPERIMENTS,): the same units, which are
-    repeats or layouts, for all numbers of the table. Experiments within a group are drawn for each number alone.
+    """A number of a table in experiments of the paper's size, drawn as a whole from its runs
+    (EXPERIMENTS,): the same units, which are repeats or layouts, for all numbers of the table.
+    Experiments within a group are drawn for each number alone.
 
     runs: with the metric of each as `value`.
     """
     size = None if pd.isna(row["n"]) else int(row["n"])
     if row["groups"]:
-        drawn = statistics.predicted_within(row["statistic"], row["groups"], size, generator(f"{name}/{row.name}/within"))
+        drawn = statistics.predicted_within(
+            row["statistic"], row["groups"], size, generator(f"{name}/{row.name}/within")
+        )
         return drawn[:: len(drawn) // EXPERIMENTS][:EXPERIMENTS]
     values = runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
     # Of a number of runs that is not stated, a single one, as `statistics.prediction` has it.
-    chosen = generator(f"{name}/experiments").integers(1 << 30, size=(EXPERIMENTS, size or 1)) % len(values)
+    chosen = generator(f"{name}/experiments").integers(
+        1 << 30, size=(EXPERIMENTS, size or 1)
+    ) % len(values)
     if not np.isnan(values).any():
         return statistics.STATISTICS[row["statistic"]](values[chosen])
-    return np.array([statistics.statistic(row["statistic"], own[~np.isnan(own)]) for own in values[chosen]])
+    return np.array(
+        [statistics.statistic(row["statistic"], own[~np.isnan(own)]) for own in values[chosen]]
+    )
 
 
 def _unit_columns(runs: pd.DataFrame) -> list[str]:
@@ -167,8 +262,9 @@ def _unit_columns(runs: pd.DataFrame) -> list[str]:
 def _least_of_count(row: pd.Series, size: int | None) -> float:
     """The least spread of a count or share, 0 for other statistics.
 
-    If none of our n runs has an event, its probability may still be some 3 / n, so that a printed 2 of 100 is no wonder: that of Jeffreys'
-    prior (Brown, Cai and DasGupta 2001, "Interval estimation for a binomial proportion").
+    If none of our n runs has an event, its probability may still be some 3 / n, so that a printed 2
+    of 100 is no wonder: that of Jeffreys' prior (Brown, Cai and DasGupta 2001, "Interval estimation
+    for a binomial proportion").
     """
     if row["statistic"] not in ("count", "share"):
         return 0.0
@@ -179,11 +275,15 @@ def _least_of_count(row: pd.Series, size: int | None) -> float:
     return spread * (asked if row["statistic"] == "count" else 1)
 
 
-def _likelihood(published: np.ndarray, draws: np.ndarray, least: np.ndarray, results: Results) -> float:
-    """Logarithm of the density of the published numbers (k,) in the multivariate t distribution of draws (k, EXPERIMENTS).
+def _likelihood(
+    published: np.ndarray, draws: np.ndarray, least: np.ndarray, results: Results
+) -> float:
+    """Logarithm of the density of the published numbers (k,) in the multivariate t distribution of
+    draws (k, EXPERIMENTS).
 
-    The draws come from n units, which cannot determine k x k covariances: they are shrunk to the diagonal by k / (k + n), and the
-    distribution has n - 1 degrees of freedom. A spread is at least that of `least` (k,) and a thousandth of the number.
+    The draws come from n units, which cannot determine k x k covariances: they are shrunk to the
+    diagonal by k / (k + n), and the distribution has n - 1 degrees of freedom. A spread is at least
+    that of `least` (k,) and a thousandth of the number.
     """
     known = ~np.isnan(draws).any(axis=1) if len(draws) else np.zeros(0, dtype=bool)
     units = max(len(results.runs[_unit_columns(results.runs)].drop_duplicates()), 2)
@@ -195,63 +295,109 @@ def _likelihood(published: np.ndarray, draws: np.ndarray, least: np.ndarray, res
     k, centre = len(draws), draws.mean(axis=1)
     spread = np.maximum.reduce([draws.std(axis=1), least, 1e-3 * np.maximum(np.abs(centre), 1e-3)])
     with np.errstate(invalid="ignore"):  # a number without spread is correlated with none
-        correlation = np.nan_to_num(np.atleast_2d(np.corrcoef(draws)), nan=0.0) if k > 1 else np.eye(1)
+        correlation = (
+            np.nan_to_num(np.atleast_2d(np.corrcoef(draws)), nan=0.0) if k > 1 else np.eye(1)
+        )
     shrunk = (1 - k / (k + units)) * correlation
     np.fill_diagonal(shrunk, 1.0)
     away = (published - centre) / spread
     freedom = units - 1
     distance = float(away @ np.linalg.solve(shrunk, away))
     logarithms = np.log(spread).sum() + 0.5 * np.linalg.slogdet(shrunk)[1]
-    constant = math.lgamma((freedom + k) / 2) - math.lgamma(freedom / 2) - 0.5 * k * math.log(freedom * math.pi)
+    constant = (
+        math.lgamma((freedom + k) / 2)
+        - math.lgamma(freedom / 2)
+        - 0.5 * k * math.log(freedom * math.pi)
+    )
     return missing + constant - logarithms - 0.5 * (freedom + k) * math.log1p(distance / freedom)
 
 
 class Evaluator:
-    """Evaluates parts of interpretations on the runs that they need. Runs are kept in a folder under the digest of their job, so that an
-    interrupted search continues, and interpretations that agree on a method share its runs.
+    """Evaluates parts of interpretations on the runs that they need. Runs are kept in a folder
+    under the digest of their job, so that an interrupted search continues, and interpretations that
+    agree on a method share its runs.
     """
 
     def __init__(self, job: dict, files: dict[str, str], maps: Path, folder: Path) -> None:
-        """job: as from `study.choices.interpretations_job`. files: published numbers, by table. maps: where map files are looked up."""
+        """job: as from `study.choices.interpretations_job`. files: published numbers, by table.
+        maps: where map files are looked up.
+        """
         self.job, self.maps, self.folder = job, maps, folder
-        self.published = {name: comparison.read_published(files[name], table["spec"]) for name, table in job["tables"].items()}
+        self.published = {
+            name: comparison.read_published(files[name], table["spec"])
+            for name, table in job["tables"].items()
+        }
         self.worlds: dict[str, tuple[dict, pd.DataFrame]] = {}
 
     def __call__(self, methods: list[str], interpretation: Interpretation) -> Evaluated | None:
-        """The part of an interpretation that some methods' numbers decide; None if its settings exclude each other or no workspace is like
-        that.
+        """The part of an interpretation that some methods' numbers decide; None if its settings
+        exclude each other or no workspace is like that.
         """
         evaluated = []
         for name, table in self.job["tables"].items():
             jobs = [job for method, job in table["jobs"].items() if method in methods]
             if not jobs:
                 continue
-            placed = [in_world(table["spec"], job_under(job, interpretation, self.job["choices"]), interpretation) for job in jobs]
+            placed = [
+                in_world(
+                    table["spec"],
+                    job_under(job, interpretation, self.job["choices"]),
+                    interpretation,
+                )
+                for job in jobs
+            ]
             if any(_excluded(chunk) for _, chunk in placed):
                 return None
             try:
-                problems, bounds, changes = self._world(table["experiment"], [*placed[0][1]["problems"]], interpretation)
+                problems, bounds, changes = self._world(
+                    table["experiment"], [*placed[0][1]["problems"]], interpretation
+                )
             except ValueError as error:  # no such workspace can be drawn
                 logger.info("%s: %s", name_of(interpretation), error)
                 return None
-            runs = pd.concat([self._runs(chunk, problems, changes) for _, chunk in placed], ignore_index=True)
-            spec, published = under_metrics(placed[0][0], self._printed(name, interpretation), interpretation, self.job["choices"])
+            runs = pd.concat(
+                [self._runs(chunk, problems, changes) for _, chunk in placed], ignore_index=True
+            )
+            spec, published = under_metrics(
+                placed[0][0],
+                self._printed(name, interpretation),
+                interpretation,
+                self.job["choices"],
+            )
             if len(jobs) < len(table["jobs"]):
                 spec = spec | {"where": spec["where"] | {"method": [job["method"] for job in jobs]}}
                 published = published[published["method"].isin(spec["where"]["method"])]
-            numbers, likelihood = numbers_of(joined(runs, problems, bounds), spec, published, f"{self.job['study']}/{name}")
-            evaluated.append(Evaluated(interpretation, numbers.assign(table=name), {name: likelihood}))
+            numbers, likelihood = numbers_of(
+                joined(runs, problems, bounds), spec, published, f"{self.job['study']}/{name}"
+            )
+            evaluated.append(
+                Evaluated(interpretation, numbers.assign(table=name), {name: likelihood})
+            )
         whole = together(interpretation, evaluated)
-        logger.info("%s: %s: %.2f, %d of %d", ", ".join(methods), name_of(interpretation), whole.score, *_in_range(whole))
+        logger.info(
+            "%s: %s: %.2f, %d of %d",
+            ", ".join(methods),
+            name_of(interpretation),
+            whole.score,
+            *_in_range(whole),
+        )
         return whole
 
     def _printed(self, name: str, interpretation: Interpretation) -> pd.DataFrame:
-        """The published numbers of a table; a column that names the default world names that of the interpretation."""
+        """The published numbers of a table; a column that names the default world names that of the
+        interpretation.
+        """
         published = self.published[name]
-        return published.assign(**{column: value for column, value in interpretation.items() if column in published})
+        return published.assign(
+            **{column: value for column, value in interpretation.items() if column in published}
+        )
 
-    def _world(self, experiment: str, names: list[str], interpretation: Interpretation) -> tuple[dict, pd.DataFrame, list]:
-        """Some problems of an experiment under an interpretation, their bounds, and what the interpretation changes in their workspaces."""
+    def _world(
+        self, experiment: str, names: list[str], interpretation: Interpretation
+    ) -> tuple[dict, pd.DataFrame, list]:
+        """Some problems of an experiment under an interpretation, their bounds, and what the
+        interpretation changes in their workspaces.
+        """
         described = self.job["worlds"][experiment]
         wanted = {name: described["problems"][name] for name in names}
         used = {problem["workspace"] for problem in wanted.values()}
@@ -266,12 +412,18 @@ class Evaluator:
             workspaces = {name: dict(described["workspaces"][name]) for name in sorted(used)}
             for workspace, key, value in changes:
                 workspaces[workspace][key] = value
-            made, _ = problem_files.build_all(described | {"problems": wanted, "workspaces": workspaces}, self.maps)
+            made, _ = problem_files.build_all(
+                described | {"problems": wanted, "workspaces": workspaces}, self.maps
+            )
             self.worlds[described_world] = made, problem_files.bounds_of(made).to_pandas()
         return *self.worlds[described_world], changes
 
     def _runs(self, job: dict, problems: dict, changes: list) -> pd.DataFrame:
-        key = source_digest(_planner(job["planner"])) + self.job["maps"] + json.dumps([job, changes], sort_keys=True)
+        key = (
+            source_digest(_planner(job["planner"]))
+            + self.job["maps"]
+            + json.dumps([job, changes], sort_keys=True)
+        )
         file = self.folder / f"{hashlib.sha256(key.encode()).hexdigest()[:24]}.parquet"
         if not file.exists():
             table, times = execution.run_chunk(problems, job, timed_alike=False)
@@ -289,18 +441,24 @@ def _in_range(found: Evaluated) -> tuple[int, int]:
 
 @contextmanager
 def evaluating(evaluator: Evaluator, parts: list[Part], processes: int) -> Iterator[Evaluate]:
-    """Evaluates the tasks of a search, in several processes if there are to be several: on Linux, for elsewhere they would begin with the
-    job's script anew.
+    """Evaluates the tasks of a search, in several processes if there are to be several: on Linux,
+    for elsewhere they would begin with the job's script anew.
     """
     if processes == 1 or sys.platform != "linux":
-        yield lambda tasks: [evaluator(parts[task.part].methods, task.interpretation) for task in tasks]
+        yield lambda tasks: [
+            evaluator(parts[task.part].methods, task.interpretation) for task in tasks
+        ]
         return
-    with ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), _begin, (evaluator, parts)) as pool:
+    with ProcessPoolExecutor(
+        processes, multiprocessing.get_context("fork"), _begin, (evaluator, parts)
+    ) as pool:
         yield lambda tasks: [*pool.map(_evaluated, tasks)]
 
 
 _of_process: dict[str, Any] = {}
-"""The evaluator of a process of the pool, which keeps the worlds that it has built, and the parts."""
+"""The evaluator of a process of the pool, which keeps the worlds that it has built, and the
+parts.
+"""
 
 
 def _begin(evaluator: Evaluator, parts: list[Part]) -> None:
@@ -312,9 +470,11 @@ def _evaluated(task: Task) -> Evaluated | None:
     return _of_process["evaluator"](_of_process["parts"][task.part].methods, task.interpretation)
 
 
-def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int) -> dict[str, pd.DataFrame]:
-    """The three tables of `explained`, by name, after the search for a study's best interpretation; the best are judged again by more
-    runs, and the very best anew, by runs with other seeds.
+def found_by(
+    job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int
+) -> dict[str, pd.DataFrame]:
+    """The three tables of `explained`, by name, after the search for a study's best interpretation;
+    the best are judged again by more runs, and the very best anew, by runs with other seeds.
 
     job: as from `study.choices.search_job`.
     """
@@ -328,10 +488,19 @@ def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, process
     best = max(confirmed, key=lambda each: each.rank).interpretation
     with evaluating(Evaluator(job["fresh"], files, maps, folder), parts, processes) as evaluate:
         fresh = whole(best, parts, evaluate)
-    shared = {choice["id"] for choice in choices if sum(choice["id"] in part.choices for part in parts) > 1}
-    lines = {name: (along, explained.yardstick(more.published[name], along)) for name, along in job["along"].items()}
+    shared = {
+        choice["id"]
+        for choice in choices
+        if sum(choice["id"] in part.choices for part in parts) > 1
+    }
+    lines = {
+        name: (along, explained.yardstick(more.published[name], along))
+        for name, along in job["along"].items()
+    }
     return {
-        "interpretations": explained.interpretations_table(study, confirmed, tried.interpretations, fresh, choices),
+        "interpretations": explained.interpretations_table(
+            study, confirmed, tried.interpretations, fresh, choices
+        ),
         "explained": explained.explained_table(study, confirmed, tried.of_parts, shared),
         "held_out": explained.held_out_table(study, confirmed, lines),
     }
@@ -340,7 +509,10 @@ def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, process
 def _excluded(job: dict) -> bool:
     """Whether a planner refuses a combination of settings."""
     check = getattr(planner_module(job["planner"]), "check", None)
-    settings = [execution.settings_in(job, condition) for condition in execution.conditions(list(job["problems"]), job["vary"])]
+    settings = [
+        execution.settings_in(job, condition)
+        for condition in execution.conditions(list(job["problems"]), job["vary"])
+    ]
     try:
         for each in settings if check else []:
             check(each)

@@ -6,7 +6,13 @@ from typing import NamedTuple
 
 import pandas as pd
 
-_SIGNS = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}"}
+_SIGNS = {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+}
 _SIGNS |= {sign: f"\\{sign}" for sign in "&%$#_{}"}
 _SIGNS |= {"²": r"\textsuperscript{2}", "→": r"$\to$", "ζ": r"$\zeta$"}
 
@@ -18,7 +24,9 @@ _LEVEL = ": "
 
 
 class Captioned(NamedTuple):
-    """A table with its caption and the label that `\\ref` takes. table: all text, as in its csv file."""
+    """A table with its caption and the label that `\\ref` takes. table: all text, as in its csv
+    file.
+    """
 
     table: pd.DataFrame
     caption: str
@@ -26,9 +34,15 @@ class Captioned(NamedTuple):
 
 
 def captioned(files: Mapping[str, str], captions: Mapping[str, str], study: str) -> list[Captioned]:
-    """Tables in csv files, by name, with their captions; their labels begin with the name of the study."""
+    """Tables in csv files, by name, with their captions; their labels begin with the name of the
+    study.
+    """
     return [
-        Captioned(pd.read_csv(file, dtype=str, keep_default_na=False), captions[name], f"tab:{study}-{name}")
+        Captioned(
+            pd.read_csv(file, dtype=str, keep_default_na=False),
+            captions[name],
+            f"tab:{study}-{name}",
+        )
         for name, file in files.items()
     ]
 
@@ -39,7 +53,8 @@ def document(tables: list[Captioned]) -> str:
 
 
 def environment(captioned: Captioned) -> str:
-    """A table with rules as of a book: numbers on the right, and columns whose names begin alike below a common head.
+    """A table with rules as of a book: numbers on the right, and columns whose names begin alike
+    below a common head.
 
     >>> print(environment(Captioned(pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]}), "Lengths in %", "tab:x")))
     \\begin{table}[htbp]
@@ -58,12 +73,26 @@ def environment(captioned: Captioned) -> str:
     """
     table = captioned.table
     sides = "".join("r" if _is_number(table[column]) else "l" for column in table)
-    rows = [*_heads(list(table.columns)), "\\midrule", *(_row(row) for row in table.itertuples(index=False))]
-    body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in ["\\toprule", *rows, "\\bottomrule"]), "\\end{tabular}"]
+    rows = [
+        *_heads(list(table.columns)),
+        "\\midrule",
+        *(_row(row) for row in table.itertuples(index=False)),
+    ]
+    body = [
+        f"\\begin{{tabular}}{{{sides}}}",
+        *(f"  {row}" for row in ["\\toprule", *rows, "\\bottomrule"]),
+        "\\end{tabular}",
+    ]
     if len(table.columns) > _MOST_COLUMNS:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
-    head = ["\\centering", f"\\caption{{{escaped(captioned.caption)}}}", f"\\label{{{captioned.label}}}"]
-    return "\n".join(["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""])
+    head = [
+        "\\centering",
+        f"\\caption{{{escaped(captioned.caption)}}}",
+        f"\\label{{{captioned.label}}}",
+    ]
+    return "\n".join(
+        ["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""]
+    )
 
 
 def escaped(text: str) -> str:
@@ -76,14 +105,21 @@ def _row(cells: tuple) -> str:
 
 
 def _heads(names: list[str]) -> list[str]:
-    """The rows of heads: one, or two if neighbouring columns share the first part of their names."""
+    """The rows of heads: one, or two if neighbouring columns share the first part of their
+    names.
+    """
     parts = [name.split(_LEVEL, 1) for name in names]
-    groups = [(first, len(list(group))) for first, group in itertools.groupby(part[0] for part in parts)]
+    groups = [
+        (first, len(list(group))) for first, group in itertools.groupby(part[0] for part in parts)
+    ]
     if all(count == 1 for _, count in groups):
         return [_row(tuple(names))]
     above, rules, below, column = [], [], [], 1
     for first, count in groups:
-        group = [part[-1] if count > 1 or len(part) > 1 else part[0] for part in parts[column - 1 : column - 1 + count]]
+        group = [
+            part[-1] if count > 1 or len(part) > 1 else part[0]
+            for part in parts[column - 1 : column - 1 + count]
+        ]
         below += group
         shared = count > 1 or group != [first]
         above.append(f"\\multicolumn{{{count}}}{{c}}{{{escaped(first)}}}" if shared else "")

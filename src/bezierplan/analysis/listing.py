@@ -1,4 +1,6 @@
-"""Tables without runs: what a paper prints besides its results, what a study's function computes, and published numbers next to ours."""
+"""Tables without runs: what a paper prints besides its results, what a study's function computes,
+and published numbers next to ours.
+"""
 
 from collections.abc import Callable, Mapping
 
@@ -6,7 +8,8 @@ import pandas as pd
 
 from bezierplan.analysis.results import published_table, select
 
-# What a table of kind `comparison` shows next to the keys: columns of `comparison.compare`, and their headings.
+# What a table of kind `comparison` shows next to the keys: columns of `comparison.compare`, and
+# their headings.
 _SHOWN = {
     "metric": "metric",
     "statistic": "statistic",
@@ -31,10 +34,11 @@ def table(
     functions: Mapping[str, Callable[..., pd.DataFrame]],
     labels: Mapping[str, str],
 ) -> pd.DataFrame:
-    """A table of kind `transcribed` (every cell as written), `function` (called with all published tables by file name, and with
-    its arguments), or `comparison` (`beside`).
+    """A table of kind `transcribed` (every cell as written), `function` (called with all published
+    tables by file name, and with its arguments), or `comparison` (`beside`).
 
-    files: of published numbers, by table; for a transcribed table its only file; for a comparison those of its tables.
+    files: of published numbers, by table; for a transcribed table its only file; for a comparison
+    those of its tables.
     """
     if spec["kind"] == "transcribed":
         (file,) = files.values()
@@ -45,11 +49,14 @@ def table(
     return functions[spec["function"]](published, **spec.get("arguments", {}))
 
 
-def beside(spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> pd.DataFrame:
-    """Published numbers of several tables next to ours, with prediction intervals for experiments of the paper's size.
+def beside(
+    spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]
+) -> pd.DataFrame:
+    """Published numbers of several tables next to ours, with prediction intervals for experiments
+    of the paper's size.
 
-    spec: `metrics`, the metrics shown; `where`: column -> value or list, for tables that have the column. comparisons: as from
-    `comparison.compare`, by table. labels: how names are printed.
+    spec: `metrics`, the metrics shown; `where`: column -> value or list, for tables that have the
+    column. comparisons: as from `comparison.compare`, by table. labels: how names are printed.
     """
     shown = []
     for name, rows in comparisons.items():
@@ -60,7 +67,9 @@ def beside(spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str
     table = pd.concat(shown, ignore_index=True)
     keys = [column for column in table.columns if column not in (*_SHOWN, "table")]
     for key in (*keys, "metric"):
-        table[key] = [labels.get(value, value) if isinstance(value, str) else value for value in table[key]]
+        table[key] = [
+            labels.get(value, value) if isinstance(value, str) else value for value in table[key]
+        ]
     counted = table.select_dtypes("float").columns.difference(["quantile_published"])
     table = table.round(dict.fromkeys([*counted, "quantile_published"], _DECIMALS))
     return table[["table", *keys, *_SHOWN]].rename(columns=_SHOWN)

@@ -1,8 +1,9 @@
-"""The measures behind the metrics: computed from other columns of the runs table, from the history of the objective, or from the path.
+"""The measures behind the metrics: computed from other columns of the runs table, from the history
+of the objective, or from the path.
 
-A measure takes a table of at least one run and the problems by name, and gives one number per run (n,), NaN where a run has no such value.
-`of_path` and `of_path_on_grid` turn a measure of a single path into one. Curve modules are imported only when a value is
-requested.
+A measure takes a table of at least one run and the problems by name, and gives one number per run
+(n,), NaN where a run has no such value. `of_path` and `of_path_on_grid` turn a measure of a single
+path into one. Curve modules are imported only when a value is requested.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
     from bezierplan.workspaces.problem import Path, Problem, Workspace
 
-# Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic pieces of song2016.
+# Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic
+# pieces of song2016.
 CURVATURE_SAMPLES = 601
 # Finer than any planner's own test.
 FINE_SAMPLES = 4001
@@ -31,10 +33,12 @@ FINE_SAMPLES = 4001
 CLASS_SAMPLES = 2001
 # Samples of a curved piece between which headings are compared (ma2020: 2,000 chords).
 HEADING_SAMPLES = 2001
-# Approximate length, in units, of the parts by which a path's bending is measured, and samples of a curved piece from which they are cut.
+# Approximate length, in units, of the parts by which a path's bending is measured, and samples of a
+# curved piece from which they are cut.
 BENDING_PART = 0.1
 BENDING_SAMPLES = 64
-# Measures of paths that a process remembers, since several checks of claims ask for the same ones: up to some 200 MB.
+# Measures of paths that a process remembers, since several checks of claims ask for the same ones:
+# up to some 200 MB.
 MEASURES_KEPT = 250_000
 # A smaller change of heading, in radians, is not a corner.
 CORNER = 1e-6
@@ -55,32 +59,44 @@ def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -
 
 
 def rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; ties share the mean of their ranks."""
+    """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; ties share
+    the mean of their ranks.
+    """
     unit = [column for column in ("workspace", "layout", "profile", "repeat") if column in runs]
     return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
 
 
 def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a run's objective lies beyond the whiskers of the box of its method under its condition."""
+    """Whether (n,) a run's objective lies beyond the whiskers of the box of its method under its
+    condition.
+    """
     grouped = runs.groupby(["condition", "method"], dropna=False)["objective"]
-    first, third = grouped.transform(lambda each: each.quantile(0.25)), grouped.transform(lambda each: each.quantile(0.75))
+    first, third = (
+        grouped.transform(lambda each: each.quantile(0.25)),
+        grouped.transform(lambda each: each.quantile(0.75)),
+    )
     reach = _OUTLIER_REACH * (third - first)
     return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
 
 
 def _reference(runs: pd.DataFrame) -> pd.Series:
-    """The length of the best known path of each run's problem. Raises ValueError if it is shorter than the exact shortest path."""
+    """The length of the best known path of each run's problem. Raises ValueError if it is shorter
+    than the exact shortest path.
+    """
     too_short = runs["reference"] < (1 - ROUNDED) * runs.get("bound", np.nan)
     if too_short.any():
         run = runs[too_short].iloc[0]
         raise ValueError(
-            f"problem {run['problem']}: reference {run['reference']:g} lies below the exact shortest length {run['bound']:.12g}"
+            f"problem {run['problem']}: reference {run['reference']:g} lies below the exact "
+            f"shortest length {run['bound']:.12g}"
         )
     return runs["reference"]
 
 
 def gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Length over that of the best known path of the same kind, minus 1 (n,); NaN where none is known."""
+    """Length over that of the best known path of the same kind, minus 1 (n,); NaN where none is
+    known.
+    """
     return runs["length"] / _reference(runs) - 1
 
 
@@ -90,7 +106,9 @@ def excess_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.nda
 
 
 def _held_history(runs: pd.DataFrame) -> np.ndarray:
-    """Best objective so far by generation: (runs, maximum generations + 1). Runs that stopped early hold their last value."""
+    """Best objective so far by generation: (runs, maximum generations + 1). Runs that stopped early
+    hold their last value.
+    """
     lengths = runs["history"].map(len).to_numpy()
     starts = np.cumsum(lengths) - lengths
     columns = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)
@@ -102,20 +120,30 @@ def lowest_objective(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.nda
     return _held_history(runs)[:, -1]
 
 
-def first_generation_within(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """First generation (n,) whose best objective so far is at most 1 + share times the final one."""
+def first_generation_within(
+    share: float, runs: pd.DataFrame, problems: dict[str, Problem]
+) -> np.ndarray:
+    """First generation (n,) whose best objective so far is at most 1 + share times the final
+    one.
+    """
     held = _held_history(runs)
     return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
 
 
-def first_generation_improved_by(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """First generation (n,) by which a share of the improvement from generation 0 to the last is made; 0 if there is none."""
+def first_generation_improved_by(
+    share: float, runs: pd.DataFrame, problems: dict[str, Problem]
+) -> np.ndarray:
+    """First generation (n,) by which a share of the improvement from generation 0 to the last is
+    made; 0 if there is none.
+    """
     held = _held_history(runs)
     return (held <= held[:, :1] - share * (held[:, :1] - held[:, -1:])).argmax(axis=1)
 
 
 def improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Share (n,) of the improvement from generation 0 to the last that is achieved by the given generation."""
+    """Share (n,) of the improvement from generation 0 to the last that is achieved by the given
+    generation.
+    """
     held = _held_history(runs)
     total = held[:, 0] - held[:, -1]
     made = held[:, 0] - held[:, min(generation, held.shape[1] - 1)]
@@ -128,12 +156,16 @@ def history_mean(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray
 
 
 def deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of the length from the median of its method and condition."""
+    """Absolute relative deviation (n,) of the length from the median of its method and
+    condition.
+    """
     return _from_median(runs, "length")
 
 
 def work_deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of the number of evaluations from the median of its method and condition."""
+    """Absolute relative deviation (n,) of the number of evaluations from the median of its method
+    and condition.
+    """
     return _from_median(runs, "evaluations")
 
 
@@ -153,7 +185,9 @@ def collided(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
 
 
 def avoidable_waiting(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive first collides while the robot stands, and could have escaped when it could know."""
+    """Whether (n,) a drive first collides while the robot stands, and could have escaped when it
+    could know.
+    """
     return runs["avoidable"] & runs["hit_waiting"]
 
 
@@ -168,7 +202,9 @@ def warning(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
 
 
 def gap_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Time of arrival over the earliest one of any drive of the experiment and of the search that knows the future, minus 1 (n,)."""
+    """Time of arrival over the earliest one of any drive of the experiment and of the search that
+    knows the future, minus 1 (n,).
+    """
     return runs["arrival"] / runs["best_arrival"] - 1
 
 
@@ -178,13 +214,22 @@ def gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Se
 
 
 def finished_by_all(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) all methods among the runs have a feasible run in a run's condition and repeat."""
+    """Whether (n,) all methods among the runs have a feasible run in a run's condition and
+    repeat.
+    """
     arrived = runs["method"].where(runs["feasible"].astype(bool))
-    return arrived.groupby([runs["condition"], runs["repeat"]]).transform("nunique") == runs["method"].nunique()
+    return (
+        arrived.groupby([runs["condition"], runs["repeat"]]).transform("nunique")
+        == runs["method"].nunique()
+    )
 
 
-def paired(measure: Callable[..., pd.Series], runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """A measure (n,) of the runs in whose condition and repeat all methods among the runs have a feasible one; NaN of others."""
+def paired(
+    measure: Callable[..., pd.Series], runs: pd.DataFrame, problems: dict[str, Problem]
+) -> pd.Series:
+    """A measure (n,) of the runs in whose condition and repeat all methods among the runs have a
+    feasible one; NaN of others.
+    """
     return measure(runs, problems).where(finished_by_all(runs, problems))
 
 
@@ -204,42 +249,61 @@ def _paths(runs: pd.DataFrame) -> Iterator[Path | None]:
 
 @lru_cache(MEASURES_KEPT)
 def _measured(measure: Callable[[Path], float], curve: str, points: bytes) -> float:
-    """A measure of the path with these control points, of which equal ones are measured once; NaN without a curve."""
+    """A measure of the path with these control points, of which equal ones are measured once; NaN
+    without a curve.
+    """
     from bezierplan.workspaces.problem import Path
 
     return measure(Path(curve, np.frombuffer(points).reshape(-1, 2))) if curve else np.nan
 
 
-def of_path(measure: Callable[[Path], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+def of_path(
+    measure: Callable[[Path], float], runs: pd.DataFrame, problems: dict[str, Problem]
+) -> list[float]:
     """A measure of each run's path; NaN where the run has none."""
     return of_paths([measure] * len(runs), runs)
 
 
 def of_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:
-    """For each run, its own measure of its path; NaN where the run has none. Equal measures of equal paths are taken once."""
+    """For each run, its own measure of its path; NaN where the run has none. Equal measures of
+    equal paths are taken once.
+    """
     given = zip(measures, runs["path_curve"], runs["path_points"], strict=True)
-    return [_measured(measure, curve, np.asarray(points, dtype=float).tobytes()) for measure, curve, points in given]
+    return [
+        _measured(measure, curve, np.asarray(points, dtype=float).tobytes())
+        for measure, curve, points in given
+    ]
 
 
-def of_path_on_grid(measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+def of_path_on_grid(
+    measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]
+) -> list[float]:
     """A measure of each run's path in its grid; NaN where the run has no path."""
-    return [np.nan if path is None else measure(path, problems[problem].workspace) for path, problem in zip(_paths(runs), runs["problem"])]
+    return [
+        np.nan if path is None else measure(path, problems[problem].workspace)
+        for path, problem in zip(_paths(runs), runs["problem"])
+    ]
 
 
 def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
-    """On which side a polyline (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1, ... that it leaves to its left.
+    """On which side a polyline (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1,
+    ... that it leaves to its left.
 
-    A circle lies to the left if the angle swept by the polyline about its centre is positive. This distinguishes classes if no polyline
-    winds round a circle and all have the same ends. NaN without points or in a workspace of another kind.
+    A circle lies to the left if the angle swept by the polyline about its centre is positive. This
+    distinguishes classes if no polyline winds round a circle and all have the same ends. NaN
+    without points or in a workspace of another kind.
     """
     if not len(points) or not isinstance(workspace, Circles):
         return np.nan
     x, y = np.ascontiguousarray(points.T)[:, None] - workspace.centres.T[:, :, None]
     angles = np.arctan2(y[:, [0, -1]], x[:, [0, -1]])
-    # Where the polyline crosses the ray to the left of the centre, its angle jumps from pi to -pi, or back.
+    # Where the polyline crosses the ray to the left of the centre, its angle jumps from pi to -pi,
+    # or back.
     leftward = x[:, :-1] * y[:, 1:] > y[:, :-1] * x[:, 1:]
     above = y >= 0
-    rounds = (above[:, :-1] & ~above[:, 1:] & leftward).sum(axis=1) - (~above[:, :-1] & above[:, 1:] & ~leftward).sum(axis=1)
+    rounds = (above[:, :-1] & ~above[:, 1:] & leftward).sum(axis=1) - (
+        ~above[:, :-1] & above[:, 1:] & ~leftward
+    ).sum(axis=1)
     swept = angles[:, 1] - angles[:, 0] + 2 * np.pi * rounds
     return float((2.0 ** np.arange(len(workspace.centres)))[swept > 0].sum())
 
@@ -259,9 +323,13 @@ def homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
 
 
 def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; NaN without circles."""
+    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; NaN
+    without circles.
+    """
     best = {
-        problem: homotopy_class(np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace)
+        problem: homotopy_class(
+            np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace
+        )
         for problem, own in runs.groupby("problem")
     }
     best = runs["problem"].map(best).to_numpy()
@@ -269,7 +337,9 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
 
 
 def max_curvature(path: Path) -> float:
-    """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as 0 where the speed is zero."""
+    """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as 0 where
+    the speed is zero.
+    """
     from bezierplan.geometry import curves
 
     kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
@@ -277,8 +347,8 @@ def max_curvature(path: Path) -> float:
 
 
 def signed_curvature(path: Path) -> float:
-    """Largest curvature of `CURVATURE_SAMPLES` samples with its sign (song2016, eq. 5: left turns are positive), in 1/unit; it counts as 0
-    where the speed is zero.
+    """Largest curvature of `CURVATURE_SAMPLES` samples with its sign (song2016, eq. 5: left turns
+    are positive), in 1/unit; it counts as 0 where the speed is zero.
     """
     from bezierplan.geometry import curves
 
@@ -302,8 +372,12 @@ def curvature_jump(path: Path) -> float:
 
 
 def points_evaluated(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Control points (n,) of all paths evaluated, each counted with as many as the run's path has; NaN where the run has no path."""
-    return runs["evaluations"].to_numpy() * np.array(of_path(lambda path: len(path.points), runs, problems))
+    """Control points (n,) of all paths evaluated, each counted with as many as the run's path has;
+    NaN where the run has no path.
+    """
+    return runs["evaluations"].to_numpy() * np.array(
+        of_path(lambda path: len(path.points), runs, problems)
+    )
 
 
 def distinct_points(path: Path) -> int:
@@ -329,7 +403,9 @@ def _path_headings(path: Path) -> np.ndarray:
 
     if path.curve == "polyline":
         return _headings(_steps(path.points))
-    return _headings(_steps(curves.sample_matrix(path.curve, len(path.points), HEADING_SAMPLES) @ path.points))
+    return _headings(
+        _steps(curves.sample_matrix(path.curve, len(path.points), HEADING_SAMPLES) @ path.points)
+    )
 
 
 def heading_max(path: Path) -> float:
@@ -343,7 +419,9 @@ def turning(path: Path) -> float:
 
 
 def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
-    """A path as steps (n, 2) between points at equal arc-length spacing, and that spacing, close to `BENDING_PART`."""
+    """A path as steps (n, 2) between points at equal arc-length spacing, and that spacing, close to
+    `BENDING_PART`.
+    """
     from bezierplan.geometry import curves
 
     points = path.points
@@ -353,7 +431,9 @@ def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     parts = max(2, round(at[-1] / BENDING_PART))
     wanted = np.linspace(0.0, at[-1], parts + 1)
-    return np.diff(np.column_stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)]), axis=0), at[-1] / parts
+    return np.diff(
+        np.column_stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)]), axis=0
+    ), at[-1] / parts
 
 
 def bending(path: Path) -> float:
@@ -372,12 +452,15 @@ def corners(path: Path) -> int:
     from bezierplan.geometry import curves
 
     legs = [steps for steps in map(_steps, curves.bezier_pieces(path)) if len(steps)]
-    return sum(int(_headings(np.array([one[-1], other[0]]))[0] > CORNER) for one, other in itertools.pairwise(legs))
+    return sum(
+        int(_headings(np.array([one[-1], other[0]]))[0] > CORNER)
+        for one, other in itertools.pairwise(legs)
+    )
 
 
 def spare_corners(path: Path, grid: Grid) -> float:
-    """Corners of a polyline that can be left out: a straight leg that enters no occupied cell joins the corners before and after. NaN for a
-    curve.
+    """Corners of a polyline that can be left out: a straight leg that enters no occupied cell joins
+    the corners before and after. NaN for a curve.
     """
     import shapely
 
@@ -393,8 +476,12 @@ def spare_corners(path: Path, grid: Grid) -> float:
 
 
 @lru_cache(maxsize=8)
-def _inside(shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]) -> Geometry:
-    """What a path must not enter: the occupied cells of a grid, a billionth of a cell smaller, since a path may touch them."""
+def _inside(
+    shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]
+) -> Geometry:
+    """What a path must not enter: the occupied cells of a grid, a billionth of a cell smaller,
+    since a path may touch them.
+    """
     import shapely
 
     rows, columns = np.nonzero(np.frombuffer(occupied, dtype=bool).reshape(shape))
@@ -413,17 +500,26 @@ def length_over_polygon(path: Path) -> float:
 
 
 def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are none."""
+    """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are
+    none.
+    """
     grids = {name: problems[name].workspace for name in runs["problem"].unique()}
-    measures = {name: _clearance_in(g.occupied.shape, g.occupied.tobytes(), g.cell, g.origin) for name, g in grids.items()}
+    measures = {
+        name: _clearance_in(g.occupied.shape, g.occupied.tobytes(), g.cell, g.origin)
+        for name, g in grids.items()
+    }
     return of_paths(runs["problem"].map(measures), runs)
 
 
 @cache
-def _clearance_in(shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]) -> Callable[[Path], float]:
-    """The smallest distance of a free path to the occupied cells of a grid, as a measure of the path.
+def _clearance_in(
+    shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]
+) -> Callable[[Path], float]:
+    """The smallest distance of a free path to the occupied cells of a grid, as a measure of the
+    path.
 
-    This is the checker's clearance, which counts the border, in the same grid padded with free cells so that the border is farthest.
+    This is the checker's clearance, which counts the border, in the same grid padded with free
+    cells so that the border is farthest.
     """
     from bezierplan.geometry import checker, curves
     from bezierplan.geometry.region import region
@@ -434,25 +530,37 @@ def _clearance_in(shape: tuple[int, int], occupied: bytes, cell: float, origin: 
 
     def clearance(path: Path) -> float:
         moved = path._replace(points=(grid.in_cells(path.points) + margin) * cell)
-        return checker.check(curves.bezier_pieces(moved), wide).clearance if grid.occupied.any() else np.inf
+        return (
+            checker.check(curves.bezier_pieces(moved), wide).clearance
+            if grid.occupied.any()
+            else np.inf
+        )
 
     return clearance
 
 
 def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a path keeps its planner's safety distance from the obstacles; NaN where the planner has none."""
+    """Whether (n,) a path keeps its planner's safety distance from the obstacles; NaN where the
+    planner has none.
+    """
     kept = np.array(obstacle_clearance(runs, problems)) >= runs["safety_distance"]
     return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
 
 
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
-    """Number of the points (n, 2), in units, in occupied cells; a point on a grid line belongs to the cell above or to the right.
+    """Number of the points (n, 2), in units, in occupied cells; a point on a grid line belongs to
+    the cell above or to the right.
 
-    song2016's planner may use surplus cells outside a grid whose width is not a power of two (`grid.embed`); they count as occupied.
+    song2016's planner may use surplus cells outside a grid whose width is not a power of two
+    (`grid.embed`); they count as occupied.
     """
     occupied = embed(grid.occupied)
     columns, rows = np.floor(grid.in_cells(points) + ON_LINE).astype(int).T
-    return int(occupied[np.minimum(rows, occupied.shape[0] - 1), np.minimum(columns, occupied.shape[1] - 1)].sum())
+    return int(
+        occupied[
+            np.minimum(rows, occupied.shape[0] - 1), np.minimum(columns, occupied.shape[1] - 1)
+        ].sum()
+    )
 
 
 def occupied_points(path: Path, grid: Grid) -> int:
@@ -464,25 +572,35 @@ def fine_bad(path: Path, grid: Grid) -> int:
     """Number of `FINE_SAMPLES` samples in occupied cells."""
     from bezierplan.geometry import curves
 
-    return _in_occupied_cells(curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid)
+    return _in_occupied_cells(
+        curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid
+    )
 
 
 def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies below its problem's bound.
+    """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies
+    below its problem's bound.
 
-    NaN for a path that touches an occupied cell: it is free, but along an obstacle's side rounding would decide which cells it counts, and
-    the bound is that of free cells.
+    NaN for a path that touches an occupied cell: it is free, but along an obstacle's side rounding
+    would decide which cells it counts, and the bound is that of free cells.
     """
     from bezierplan.geometry import cell_length
 
     def measure(path: Path, grid: Grid) -> float:
         touched = cell_length.touched_cells(*cell_length.samples(path, grid))
-        return np.nan if cell_length.occupied_cells(*touched, grid.occupied) else getattr(cell_length, name)(path, grid)
+        return (
+            np.nan
+            if cell_length.occupied_cells(*touched, grid.occupied)
+            else getattr(cell_length, name)(path, grid)
+        )
 
     lengths = of_path_on_grid(measure, runs, problems)
     for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
         if length < bound * (1 - 1e-12):
-            raise ValueError(f"run {run} is said to be feasible, but its length {length:.12g} in cells lies below the bound {bound:.12g}")
+            raise ValueError(
+                f"run {run} is said to be feasible, but its length {length:.12g} in cells lies "
+                f"below the bound {bound:.12g}"
+            )
     return lengths
 
 
@@ -491,7 +609,9 @@ def cells_touched(path: Path, grid: Grid) -> float:
     from bezierplan.geometry import cell_length
 
     columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
-    return np.nan if cell_length.occupied_cells(columns, rows, grid.occupied) else float(len(columns))
+    return (
+        np.nan if cell_length.occupied_cells(columns, rows, grid.occupied) else float(len(columns))
+    )
 
 
 def polygon_length(path: Path) -> float:
@@ -500,7 +620,9 @@ def polygon_length(path: Path) -> float:
 
 
 def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied cell."""
+    """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied
+    cell.
+    """
     from bezierplan.geometry import cell_length
     from bezierplan.workspaces.problem import Path
 

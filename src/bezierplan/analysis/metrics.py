@@ -1,7 +1,7 @@
 """All metrics: name, unit, meaning, and the runs that they cover.
 
-A metric is a column of the runs table, or is computed from other columns (`measures`). This module is also imported where only the
-names matter, so it imports pandas only when a value is requested.
+A metric is a column of the runs table, or is computed from other columns (`measures`). This module
+is also imported where only the names matter, so it imports pandas only when a value is requested.
 """
 
 from __future__ import annotations
@@ -32,11 +32,14 @@ class Metric(NamedTuple):
     meaning : str
         One phrase.
     feasible_only : bool
-        Whether it is taken over the runs whose path the certified checker accepts, otherwise over all runs.
+        Whether it is taken over the runs whose path the certified checker accepts, otherwise over
+        all runs.
     compute : callable or None
-        (runs, problems) -> one number per run (n,), where runs is a table of at least one run; None for a column of the runs table.
+        (runs, problems) -> one number per run (n,), where runs is a table of at least one run; None
+        for a column of the runs table.
     among_rows : bool
-        Whether it compares the methods of a table with each other, so that variants and baselines outside the table have none.
+        Whether it compares the methods of a table with each other, so that variants and baselines
+        outside the table have none.
     least : float or str
         The smallest value that a run can have, or the column of the runs table that holds it.
     most : float
@@ -48,9 +51,11 @@ class Metric(NamedTuple):
     step : float or None
         The distance between possible values of a run, 1 for whole numbers; None if there is none.
     of_group : bool
-        Whether all runs of a method under a condition share it, so that resampling them does not show how certain it is.
+        Whether all runs of a method under a condition share it, so that resampling them does not
+        show how certain it is.
     needs : tuple of str
-        Columns that only some runs tables have; with none, and without compute, the column of its own name.
+        Columns that only some runs tables have; with none, and without compute, the column of its
+        own name.
     on : tuple of str
         Kinds of workspace; () for all.
     """
@@ -85,8 +90,8 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
     Returns
     -------
     Series of float
-        With the runs' index; booleans as 1 and 0. Nan where the run has no such value, and where a metric for feasible runs only meets an
-        infeasible run.
+        With the runs' index; booleans as 1 and 0. Nan where the run has no such value, and where a
+        metric for feasible runs only meets an infeasible run.
 
     Raises
     ------
@@ -99,7 +104,11 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
 
     metric = METRICS[name]
     counted = runs[runs["feasible"].astype(bool)] if metric.feasible_only else runs
-    lacking = [column for column in metric.needs or (() if metric.compute else (name,)) if column not in runs]
+    lacking = [
+        column
+        for column in metric.needs or (() if metric.compute else (name,))
+        if column not in runs
+    ]
     if counted.empty:
         numbers = pd.Series(dtype=float)
     elif lacking:
@@ -107,7 +116,9 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
     elif metric.compute is None:
         numbers = counted[name].astype(float)
     else:
-        numbers = pd.Series(np.asarray(metric.compute(counted, problems), dtype=float), index=counted.index)
+        numbers = pd.Series(
+            np.asarray(metric.compute(counted, problems), dtype=float), index=counted.index
+        )
     return numbers.reindex(runs.index)
 
 
@@ -136,21 +147,45 @@ _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "the planner's own final value, in its own rule", False),
     "length": Metric("u", "exact arc length", True, least="bound"),
-    "polygon_length": Metric("u", "length of the control polygon", True, partial(measures.of_path, measures.polygon_length), least="bound"),
+    "polygon_length": Metric(
+        "u",
+        "length of the control polygon",
+        True,
+        partial(measures.of_path, measures.polygon_length),
+        least="bound",
+    ),
     "certified_length": Metric(
-        "u", "exact arc length, infinite unless the certified checker accepts the path", False, running_time.certified_length, least="bound"
+        "u",
+        "exact arc length, infinite unless the certified checker accepts the path",
+        False,
+        running_time.certified_length,
+        least="bound",
     ),
     "claimed_feasible": Metric("-", "the planner's own test of the path", False, step=1.0),
     "feasible": Metric("-", "the certified checker's test of the path", False, step=1.0),
-    "failed": Metric("-", "without a path that the certified checker accepts", False, measures.failed, step=1.0),
+    "failed": Metric(
+        "-", "without a path that the certified checker accepts", False, measures.failed, step=1.0
+    ),
     "falsely_claimed": Metric(
-        "-", "free by the planner's own test, colliding by the checker's", False, partial(measures.disagrees, True), step=1.0
+        "-",
+        "free by the planner's own test, colliding by the checker's",
+        False,
+        partial(measures.disagrees, True),
+        step=1.0,
     ),
     "wrongly_rejected": Metric(
-        "-", "free by the checker's test, not by the planner's own", False, partial(measures.disagrees, False), step=1.0
+        "-",
+        "free by the checker's test, not by the planner's own",
+        False,
+        partial(measures.disagrees, False),
+        step=1.0,
     ),
     "obstacle_clearance": Metric(
-        "u", "least distance to the occupied cells of a grid, its border not counted", True, measures.obstacle_clearance, on=("grid",)
+        "u",
+        "least distance to the occupied cells of a grid, its border not counted",
+        True,
+        measures.obstacle_clearance,
+        on=("grid",),
     ),
     "keeps_distance": Metric(
         "-",
@@ -161,10 +196,21 @@ METRICS: dict[str, Metric] = {
         needs=("safety_distance",),
         on=("grid",),
     ),
-    "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
+    "collision_depth": Metric(
+        "u", "largest depth of the path in obstacles or beyond the border", False
+    ),
     "clearance": Metric("u", "least distance to the obstacles and the border", False),
-    "evaluations": Metric("-", "paths whose objective the planner asked for", False, least=0.0, step=1.0),
-    "points_evaluated": Metric("-", "control points of all paths evaluated", False, measures.points_evaluated, least=0.0, step=1.0),
+    "evaluations": Metric(
+        "-", "paths whose objective the planner asked for", False, least=0.0, step=1.0
+    ),
+    "points_evaluated": Metric(
+        "-",
+        "control points of all paths evaluated",
+        False,
+        measures.points_evaluated,
+        least=0.0,
+        step=1.0,
+    ),
     "generations": Metric("-", "generations really done", False, step=1.0),
     "rank": Metric(
         "-",
@@ -176,8 +222,15 @@ METRICS: dict[str, Metric] = {
         step=0.5,
     ),
     "cpu_s": Metric("s", "CPU seconds of the run alone", False, least=0.0),
-    "gap": Metric("-", "length / exact shortest length of the problem - 1", True, measures.gap, least=0.0),
-    "gap_best": Metric("-", "length / length of the best feasible run of the same method and condition - 1", True, measures.gap_best),
+    "gap": Metric(
+        "-", "length / exact shortest length of the problem - 1", True, measures.gap, least=0.0
+    ),
+    "gap_best": Metric(
+        "-",
+        "length / length of the best feasible run of the same method and condition - 1",
+        True,
+        measures.gap_best,
+    ),
     "generation_improved": Metric(
         "generation",
         "last generation that improved the objective",
@@ -203,7 +256,10 @@ METRICS: dict[str, Metric] = {
         step=1.0,
     ),
     "improvement_30": Metric(
-        "-", "share of the improvement of the objective made by generation 30", False, partial(measures.improvement_by, 30)
+        "-",
+        "share of the improvement of the objective made by generation 30",
+        False,
+        partial(measures.improvement_by, 30),
     ),
     "generation_90pct_improved": Metric(
         "generation",
@@ -213,28 +269,53 @@ METRICS: dict[str, Metric] = {
         least=0.0,
         step=1.0,
     ),
-    "objective_best": Metric("u", "lowest objective of any generation", False, measures.lowest_objective),
+    "objective_best": Metric(
+        "u", "lowest objective of any generation", False, measures.lowest_objective
+    ),
     "optimum": Metric("u", "least objective of all feasible paths of the planner's kind", False),
-    "optimal": Metric("-", "whether the final path is feasible and optimal, by the planner's own test", False, step=1.0),
-    "near_optimal": Metric("-", "whether the final path is feasible but not optimal, by the planner's own test", False, step=1.0),
-    "infeasible": Metric("-", "whether the final path is infeasible, by the planner's own test", False, step=1.0),
+    "optimal": Metric(
+        "-",
+        "whether the final path is feasible and optimal, by the planner's own test",
+        False,
+        step=1.0,
+    ),
+    "near_optimal": Metric(
+        "-",
+        "whether the final path is feasible but not optimal, by the planner's own test",
+        False,
+        step=1.0,
+    ),
+    "infeasible": Metric(
+        "-", "whether the final path is infeasible, by the planner's own test", False, step=1.0
+    ),
     "feasible_last": Metric("-", "share of feasible paths in the last population", False),
-    "made_infeasible": Metric("-", "share of the mutated feasible paths that mutation made infeasible", False),
-    "node_diversity": Metric("-", "mean over generations of the chance that a path's inner node is no node of another", False),
+    "made_infeasible": Metric(
+        "-", "share of the mutated feasible paths that mutation made infeasible", False
+    ),
+    "node_diversity": Metric(
+        "-",
+        "mean over generations of the chance that a path's inner node is no node of another",
+        False,
+    ),
     "max_curvature": Metric(
         "1/u",
-        f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out",
+        f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces "
+        f"left out",
         True,
         partial(measures.of_path, measures.max_curvature),
     ),
     "signed_curvature": Metric(
         "1/u",
-        f"largest curvature over {CURVATURE_SAMPLES} samples by its sign, left turns positive; corners between pieces left out",
+        f"largest curvature over {CURVATURE_SAMPLES} samples by its sign, left turns positive; "
+        f"corners between pieces left out",
         True,
         partial(measures.of_path, measures.signed_curvature),
     ),
     "curvature_jump": Metric(
-        "1/u", "largest jump of curvature over the joints, infinite at a corner", True, partial(measures.of_path, measures.curvature_jump)
+        "1/u",
+        "largest jump of curvature over the joints, infinite at a corner",
+        True,
+        partial(measures.of_path, measures.curvature_jump),
     ),
     "zero_speed_points": Metric(
         "-",
@@ -244,30 +325,47 @@ METRICS: dict[str, Metric] = {
         step=1.0,
     ),
     "heading_max": Metric(
-        "rad", "largest change of heading between neighbouring chords", True, partial(measures.of_path, measures.heading_max)
+        "rad",
+        "largest change of heading between neighbouring chords",
+        True,
+        partial(measures.of_path, measures.heading_max),
     ),
-    "turning": Metric("rad", "changes of heading, all added", True, partial(measures.of_path, measures.turning)),
+    "turning": Metric(
+        "rad", "changes of heading, all added", True, partial(measures.of_path, measures.turning)
+    ),
     "bending": Metric(
         "rad²/u",
-        f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all added: the integral of squared curvature",
+        f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all "
+        f"added: the integral of squared curvature",
         True,
         partial(measures.of_path, measures.bending),
     ),
     "max_turn": Metric(
-        "degrees", f"largest change of heading between parts of {BENDING_PART:g} u", True, partial(measures.of_path, measures.max_turn)
+        "degrees",
+        f"largest change of heading between parts of {BENDING_PART:g} u",
+        True,
+        partial(measures.of_path, measures.max_turn),
     ),
     "corners": Metric(
-        "-", "joints of a path's pieces at which its heading changes", True, partial(measures.of_path, measures.corners), step=1.0
+        "-",
+        "joints of a path's pieces at which its heading changes",
+        True,
+        partial(measures.of_path, measures.corners),
+        step=1.0,
     ),
     "spare_corners": Metric(
         "-",
-        "corners of a polyline that can be left out, because a free leg joins the corners before and after; none for a curve",
+        "corners of a polyline that can be left out, because a free leg joins the corners before "
+        "and after; none for a curve",
         True,
         partial(measures.of_path_on_grid, measures.spare_corners),
         step=1.0,
     ),
     "length_over_polygon": Metric(
-        "-", "length / length of the control polygon", True, partial(measures.of_path, measures.length_over_polygon)
+        "-",
+        "length / length of the control polygon",
+        True,
+        partial(measures.of_path, measures.length_over_polygon),
     ),
     "distinct_points": Metric(
         "-",
@@ -285,14 +383,23 @@ METRICS: dict[str, Metric] = {
         on=("grid",),
     ),
     "gap_reference": Metric(
-        "-", "length / length of the best known path of the same kind - 1", True, measures.gap_reference, needs=("reference",)
+        "-",
+        "length / length of the best known path of the same kind - 1",
+        True,
+        measures.gap_reference,
+        needs=("reference",),
     ),
     "excess_reference": Metric(
-        "u", "length - length of the best known path of the same kind", True, measures.excess_reference, needs=("reference",)
+        "u",
+        "length - length of the best known path of the same kind",
+        True,
+        measures.excess_reference,
+        needs=("reference",),
     ),
     "cells4": Metric(
         "u",
-        "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an occupied cell",
+        "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an "
+        "occupied cell",
         True,
         partial(measures.length_in_cells, "length4"),
         least="octile_bound",
@@ -317,7 +424,9 @@ METRICS: dict[str, Metric] = {
         step=1.0,
         on=("grid",),
     ),
-    "octile_bound": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False, on=("grid",)),
+    "octile_bound": Metric(
+        "u", "least length of a path of free cells, 1.5 for a diagonal step", False, on=("grid",)
+    ),
     "homotopy": Metric(
         "-",
         "class of the path: the sum of 2^k over the circles k that it leaves to its left",
@@ -334,8 +443,24 @@ METRICS: dict[str, Metric] = {
         step=1.0,
         on=("circles",),
     ),
-    "gap4": Metric("-", "cells4 / octile_bound - 1", True, partial(measures.gap_cells, "length4"), least=0.0, **_CELLS4, on=("grid",)),
-    "gap8": Metric("-", "cells8 / octile_bound - 1", True, partial(measures.gap_cells, "length8"), least=0.0, **_CELLS8, on=("grid",)),
+    "gap4": Metric(
+        "-",
+        "cells4 / octile_bound - 1",
+        True,
+        partial(measures.gap_cells, "length4"),
+        least=0.0,
+        **_CELLS4,
+        on=("grid",),
+    ),
+    "gap8": Metric(
+        "-",
+        "cells8 / octile_bound - 1",
+        True,
+        partial(measures.gap_cells, "length8"),
+        least=0.0,
+        **_CELLS8,
+        on=("grid",),
+    ),
     "straight_blocked": Metric(
         "-",
         "whether the straight line from start to target touches an occupied cell",
@@ -344,40 +469,93 @@ METRICS: dict[str, Metric] = {
         step=1.0,
         on=("grid",),
     ),
-    "history_mean": Metric("u", "mean over the generations of the best objective so far", False, measures.history_mean),
+    "history_mean": Metric(
+        "u", "mean over the generations of the best objective so far", False, measures.history_mean
+    ),
     "deviation": Metric(
-        "-", "absolute deviation of the length from the median of its condition and method, relative", True, measures.deviation
+        "-",
+        "absolute deviation of the length from the median of its condition and method, relative",
+        True,
+        measures.deviation,
     ),
     "work_deviation": Metric(
-        "-", "absolute deviation of the evaluations from the median of their condition and method, relative", False, measures.work_deviation
+        "-",
+        "absolute deviation of the evaluations from the median of their condition and method, "
+        "relative",
+        False,
+        measures.work_deviation,
     ),
-    "distinct_chromosomes": Metric("-", "different chromosomes in the population, mean over the generations", False),
+    "distinct_chromosomes": Metric(
+        "-", "different chromosomes in the population, mean over the generations", False
+    ),
     "mean_q": Metric("-", "mean Q statistic of the pool, mean over the generations", False),
-    "population_q": Metric("-", "mean Q statistic of the surviving population, mean over the generations", False),
-    "extra_batches": Metric("-", "further batches of offspring that the rule for diversity asked for", False, step=1.0),
+    "population_q": Metric(
+        "-", "mean Q statistic of the surviving population, mean over the generations", False
+    ),
+    "extra_batches": Metric(
+        "-", "further batches of offspring that the rule for diversity asked for", False, step=1.0
+    ),
     "valid_share": Metric("-", "share of the children that the planner kept", False),
-    "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, measures.outlier, step=1.0),
-    "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
-    "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False, least=0.0, most=20.0),
-    "collisions_b": Metric("samples", "colliding samples a path that was evaluated, summed over circles", False),
-    "collisions_c": Metric("samples", "colliding samples of the best path, added over iterations", False, step=1.0),
+    "outlier": Metric(
+        "-",
+        "whether the objective lies beyond the whiskers of its method's box",
+        False,
+        measures.outlier,
+        step=1.0,
+    ),
+    "violation": Metric(
+        "-",
+        "mean depth of the samples below the circles, as a share of the radius, summed over circles",
+        False,
+    ),
+    "collisions_a": Metric(
+        "particles",
+        "colliding particles an iteration, of 20, the first swarm included",
+        False,
+        least=0.0,
+        most=20.0,
+    ),
+    "collisions_b": Metric(
+        "samples", "colliding samples a path that was evaluated, summed over circles", False
+    ),
+    "collisions_c": Metric(
+        "samples", "colliding samples of the best path, added over iterations", False, step=1.0
+    ),
     "collisions_d": Metric("iterations", "iterations whose best path collides", False, step=1.0),
-    "collisions_e": Metric("-", "whether the final path collides, by the planner's own test", False, step=1.0),
+    "collisions_e": Metric(
+        "-", "whether the final path collides, by the planner's own test", False, step=1.0
+    ),
     "collisions_f": Metric("-", "paths evaluated that collide", False, step=1.0),
     "bad_samples": Metric("-", "samples of the path that the planner punished", False, step=1.0),
     # Of drives in worlds that move.
     "arrival": Metric("steps", "when the robot arrives", True, least=0.0),
     "steps": Metric("steps", "how long the robot drives and waits", False, least=0.0),
-    "travelled": Metric("u", "length of the way driven, whether or not it is free", False, least=0.0),
+    "travelled": Metric(
+        "u", "length of the way driven, whether or not it is free", False, least=0.0
+    ),
     "first_plan": Metric("u", "length of the first plan", False, least=0.0),
     "last_plan": Metric("u", "length of the last plan", False, least=0.0),
-    "last_optimum": Metric("u", "least length of a last plan from cell centre to cell centre, from where the robot was", False, least=0.0),
+    "last_optimum": Metric(
+        "u",
+        "least length of a last plan from cell centre to cell centre, from where the robot was",
+        False,
+        least=0.0,
+    ),
     "replans": Metric("-", "plans after the first", False, least=0.0, step=1.0),
     "waits": Metric("steps", "how long the robot waits", False, least=0.0),
-    "collision_steps": Metric("-", "steps in which the robot is in an obstacle", False, least=0.0, step=1.0),
-    "collided": Metric("-", "whether the robot is in an obstacle at any time", False, measures.collided, step=1.0),
+    "collision_steps": Metric(
+        "-", "steps in which the robot is in an obstacle", False, least=0.0, step=1.0
+    ),
+    "collided": Metric(
+        "-", "whether the robot is in an obstacle at any time", False, measures.collided, step=1.0
+    ),
     "hit_waiting": Metric("-", "whether the robot stands when it first collides", False, step=1.0),
-    "avoidable": Metric("-", "whether the robot could have escaped its first collision when it could know of it", False, step=1.0),
+    "avoidable": Metric(
+        "-",
+        "whether the robot could have escaped its first collision when it could know of it",
+        False,
+        step=1.0,
+    ),
     "avoidable_waiting": Metric(
         "-",
         "whether it stands at a first collision that it could have escaped",
@@ -387,13 +565,27 @@ METRICS: dict[str, Metric] = {
         needs=("avoidable", "hit_waiting"),
     ),
     "unforeseen": Metric(
-        "-", "whether the robot collides and could not know of it before", False, measures.unforeseen, step=1.0, needs=("known_at",)
+        "-",
+        "whether the robot collides and could not know of it before",
+        False,
+        measures.unforeseen,
+        step=1.0,
+        needs=("known_at",),
     ),
     "warning": Metric(
-        "steps", "from when the robot could know of its first collision until then", False, measures.warning, least=0.0, needs=("known_at",)
+        "steps",
+        "from when the robot could know of its first collision until then",
+        False,
+        measures.warning,
+        least=0.0,
+        needs=("known_at",),
     ),
-    "known_at": Metric("steps", "when the robot could know of its first collision", False, least=0.0),
-    "clearance_least": Metric("u", "least distance to an obstacle, negative inside a circle", False),
+    "known_at": Metric(
+        "steps", "when the robot could know of its first collision", False, least=0.0
+    ),
+    "clearance_least": Metric(
+        "u", "least distance to an obstacle, negative inside a circle", False
+    ),
     "gap_arrival": Metric(
         "-",
         "arrival / earliest arrival of all drives and of the search that knows the future - 1",
@@ -402,7 +594,12 @@ METRICS: dict[str, Metric] = {
         needs=("arrival",),
     ),
     "gap_least_arrival": Metric(
-        "-", "arrival / time before which no robot arrives - 1", True, measures.gap_least_arrival, least=0.0, needs=("arrival",)
+        "-",
+        "arrival / time before which no robot arrives - 1",
+        True,
+        measures.gap_least_arrival,
+        least=0.0,
+        needs=("arrival",),
     ),
     "paired_gap_arrival": Metric(
         "-",
@@ -421,14 +618,36 @@ METRICS: dict[str, Metric] = {
         least=0.0,
         needs=("arrival",),
     ),
-    "least_arrival": Metric("steps", "time before which no robot arrives: its shortest way among what stands still", False),
-    "best_arrival": Metric("steps", "earliest arrival of all drives of the experiment and of the search that knows the future", False),
-    "clairvoyant_arrival": Metric("steps", "earliest arrival found by a search that knows the future", False),
-    "clairvoyant_length": Metric("u", "length of the way with the earliest arrival found by a search that knows the future", False),
-    "replan_mean_s": Metric("s", "CPU seconds of a plan after the first, mean of a drive", False, least=0.0),
-    "replan_95_s": Metric("s", "CPU seconds of a plan after the first, 95th percentile of a drive", False, least=0.0),
-    "replans_late": Metric("-", "plans after the first that took longer than a step", False, least=0.0, step=1.0),
-    "replan_max_s": Metric("s", "CPU seconds of a plan after the first, largest of a drive", False, least=0.0),
+    "least_arrival": Metric(
+        "steps",
+        "time before which no robot arrives: its shortest way among what stands still",
+        False,
+    ),
+    "best_arrival": Metric(
+        "steps",
+        "earliest arrival of all drives of the experiment and of the search that knows the future",
+        False,
+    ),
+    "clairvoyant_arrival": Metric(
+        "steps", "earliest arrival found by a search that knows the future", False
+    ),
+    "clairvoyant_length": Metric(
+        "u",
+        "length of the way with the earliest arrival found by a search that knows the future",
+        False,
+    ),
+    "replan_mean_s": Metric(
+        "s", "CPU seconds of a plan after the first, mean of a drive", False, least=0.0
+    ),
+    "replan_95_s": Metric(
+        "s", "CPU seconds of a plan after the first, 95th percentile of a drive", False, least=0.0
+    ),
+    "replans_late": Metric(
+        "-", "plans after the first that took longer than a step", False, least=0.0, step=1.0
+    ),
+    "replan_max_s": Metric(
+        "s", "CPU seconds of a plan after the first, largest of a drive", False, least=0.0
+    ),
     "fine_bad": Metric(
         "-",
         f"samples of {FINE_SAMPLES} in occupied cells of a grid",
@@ -451,7 +670,8 @@ for _within in running_time.TARGETS:
     for _cost, _unit in (("evaluations", "-"), ("cpu_s", "s")):
         METRICS[f"{_cost}_to_{_percent}pct"] = Metric(
             _unit,
-            f"{_cost} of all runs of the same method and condition over the number of those within {_percent} %: expected running time",
+            f"{_cost} of all runs of the same method and condition over the number of those "
+            f"within {_percent} %: expected running time",
             False,
             partial(running_time.work_to, _cost, _within),
             least=0.0,

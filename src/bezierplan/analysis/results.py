@@ -22,9 +22,11 @@ from bezierplan.workspaces.worlds import World
 class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
-    runs: one row per run, columns as in `running.columns`, with the bounds of its problem. problems: by name.
-    bounds: one row per problem, indexed by name, columns as in `problems.bounds_of`. published: the study's published numbers, if
-    requested. jobs: method -> the job of its runs (`jobs.job`), if runs are reproduced. worlds: by problem, where a world moves.
+    runs: one row per run, columns as in `running.columns`, with the bounds of its problem.
+    problems: by name. bounds: one row per problem, indexed by name, columns as in
+    `problems.bounds_of`. published: the study's published numbers, if requested. jobs: method ->
+    the job of its runs (`jobs.job`), if runs are reproduced. worlds: by problem, where a world
+    moves.
     """
 
     runs: pd.DataFrame
@@ -38,15 +40,19 @@ class Results(NamedTuple):
 def read(files: Files, repeats: int, experiment: str) -> Results:
     """The results of an experiment, up to a number of repeats.
 
-    Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError, naming the run, if a feasible path is
-    shorter than the shortest path, or a drive arrives before any robot can: then the checker or the bound is wrong; and naming the file, if
-    one is damaged or not in its place.
+    Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError,
+    naming the run, if a feasible path is shorter than the shortest path, or a drive arrives before
+    any robot can: then the checker or the bound is wrong; and naming the file, if one is damaged or
+    not in its place.
     """
     table = pd.concat(_chunks(files.runs, experiment), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
     bound_table = _read(files.bounds)
     bounded = bound_table.to_pandas()
-    for file, known in ((files.problems, _read(files.problems).to_pandas()), (files.bounds, bounded)):
+    for file, known in (
+        (files.problems, _read(files.problems).to_pandas()),
+        (files.bounds, bounded),
+    ):
         if "problem" not in known or not set(table["problem"]) <= set(known["problem"]):
             raise _misplaced(file, "not of the problems that the runs are of")
     _refuse_unlike(files.bounds, bound_table, TABLES["bounds"], "least_arrival")
@@ -55,8 +61,8 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
 
 
 def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.DataFrame]:
-    """The rows of each chunk file with their times. Raises ValueError for a file that is not the one that belongs in its place, or lacks a
-    declared column.
+    """The rows of each chunk file with their times. Raises ValueError for a file that is not the
+    one that belongs in its place, or lacks a declared column.
     """
     seen: set[str] = set()
     for method, file in ((method, chunk) for method, chunks in files.items() for chunk in chunks):
@@ -80,15 +86,19 @@ def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.Data
 
 
 def _refuse_unlike(file: str, table: pa.Table, declared: Table, driven: str) -> None:
-    """Raise ValueError, naming the file, if it lacks a declared column or has it in another type. driven: the column by which drives are
-    known.
+    """Raise ValueError, naming the file, if it lacks a declared column or has it in another type.
+    driven: the column by which drives are known.
     """
-    if fault := row_files.fault(table.schema, *declared.every, *([declared.drives] if driven in table.column_names else [])):
+    if fault := row_files.fault(
+        table.schema, *declared.every, *([declared.drives] if driven in table.column_names else [])
+    ):
         raise _misplaced(file, fault)
 
 
 def _read(file: str, edited: Callable[[pa.Table], bool] = lambda table: False) -> pa.Table:
-    """The table of a Parquet file. Raises ValueError, naming it, for one that is cut off or none, or was edited."""
+    """The table of a Parquet file. Raises ValueError, naming it, for one that is cut off or none,
+    or was edited.
+    """
     try:
         table = parquet.read_table(file)
     except (OSError, pa.ArrowException):
@@ -103,14 +113,21 @@ def _misplaced(file: str, what: str) -> ValueError:
 
 
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
-    """Runs with the bounds of their problems, as from `problems.bounds_of`. Raises ValueError as `read` does."""
+    """Runs with the bounds of their problems, as from `problems.bounds_of`. Raises ValueError as
+    `read` does.
+    """
     bounds = bounds.set_index("problem")
     runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
     least = runs["problem"].map(bounds["least_length"])
     _refuse(runs, runs["length"] < least, "length", "bound")
     if "least_arrival" in runs and "arrival" in runs:
         # The allowance of the length, at the pace of the world.
-        _refuse(runs, runs["arrival"] < runs["least_arrival"] * (least / runs["bound"]), "arrival", "least_arrival")
+        _refuse(
+            runs,
+            runs["arrival"] < runs["least_arrival"] * (least / runs["bound"]),
+            "arrival",
+            "least_arrival",
+        )
     return Results(runs, problems, bounds)
 
 
@@ -125,16 +142,22 @@ def _refuse(runs: pd.DataFrame, below: pd.Series, column: str, bound: str) -> No
 
 def read_all(files: Mapping[str, Files], repeats: Mapping[str, int]) -> dict[str, Results]:
     """Results by experiment, each up to its number of repeats."""
-    return {experiment: read(files[experiment], number, experiment) for experiment, number in repeats.items()}
+    return {
+        experiment: read(files[experiment], number, experiment)
+        for experiment, number in repeats.items()
+    }
 
 
 def published_table(file: str) -> pd.DataFrame:
-    """A file of published numbers. Only an empty cell is a missing value: `none` and `NA` may be names."""
+    """A file of published numbers. Only an empty cell is a missing value: `none` and `NA` may be
+    names.
+    """
     return pd.read_csv(file, keep_default_na=False, na_values=[""])
 
 
 def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:
-    """The published numbers of several tables, concatenated, with the name of each in the column `table`.
+    """The published numbers of several tables, concatenated, with the name of each in the column
+    `table`.
 
     Tables in another format are left out. None if none remains.
     """
@@ -157,9 +180,11 @@ def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
 
 
 def pick(runs: pd.DataFrame, which: dict) -> pd.Series | None:
-    """One of the given runs: `{lowest: column}` or `{median: column}` of the feasible ones, or `{repeat: n}`; None if there is none.
+    """One of the given runs: `{lowest: column}` or `{median: column}` of the feasible ones, or
+    `{repeat: n}`; None if there is none.
 
-    The median of an even number of runs is the lower of the middle two; ties go to the first repeat.
+    The median of an even number of runs is the lower of the middle two; ties go to the first
+    repeat.
     """
     (word, value), *_ = which.items()
     if word == "repeat":

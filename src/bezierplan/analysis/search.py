@@ -1,14 +1,17 @@
 """The search for the interpretation under which a paper's printed numbers are most likely.
 
-The score of an interpretation is a sum over parts: methods whose numbers are judged together, which depend on few of the choices. So a
-change is paid only by the parts that it concerns, and what is known of the others stays: a competing method's own settings are searched as
-if it stood alone, while choices that all share, such as the workspace, are judged on all of them. From the default interpretation each
-choice in turn takes its best value until none improves the score; then some choices take values of a space-filling design, alternately
-those of one part alone and shared ones, and the climb begins again from there (iterated local search; Lourenço, Martin and Stützle 2003,
-"Iterated local search"). `tests/planted.py` measures how often this finds a planted interpretation, beside other searches.
+The score of an interpretation is a sum over parts: methods whose numbers are judged together, which
+depend on few of the choices. So a change is paid only by the parts that it concerns, and what is
+known of the others stays: a competing method's own settings are searched as if it stood alone,
+while choices that all share, such as the workspace, are judged on all of them. From the default
+interpretation each choice in turn takes its best value until none improves the score; then some
+choices take values of a space-filling design, alternately those of one part alone and shared ones,
+and the climb begins again from there (iterated local search; Lourenço, Martin and Stützle 2003,
+"Iterated local search"). `tests/planted.py` measures how often this finds a planted interpretation,
+beside other searches.
 
-All values of a choice are asked for at once, as one batch, whatever the number of processes that share it, and all draws are seeded from
-names: so the result is the same on any number of cores.
+All values of a choice are asked for at once, as one batch, whatever the number of processes that
+share it, and all draws are seeded from names: so the result is the same on any number of cores.
 """
 
 import itertools
@@ -27,12 +30,15 @@ DESIGN = 64
 KICKED = 2
 # After so many kicks in a row that asked for nothing new, everything near has been tried.
 STALE = 200
-# What a printed number that no run could have costs an interpretation in the climb: more than any likelihood gives.
+# What a printed number that no run could have costs an interpretation in the climb: more than any
+# likelihood gives.
 RULED_OUT = 1e6
 
 
 class Part(NamedTuple):
-    """methods: those whose numbers are judged together. choices: the ids of those that they depend on."""
+    """methods: those whose numbers are judged together. choices: the ids of those that they depend
+    on.
+    """
 
     methods: list[str]
     choices: list[str]
@@ -46,7 +52,9 @@ class Task(NamedTuple):
 
 
 class Found(NamedTuple):
-    """interpretations: those tried as a whole, the default first, then the best first. of_parts: for each part, all that was evaluated."""
+    """interpretations: those tried as a whole, the default first, then the best first. of_parts:
+    for each part, all that was evaluated.
+    """
 
     interpretations: list[Evaluated]
     of_parts: list[list[Evaluated]]
@@ -63,7 +71,9 @@ class _SpentError(Exception):
 class _Book:
     """What is known of each part, and what may still be spent."""
 
-    def __init__(self, choices: list[dict], parts: list[Part], evaluate: Evaluate, most: int) -> None:
+    def __init__(
+        self, choices: list[dict], parts: list[Part], evaluate: Evaluate, most: int
+    ) -> None:
         self.choices, self.parts, self.evaluate, self.left = choices, parts, evaluate, most
         self.known: list[dict[str, Evaluated | None]] = [{} for _ in parts]
         self.seen: dict[str, Interpretation] = {}
@@ -74,11 +84,15 @@ class _Book:
         return rest if value is None else settled(rest | {choice: value}, self.choices)
 
     def part_of(self, interpretation: Interpretation, part: int) -> Interpretation:
-        return {choice: value for choice, value in interpretation.items() if choice in self.parts[part].choices}
+        return {
+            choice: value
+            for choice, value in interpretation.items()
+            if choice in self.parts[part].choices
+        }
 
     def ask(self, interpretations: list[Interpretation]) -> list[float]:
-        """The values of interpretations, for which their unknown parts are evaluated in one batch. Raises _SpentError if nothing may be
-        spent.
+        """The values of interpretations, for which their unknown parts are evaluated in one batch.
+        Raises _SpentError if nothing may be spent.
         """
         wanted: dict[tuple[int, str], Task] = {}
         for interpretation, part in itertools.product(interpretations, range(len(self.parts))):
@@ -88,32 +102,56 @@ class _Book:
         if wanted and self.left <= 0:
             raise _SpentError
         self.left -= len(wanted)
-        for (part, name), found in zip(wanted, self.evaluate([*wanted.values()]) if wanted else [], strict=True):
+        for (part, name), found in zip(
+            wanted, self.evaluate([*wanted.values()]) if wanted else [], strict=True
+        ):
             self.known[part][name] = found
         self.seen |= {name_of(interpretation): interpretation for interpretation in interpretations}
         return [self.value(interpretation) for interpretation in interpretations]
 
     def value(self, interpretation: Interpretation) -> float:
         parts = self.evaluated(interpretation)
-        return sum(each.score - RULED_OUT * each.impossible for each in parts) if parts else -math.inf
+        return (
+            sum(each.score - RULED_OUT * each.impossible for each in parts) if parts else -math.inf
+        )
 
     def evaluated(self, interpretation: Interpretation) -> list[Evaluated] | None:
         """What is known of the parts of an interpretation; None if it is excluded."""
-        found = [known[name_of(self.part_of(interpretation, part))] for part, known in enumerate(self.known)]
+        found = [
+            known[name_of(self.part_of(interpretation, part))]
+            for part, known in enumerate(self.known)
+        ]
         return None if None in found else found
 
     def found(self, listed: int) -> Found:
         """The best interpretations, up to a number, after the default."""
-        best = sorted((each for each in self.seen.values() if each and self.evaluated(each)), key=self.value, reverse=True)
-        interpretations = [together(interpretation, self.evaluated(interpretation)) for interpretation in [{}, *best[:listed]]]
-        return Found(interpretations, [[each for each in known.values() if each] for known in self.known])
+        best = sorted(
+            (each for each in self.seen.values() if each and self.evaluated(each)),
+            key=self.value,
+            reverse=True,
+        )
+        interpretations = [
+            together(interpretation, self.evaluated(interpretation))
+            for interpretation in [{}, *best[:listed]]
+        ]
+        return Found(
+            interpretations, [[each for each in known.values() if each] for known in self.known]
+        )
 
 
-def search(choices: list[dict], parts: list[Part], evaluate: Evaluate, name: str, most: int, listed: int = 500) -> Found:
+def search(
+    choices: list[dict],
+    parts: list[Part],
+    evaluate: Evaluate,
+    name: str,
+    most: int,
+    listed: int = 500,
+) -> Found:
     """The interpretations tried, up to a number, and all that is known of the parts.
 
-    choices: with `id` and `values`, the value in force first, as None. name: seeds the design. most: how many interpretations may be
-    evaluated; one that shares parts with others costs only the share that is new. All are, if there are no more than that.
+    choices: with `id` and `values`, the value in force first, as None. name: seeds the design.
+    most: how many interpretations may be evaluated; one that shares parts with others costs only
+    the share that is new. All are, if there are no more than that.
     """
     book = _Book(choices, parts, evaluate, most * len(parts))
     try:
@@ -128,13 +166,25 @@ def search(choices: list[dict], parts: list[Part], evaluate: Evaluate, name: str
 
 
 def settled(interpretation: Interpretation, choices: list[dict]) -> Interpretation:
-    """An interpretation without the choices that its world makes itself: with another value they would name runs that are not made."""
-    worlds = [choice["overrules"].get(str(interpretation.get(choice["id"])), []) for choice in choices if "column" in choice]
-    return {choice: value for choice, value in interpretation.items() if choice not in set().union(*worlds)}
+    """An interpretation without the choices that its world makes itself: with another value they
+    would name runs that are not made.
+    """
+    worlds = [
+        choice["overrules"].get(str(interpretation.get(choice["id"])), [])
+        for choice in choices
+        if "column" in choice
+    ]
+    return {
+        choice: value
+        for choice, value in interpretation.items()
+        if choice not in set().union(*worlds)
+    }
 
 
 def confirm(found: Found, parts: list[Part], evaluate: Evaluate, finalists: int) -> list[Evaluated]:
-    """The default and the best of the interpretations found, evaluated anew, such as with more runs; the best first, after the default."""
+    """The default and the best of the interpretations found, evaluated anew, such as with more
+    runs; the best first, after the default.
+    """
     book = _Book([], parts, evaluate, (finalists + 1) * len(parts))
     book.ask([each.interpretation for each in found.interpretations[: finalists + 1]])
     return book.found(finalists).interpretations
@@ -148,7 +198,9 @@ def whole(interpretation: Interpretation, parts: list[Part], evaluate: Evaluate)
 
 
 def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
-    """Climb from the default interpretation, then from kicks of the best one, until nothing may be spent or nothing is new."""
+    """Climb from the default interpretation, then from kicks of the best one, until nothing may be
+    spent or nothing is new.
+    """
     interpretation = _climb({}, choices, book, generator(f"{name}/climb/0"))
     shared, own = _shared_and_own(choices, book.parts)
     groups = [*([shared, *own] if shared else own)]
@@ -157,15 +209,21 @@ def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
     for number, drawn in enumerate(_design(choices, name), start=1):
         rng = generator(f"{name}/climb/{number}")
         group = groups[number % len(groups)]
-        # Every other time all choices of a competing method are drawn, so that its settings are tried everywhere.
+        # Every other time all choices of a competing method are drawn, so that its settings are
+        # tried everywhere.
         anew = group is not shared and number // len(groups) % 2 == 0
         count = len(group) if anew else min(KICKED, len(group))
-        kicked = {choice["id"] for choice in np.array(group, dtype=object)[rng.permutation(len(group))[:count]]}
+        kicked = {
+            choice["id"]
+            for choice in np.array(group, dtype=object)[rng.permutation(len(group))[:count]]
+        }
         kicked_interpretation = interpretation
         for choice in kicked:
             kicked_interpretation = book.changed(kicked_interpretation, choice, drawn[choice])
         before = book.left
-        kicked_interpretation = _climb(kicked_interpretation, choices if group is shared else group, book, rng)
+        kicked_interpretation = _climb(
+            kicked_interpretation, choices if group is shared else group, book, rng
+        )
         if book.value(kicked_interpretation) >= book.value(interpretation):
             interpretation = kicked_interpretation
         stale = stale + 1 if book.left == before else 0
@@ -173,8 +231,12 @@ def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
             return
 
 
-def _climb(interpretation: Interpretation, choices: list[dict], book: _Book, rng: np.random.Generator) -> Interpretation:
-    """Give one choice after the other its best value, in random order, until none improves the score."""
+def _climb(
+    interpretation: Interpretation, choices: list[dict], book: _Book, rng: np.random.Generator
+) -> Interpretation:
+    """Give one choice after the other its best value, in random order, until none improves the
+    score.
+    """
     (best,) = book.ask([interpretation])
     order = [choices[place] for place in rng.permutation(len(choices))]
     unchanged = 0
@@ -192,21 +254,41 @@ def _climb(interpretation: Interpretation, choices: list[dict], book: _Book, rng
 
 def _shared_and_own(choices: list[dict], parts: list[Part]) -> tuple[list[dict], list[list[dict]]]:
     """Choices on which several parts depend, and for each part those on which it alone does."""
-    users = {choice["id"]: [part for part, each in enumerate(parts) if choice["id"] in each.choices] for choice in choices}
+    users = {
+        choice["id"]: [part for part, each in enumerate(parts) if choice["id"] in each.choices]
+        for choice in choices
+    }
     shared = [choice for choice in choices if len(users[choice["id"]]) > 1]
-    return shared, [[choice for choice in choices if users[choice["id"]] == [part]] for part in range(len(parts))]
+    return shared, [
+        [choice for choice in choices if users[choice["id"]] == [part]]
+        for part in range(len(parts))
+    ]
 
 
 def _design(choices: list[dict], name: str) -> Iterator[dict[str, Any]]:
-    """Rows of Latin hypercubes over the values of all choices, without end: each value of a choice comes up equally often."""
+    """Rows of Latin hypercubes over the values of all choices, without end: each value of a choice
+    comes up equally often.
+    """
     from scipy.stats import qmc
 
     for number in itertools.count():
-        cube = qmc.LatinHypercube(len(choices), seed=generator(f"{name}/design/{number}")).random(DESIGN)
+        cube = qmc.LatinHypercube(len(choices), seed=generator(f"{name}/design/{number}")).random(
+            DESIGN
+        )
         for row in cube:
-            yield {choice["id"]: choice["values"][int(place * len(choice["values"]))] for choice, place in zip(choices, row, strict=True)}
+            yield {
+                choice["id"]: choice["values"][int(place * len(choice["values"]))]
+                for choice, place in zip(choices, row, strict=True)
+            }
 
 
 def _all(choices: list[dict]) -> Iterator[Interpretation]:
     for values in itertools.product(*(choice["values"] for choice in choices)):
-        yield settled({choice["id"]: value for choice, value in zip(choices, values, strict=True) if value is not None}, choices)
+        yield settled(
+            {
+                choice["id"]: value
+                for choice, value in zip(choices, values, strict=True)
+                if value is not None
+            },
+            choices,
+        )

@@ -1,8 +1,9 @@
-"""Which verdicts depend on which choice: each alternative of an assumption, one at a time, next to the value in force.
+"""Which verdicts depend on which choice: each alternative of an assumption, one at a time, next to
+the value in force.
 
-Columns: study, assumption, detail, setting, default, alternative; claim, statement; verdict, verdict_alternative,
-changed (empty if either is undecided); holds,
-holds_alternative; effect, effect_alternative (of the decisive comparison).
+Columns: study, assumption, detail, setting, default, alternative; claim, statement; verdict,
+verdict_alternative, changed (empty if either is undecided); holds, holds_alternative; effect,
+effect_alternative (of the decisive comparison).
 """
 
 import json
@@ -10,11 +11,14 @@ import json
 import pandas as pd
 
 
-def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], described: dict[str, dict]) -> pd.DataFrame:
+def sensitivity(
+    claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], described: dict[str, dict]
+) -> pd.DataFrame:
     """One row per alternative and headline claim.
 
-    claims: claims of the study with all values in force. alternatives: by name, claims with that alternative. described: by name, the
-    columns study, assumption, detail, setting, default, alternative.
+    claims: claims of the study with all values in force. alternatives: by name, claims with that
+    alternative. described: by name, the columns study, assumption, detail, setting, default,
+    alternative.
     """
     deciding = claims[claims["primary"]].set_index("id")
     rows = []
@@ -40,7 +44,9 @@ def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], des
 
 
 def changed(in_force: str, alternative: str) -> bool | None:
-    """Whether an alternative changes a verdict; None if either is undecided, which neither agrees nor disagrees."""
+    """Whether an alternative changes a verdict; None if either is undecided, which neither agrees
+    nor disagrees.
+    """
     return None if "undecided" in (in_force, alternative) else in_force != alternative
 
 

@@ -1,6 +1,7 @@
 """Named statistics, bootstrap intervals, and the prediction interval for a published number.
 
-Resampling uses plain numpy: `scipy.stats.bootstrap` makes the same draws, but importing it takes longer than making a paper's tables.
+Resampling uses plain numpy: `scipy.stats.bootstrap` makes the same draws, but importing it takes
+longer than making a paper's tables.
 """
 
 import math
@@ -16,7 +17,8 @@ TAIL = 0.025
 LEAST_RUNS = 6
 # Above this many values, a normal approximation replaces the bootstrap.
 MOST_RESAMPLED = 200
-# Above this many values of an experiment, its statistics are not drawn value by value: in two stages, and in one.
+# Above this many values of an experiment, its statistics are not drawn value by value: in two
+# stages, and in one.
 MOST_PREDICTED, MOST_DRAWN = 1000, 10_000
 # Maximum count of numbers drawn at once: blocks of this size stay in the processor's cache.
 BLOCK = 1 << 15
@@ -36,14 +38,20 @@ def _mean(values: np.ndarray) -> np.ndarray:
 
 
 def _quantiles(values: np.ndarray, *shares: float) -> list[np.ndarray]:
-    """Quantiles by linear interpolation. Uses a full sort, because numpy sorts rows faster than it partitions them at two places."""
+    """Quantiles by linear interpolation. Uses a full sort, because numpy sorts rows faster than it
+    partitions them at two places.
+    """
     ordered = np.sort(values, axis=-1)
     last = values.shape[-1] - 1
     quantiles = []
     for share in shares:
         low, weight = divmod(share * last, 1)
         low = int(low)
-        quantiles.append((1 - weight) * ordered[..., low] + weight * ordered[..., low + 1] if weight else ordered[..., low])
+        quantiles.append(
+            (1 - weight) * ordered[..., low] + weight * ordered[..., low + 1]
+            if weight
+            else ordered[..., low]
+        )
     return quantiles
 
 
@@ -67,11 +75,14 @@ STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "max": lambda values: np.max(values, axis=-1),
     "quartile1": lambda values: _quantiles(values, 0.25)[0],
     "quartile3": lambda values: _quantiles(values, 0.75)[0],
-    "count": lambda values: np.sum(values, axis=-1),  # of a boolean metric (1 or 0): the number of runs that have it
+    "count": lambda values: np.sum(
+        values, axis=-1
+    ),  # of a boolean metric (1 or 0): the number of runs that have it
     "share": _mean,  # likewise: the share of runs that have it
     "unstated": _median,  # the paper does not say; the median of ours is printed
 }
-# These grow with the number of runs, so resampling the same number does not show how far they are from the truth.
+# These grow with the number of runs, so resampling the same number does not show how far they are
+# from the truth.
 WITHOUT_INTERVAL = ("min", "max", "range")
 
 
@@ -99,7 +110,8 @@ def statistic(name: str, values: np.ndarray) -> float:
 
 
 def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """A named statistic of `size` values drawn with replacement from values (n,), n at least 1: (DRAWS,).
+    """A named statistic of `size` values drawn with replacement from values (n,), n at least 1:
+    (DRAWS,).
 
     Above `MOST_DRAWN` values, its normal approximation; where that is not known, of so many values.
     """
@@ -113,15 +125,18 @@ def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator
     drawn = np.empty(DRAWS)
     for first in range(0, DRAWS, rows):
         block = drawn[first : first + rows]
-        block[:] = STATISTICS[name](values.take(rng.integers(len(values), size=(len(block), size), dtype=np.int32)))
+        block[:] = STATISTICS[name](
+            values.take(rng.integers(len(values), size=(len(block), size), dtype=np.int32))
+        )
     return drawn
 
 
 def influence(name: str, values: np.ndarray) -> np.ndarray:
-    """How far each of values (n,), n at least 2, moves a named statistic: its empirical influence function (Hampel 1974), (n,).
+    """How far each of values (n,), n at least 2, moves a named statistic: its empirical influence
+    function (Hampel 1974), (n,).
 
-    Its standard deviation, divided by the root of n, is the standard error of the statistic. Raises KeyError for `WITHOUT_INTERVAL` and for
-    an unknown name.
+    Its standard deviation, divided by the root of n, is the standard error of the statistic. Raises
+    KeyError for `WITHOUT_INTERVAL` and for an unknown name.
     """
     return {
         "mean": _mean_influence,
@@ -146,31 +161,44 @@ def _std_influence(values: np.ndarray) -> np.ndarray:
 
 
 def _quantile_influence(values: np.ndarray, share: float) -> np.ndarray:
-    """The density at the quantile is taken from the order statistics at the ends of its 95 % interval (McKean and Schrader 1984)."""
+    """The density at the quantile is taken from the order statistics at the ends of its 95 %
+    interval (McKean and Schrader 1984).
+    """
     reach = 1.96 * math.sqrt(share * (1 - share) / len(values))
-    low, quantile, high = _quantiles(values, max(share - reach, 0.0), share, min(share + reach, 1.0))
+    low, quantile, high = _quantiles(
+        values, max(share - reach, 0.0), share, min(share + reach, 1.0)
+    )
     return (share - (values <= quantile)) * (high - low) / (2 * reach)
 
 
 def normal_draws(centre: float, error: float) -> np.ndarray:
-    """What resampling would draw for a statistic with a standard error, without randomness: evenly spaced normal quantiles (DRAWS,)."""
+    """What resampling would draw for a statistic with a standard error, without randomness: evenly
+    spaced normal quantiles (DRAWS,).
+    """
     from scipy.special import ndtri
 
     return centre + error * ndtri((np.arange(DRAWS) + 0.5) / DRAWS)
 
 
 def _is_normal(name: str, values: np.ndarray) -> bool:
-    """Whether a statistic of many values has a normal approximation that follows from values (n,)."""
+    """Whether a statistic of many values has a normal approximation that follows from values
+    (n,).
+    """
     return name not in WITHOUT_INTERVAL and len(values) > 1 and bool(np.isfinite(values).all())
 
 
 def _normal(name: str, values: np.ndarray, share: float) -> np.ndarray:
-    """Normal draws (DRAWS,) of a statistic whose variance is a share of that of its influence function over values (n,)."""
-    return normal_draws(statistic(name, values), influence(name, values).std(ddof=1) * math.sqrt(share))
+    """Normal draws (DRAWS,) of a statistic whose variance is a share of that of its influence
+    function over values (n,).
+    """
+    return normal_draws(
+        statistic(name, values), influence(name, values).std(ddof=1) * math.sqrt(share)
+    )
 
 
 def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
-    """95 % percentile bootstrap interval of a statistic; above `MOST_RESAMPLED` values, its normal approximation.
+    """95 % percentile bootstrap interval of a statistic; above `MOST_RESAMPLED` values, its normal
+    approximation.
 
     Parameters
     ----------
@@ -184,12 +212,15 @@ def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[f
     Returns
     -------
     low, high : float
-        Nan for fewer than two values, and for statistics that depend on the number of values (`WITHOUT_INTERVAL`).
+        Nan for fewer than two values, and for statistics that depend on the number of values
+        (`WITHOUT_INTERVAL`).
     """
     if len(values) < 2 or name in WITHOUT_INTERVAL:
         return math.nan, math.nan
     if len(values) > MOST_RESAMPLED and np.isfinite(values).all():
-        draws = normal_draws(statistic(name, values), influence(name, values).std(ddof=1) / math.sqrt(len(values)))
+        draws = normal_draws(
+            statistic(name, values), influence(name, values).std(ddof=1) / math.sqrt(len(values))
+        )
     else:
         draws = resampled(name, values, len(values), rng)
     low, high = np.quantile(draws, [TAIL, 1 - TAIL])
@@ -197,11 +228,13 @@ def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[f
 
 
 def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """A named statistic of experiments with `size` values, as predicted from our values (n,), n at least 1: (DRAWS,).
+    """A named statistic of experiments with `size` values, as predicted from our values (n,), n at
+    least 1: (DRAWS,).
 
-    Drawn in two stages, because our values are a sample too: first the population, then an experiment from it. Numbers are drawn with
-    replacement twice; for booleans, the share is drawn (from Jeffreys' posterior), then the number of true values. Above `MOST_PREDICTED`
-    values, the normal approximation of both stages; where that is not known, experiments of so many values.
+    Drawn in two stages, because our values are a sample too: first the population, then an
+    experiment from it. Numbers are drawn with replacement twice; for booleans, the share is drawn
+    (from Jeffreys' posterior), then the number of true values. Above `MOST_PREDICTED` values, the
+    normal approximation of both stages; where that is not known, experiments of so many values.
     """
     if name in ("count", "share"):
         true = values.sum()
@@ -218,36 +251,46 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
         places, world = rng.integers(len(values), size=(2, len(block), size), dtype=np.int32)
         places.sort(axis=1)
         asked_first = np.where(np.diff(places, axis=1, prepend=-1) > 0, np.arange(size), 0)
-        block[:] = STATISTICS[name](values[np.take_along_axis(world, np.maximum.accumulate(asked_first, axis=1), axis=1)])
+        block[:] = STATISTICS[name](
+            values[np.take_along_axis(world, np.maximum.accumulate(asked_first, axis=1), axis=1)]
+        )
     return drawn
 
 
-def predicted_within(name: str, groups: list[np.ndarray], size: int, rng: np.random.Generator) -> np.ndarray:
-    """A named statistic of experiments whose `size` values all belong to one group, as predicted from our groups of values: (DRAWS,).
+def predicted_within(
+    name: str, groups: list[np.ndarray], size: int, rng: np.random.Generator
+) -> np.ndarray:
+    """A named statistic of experiments whose `size` values all belong to one group, as predicted
+    from our groups of values: (DRAWS,).
 
-    First a group is drawn, then an experiment from it, for example runs in one layout of the obstacles.
+    First a group is drawn, then an experiment from it, for example runs in one layout of the
+    obstacles.
     """
     chosen, drawn = rng.integers(len(groups), size=DRAWS), np.empty(DRAWS)
     size = min(size, MOST_PREDICTED)  # more values differ less within a group than groups do
     for number, values in enumerate(groups):
         experiments = np.flatnonzero(chosen == number)
         for block in np.split(experiments, range(BLOCK // size, len(experiments), BLOCK // size)):
-            drawn[block] = STATISTICS[name](values[rng.integers(len(values), size=(len(block), size))])
+            drawn[block] = STATISTICS[name](
+                values[rng.integers(len(values), size=(len(block), size))]
+            )
     return drawn
 
 
 class Prediction(NamedTuple):
-    """A published number among those that experiments of the paper's size would print, judging by our runs.
+    """A published number among those that experiments of the paper's size would print, judging by
+    our runs.
 
     Attributes
     ----------
     quantile : float
         Its position, ties counted half.
     in_range : bool or None
-        Whether it is within the central 95 %, ties counted in its favour; None below `LEAST_RUNS` values.
+        Whether it is within the central 95 %, ties counted in its favour; None below `LEAST_RUNS`
+        values.
     low, high : float
-        Ends of the central 95 %. If our values do not determine how far the least or the largest of others may lie, an end is the least or
-        the largest possible value, or infinite.
+        Ends of the central 95 %. If our values do not determine how far the least or the largest of
+        others may lie, an end is the least or the largest possible value, or infinite.
     """
 
     quantile: float
@@ -266,7 +309,8 @@ def prediction(
     possible: tuple[float, float] = (-math.inf, math.inf),
     groups: list[np.ndarray] | None = None,
 ) -> Prediction:
-    """Place a published number among the numbers that experiments of the paper's size would print, judging by our values.
+    """Place a published number among the numbers that experiments of the paper's size would print,
+    judging by our values.
 
     Parameters
     ----------
@@ -277,9 +321,11 @@ def prediction(
     published : float
         The published number; nan if there is none.
     size : int or None
-        Number of values behind the published statistic; if None (not stated), the number is placed among our single values.
+        Number of values behind the published statistic; if None (not stated), the number is placed
+        among our single values.
     decimals : int or None
-        Those of the printed number, to which ours are rounded before comparison; None to compare without rounding.
+        Those of the printed number, to which ours are rounded before comparison; None to compare
+        without rounding.
     rng : Generator
         What experiments are drawn from.
     possible : tuple of float
@@ -295,9 +341,16 @@ def prediction(
     if not len(values) or math.isnan(published):
         return Prediction(math.nan, None, math.nan, math.nan)
     least, most, tail = _experiments(name, values, size, rng, possible, groups)
-    low, high = np.quantile(least, tail, method="lower"), np.quantile(most, 1 - tail, method="higher")
+    low, high = (
+        np.quantile(least, tail, method="lower"),
+        np.quantile(most, 1 - tail, method="higher"),
+    )
     if decimals is not None:
-        least, most, published = np.round(least, decimals), np.round(most, decimals), round(published, decimals)
+        least, most, published = (
+            np.round(least, decimals),
+            np.round(most, decimals),
+            round(published, decimals),
+        )
     below, above = np.mean(most < published), np.mean(least > published)
     in_range = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
     return Prediction(float((below + 1 - above) / 2), in_range, float(low), float(high))
@@ -311,11 +364,14 @@ def _experiments(
     possible: tuple[float, float],
     groups: list[np.ndarray] | None,
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """The least and the most that experiments of a size may print, given our values (n,), and the tail to leave out at each end."""
+    """The least and the most that experiments of a size may print, given our values (n,), and the
+    tail to leave out at each end.
+    """
     if size is None:
         return values, values, TAIL
     if groups is not None:
-        # A new group lies below the k-th of n others with probability k / (n + 1); that one stands at (k - 1/2) / n among the draws.
+        # A new group lies below the k-th of n others with probability k / (n + 1); that one stands
+        # at (k - 1/2) / n among the draws.
         drawn = predicted_within(name, groups, size, rng)
         return drawn, drawn, max(TAIL * (len(groups) + 1) - 0.5, 0.0) / len(groups)
     if name in ("min", "max"):
@@ -329,10 +385,12 @@ def _experiments(
 
 
 def scaled(name: str, values: np.ndarray, asked: int, size: int | None) -> float:
-    """A named statistic of our values (n,) as an experiment of `size` runs would print it, so that it stands beside a published one.
+    """A named statistic of our values (n,) as an experiment of `size` runs would print it, so that
+    it stands beside a published one.
 
-    A count is taken in proportion; asked: runs among which it is one. The least and the largest value are the medians of those of such
-    experiments, where our values determine them; our own where they do not. The other statistics do not depend on the number of runs.
+    A count is taken in proportion; asked: runs among which it is one. The least and the largest
+    value are the medians of those of such experiments, where our values determine them; our own
+    where they do not. The other statistics do not depend on the number of runs.
     """
     value = statistic(name, values)
     if size is None or size == asked or not len(values):
@@ -346,11 +404,13 @@ def scaled(name: str, values: np.ndarray, asked: int, size: int | None) -> float
 
 
 def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
-    """Standard deviations of `size` values, predicted from our values (n,), n at least 2: evenly spaced quantiles (DRAWS,).
+    """Standard deviations of `size` values, predicted from our values (n,), n at least 2: evenly
+    spaced quantiles (DRAWS,).
 
-    The logarithm of a variance is nearly normal, with a standard error that follows from the population's kurtosis (Bonett 2006,
-    Computational Statistics & Data Analysis 50, 775). Both samples err; Student's t replaces the normal because the kurtosis is estimated
-    from our values. Resampling would give too narrow a range: a resample has fewer distinct values than its source.
+    The logarithm of a variance is nearly normal, with a standard error that follows from the
+    population's kurtosis (Bonett 2006, Computational Statistics & Data Analysis 50, 775). Both
+    samples err; Student's t replaces the normal because the kurtosis is estimated from our values.
+    Resampling would give too narrow a range: a resample has fewer distinct values than its source.
     """
     from scipy.special import stdtrit
 
@@ -358,13 +418,21 @@ def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
     spread = values.std(ddof=1)
     if spread == 0:
         return np.zeros(DRAWS)
-    kurtosis = n * np.sum((values - _trimmed_mean(values)) ** 4) / np.sum((values - values.mean()) ** 2) ** 2
+    kurtosis = (
+        n
+        * np.sum((values - _trimmed_mean(values)) ** 4)
+        / np.sum((values - values.mean()) ** 2) ** 2
+    )
     variances = [max(kurtosis - (k - 3) / k, 0.0) / (k - 1) for k in (n, max(size, 2))]
-    return spread * np.exp(0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, (np.arange(DRAWS) + 0.5) / DRAWS))
+    return spread * np.exp(
+        0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, (np.arange(DRAWS) + 0.5) / DRAWS)
+    )
 
 
 def _trimmed_mean(values: np.ndarray) -> float:
-    """The mean without a share of 1 / (2 sqrt(n - 4)) of the values at either end, about which Bonett's kurtosis is taken."""
+    """The mean without a share of 1 / (2 sqrt(n - 4)) of the values at either end, about which
+    Bonett's kurtosis is taken.
+    """
     n = len(values)
     cut = int(n / (2 * math.sqrt(n - 4))) if n > 4 else 0
     cut = min(cut, (n - 1) // 2)
@@ -372,23 +440,31 @@ def _trimmed_mean(values: np.ndarray) -> float:
 
 
 def power(others: np.ndarray, ends: tuple[float, float]) -> float:
-    """The share of other numbers (n,), n at least 1, that lie beyond the ends of an interval: the power of a test against them."""
+    """The share of other numbers (n,), n at least 1, that lie beyond the ends of an interval: the
+    power of a test against them.
+    """
     return float(np.mean((others < ends[0]) | (others > ends[1])))
 
 
-def can_fail(published: float, ours: float, ends: tuple[float, float], possible: tuple[float, float]) -> bool:
-    """Whether a number on the published one's side of ours can lie beyond the interval in which it would be accepted.
+def can_fail(
+    published: float, ours: float, ends: tuple[float, float], possible: tuple[float, float]
+) -> bool:
+    """Whether a number on the published one's side of ours can lie beyond the interval in which it
+    would be accepted.
 
-    It cannot if that end is infinite, or if no possible value lies beyond it. A number equal to ours lies on both sides.
+    It cannot if that end is infinite, or if no possible value lies beyond it. A number equal to
+    ours lies on both sides.
     """
     below, above = ends[0] > possible[0], ends[1] < possible[1]
     return (published <= ours and below) or (published >= ours and above)
 
 
 def _expanded_tail(n: int) -> float:
-    """The tail at each end of bootstrap draws from n values for a central 95 % (the expanded percentile interval, Hesterberg 2015).
+    """The tail at each end of bootstrap draws from n values for a central 95 % (the expanded
+    percentile interval, Hesterberg 2015).
 
-    A few values vary less than their population, and their spread is uncertain: Student's t quantiles replace the normal ones.
+    A few values vary less than their population, and their spread is uncertain: Student's t
+    quantiles replace the normal ones.
     """
     if n < 2:
         return TAIL
@@ -398,10 +474,12 @@ def _expanded_tail(n: int) -> float:
 
 
 def _extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of `size` others may lie, by evenly spaced chance.
+    """Ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of `size`
+    others may lie, by evenly spaced chance.
 
-    Resampling never goes beyond our own extremes, whereas half of all experiments of our size do. All orders of our values and the
-    others are equally likely, which gives the probability of each gap; the outermost are infinite.
+    Resampling never goes beyond our own extremes, whereas half of all experiments of our size do.
+    All orders of our values and the others are equally likely, which gives the probability of each
+    gap; the outermost are infinite.
     """
     if name == "max":
         least, most = _extremes("min", -values, size)

@@ -1,4 +1,6 @@
-"""All studies together: every published number next to ours, every claim, and how many of them are confirmed."""
+"""All studies together: every published number next to ours, every claim, and how many of them are
+confirmed.
+"""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -22,48 +24,85 @@ class Summary(NamedTuple):
     report: str
 
 
-def gathered(job: dict, comparison_files: Mapping[str, str], claims_files: list[str], worth_file: str, scale: str) -> Summary:
-    """The summary of a job (`study.targets.summary_params`). comparison_files: each by `study/table`."""
-    everything = numbers({(study, table): pd.read_csv(comparison_files[f"{study}/{table}"]) for study, table in job["tables"]})
+def gathered(
+    job: dict,
+    comparison_files: Mapping[str, str],
+    claims_files: list[str],
+    worth_file: str,
+    scale: str,
+) -> Summary:
+    """The summary of a job (`study.targets.summary_params`). comparison_files: each by
+    `study/table`.
+    """
+    everything = numbers(
+        {
+            (study, table): pd.read_csv(comparison_files[f"{study}/{table}"])
+            for study, table in job["tables"]
+        }
+    )
     claims = read_claims(claims_files)
-    return Summary(everything, claims, report(everything, claims, pd.read_csv(worth_file), job["titles"], scale))
+    return Summary(
+        everything,
+        claims,
+        report(everything, claims, pd.read_csv(worth_file), job["titles"], scale),
+    )
 
 
 def read_claims(files: list[str]) -> pd.DataFrame:
     """The claims of all studies, from the files of those that have any."""
     tables = [pd.read_csv(file) for file in files]
     return (
-        pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
+        pd.concat(tables, ignore_index=True)
+        if tables
+        else pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
     )
 
 
 def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
     """Every row of comparisons that has a published number, in their order.
 
-    comparisons: (study, table) -> `comparison.compare`. Columns: study, table, primary, counted (the row is primary, can be judged, and
-    adds information: `_counted`), then the others of the comparisons, key columns first.
+    comparisons: (study, table) -> `comparison.compare`. Columns: study, table, primary, counted
+    (the row is primary, can be judged, and adds information: `_counted`), then the others of the
+    comparisons, key columns first.
     """
-    frames = [frame[frame["value_published"].notna()].assign(study=study, table=table) for (study, table), frame in comparisons.items()]
+    frames = [
+        frame[frame["value_published"].notna()].assign(study=study, table=table)
+        for (study, table), frame in comparisons.items()
+    ]
     everything = pd.concat(frames, ignore_index=True)
-    last = list(everything.columns[everything.columns.get_loc("metric") :].drop(["study", "table", "primary"], errors="ignore"))
-    keys = [column for column in everything.columns if column not in last and column not in ("study", "table", "primary")]
+    last = list(
+        everything.columns[everything.columns.get_loc("metric") :].drop(
+            ["study", "table", "primary"], errors="ignore"
+        )
+    )
+    keys = [
+        column
+        for column in everything.columns
+        if column not in last and column not in ("study", "table", "primary")
+    ]
     everything = everything.assign(counted=_counted(everything, keys))
     return everything[["study", "table", "primary", "counted", *keys, *last]]
 
 
 def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
-    """Which rows (n,) count in the denominator: those that are primary and judged, except numbers that are impossible on any map,
-    repetitions of a number in another table, and the last of several counts that add up to the number of runs.
+    """Which rows (n,) count in the denominator: those that are primary and judged, except numbers
+    that are impossible on any map, repetitions of a number in another table, and the last of
+    several counts that add up to the number of runs.
     """
     # A length below the bound is impossible on our map alone.
-    of_map = numbers["metric"].map(lambda metric: isinstance(METRICS[metric].least, str)).astype(bool)
+    of_map = (
+        numbers["metric"].map(lambda metric: isinstance(METRICS[metric].least, str)).astype(bool)
+    )
     possible = numbers["possible"].astype("boolean").fillna(True) | of_map
     counted = (numbers["primary"] & numbers["in_range"].notna() & possible).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         for n, (index, row) in enumerate(rows.iterrows()):
             earlier = rows.iloc[:n]
-            if any(each["table"] != row["table"] and _same_place(each, row, keys) for _, each in earlier.iterrows()):
+            if any(
+                each["table"] != row["table"] and _same_place(each, row, keys)
+                for _, each in earlier.iterrows()
+            ):
                 counted[numbers.index.get_loc(index)] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
@@ -75,21 +114,27 @@ def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
 
 def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
     """Whether two rows have the same key columns as far as both have them."""
-    return all(one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key])))
+    return all(
+        one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key]))
+    )
 
 
 def with_interpretations(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
-    """Claims with one more column after the verdict: `interpretations`, how many interpretations agree with it, such as `9 of 12`: the
-    default and each alternative that was tried and under which the claim is decided; empty for a claim on which none was, and for one that
-    is undecided as read here.
+    """Claims with one more column after the verdict: `interpretations`, how many interpretations
+    agree with it, such as `9 of 12`: the default and each alternative that was tried and under
+    which the claim is decided; empty for a claim on which none was, and for one that is undecided
+    as read here.
 
     tried: as from `sensitivity.sensitivity`, of all studies.
     """
     tried = tried[tried["changed"].notna()]
-    unchanged = (tried["changed"].astype(str) == "False").groupby([tried["study"], tried["claim"]]).agg(["sum", "size"]) + 1
+    unchanged = (tried["changed"].astype(str) == "False").groupby(
+        [tried["study"], tried["claim"]]
+    ).agg(["sum", "size"]) + 1
     words = {key: f"{agree} of {total}" for key, agree, total in unchanged.itertuples()}
     interpretations = [
-        words.get((study, identity), "") if primary else "" for study, identity, primary in claims[["study", "id", "primary"]].to_numpy()
+        words.get((study, identity), "") if primary else ""
+        for study, identity, primary in claims[["study", "id", "primary"]].to_numpy()
     ]
     columns = list(claims)
     columns.insert(columns.index("verdict") + 1, "interpretations")
@@ -97,7 +142,9 @@ def with_interpretations(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFr
 
 
 def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
-    """Claims of scale extended with one more column after the verdict: `verdict_papers_size`, that of the same claim at scale full."""
+    """Claims of scale extended with one more column after the verdict: `verdict_papers_size`, that
+    of the same claim at scale full.
+    """
     keys = ["study", "id", "variant"]
     theirs = full[[*keys, "verdict"]].rename(columns={"verdict": "verdict_papers_size"})
     both = claims.merge(theirs, on=keys, how="left", validate="one_to_one")
@@ -114,19 +161,23 @@ def report(
     scale: str,
     interpretations: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
 ) -> str:
-    """The summary of a scale as markdown: the headline, the methods beside the baseline, then the claims of each study with their
-    verdicts.
+    """The summary of a scale as markdown: the headline, the methods beside the baseline, then the
+    claims of each study with their verdicts.
 
-    measured: rows with the columns `worth.COLUMNS`. interpretations: the tables of `explained`, if the search for interpretations has been
-    made.
+    measured: rows with the columns `worth.COLUMNS`. interpretations: the tables of `explained`, if
+    the search for interpretations has been made.
     """
     parts = [
         f"{HEADING}{scale}",
         headline.markdown(headline.headline(numbers, claims, measured, titles)),
-        "Numbers count if they can be judged and say something new; our own findings are not among the claims. `audit.csv` names the paths "
-        "of identified numbers. The verdict is the same under every interpretation of what the paper leaves open for so many of the claims "
-        "on which others were tried, at the paper's number of runs. `verdict_papers_size`: the verdict from as many runs as the paper "
-        "made; `replication_probability`: how often an experiment of that size shows what the claim says. Interpretations that do not "
+        "Numbers count if they can be judged and say something new; our own findings are not "
+        "among the claims. `audit.csv` names the paths "
+        "of identified numbers. The verdict is the same under every interpretation of what the "
+        "paper leaves open for so many of the claims "
+        "on which others were tried, at the paper's number of runs. `verdict_papers_size`: the "
+        "verdict from as many runs as the paper "
+        "made; `replication_probability`: how often an experiment of that size shows what the "
+        "claim says. Interpretations that do not "
         "decide are left out here; `numbers.csv` and `claims.csv` have them.",
         *worth.section(measured, titles),
         *(explained.section(*interpretations, titles) if interpretations else []),
@@ -143,19 +194,33 @@ def report(
 
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
-    columns = ["statement", "verdict", "verdict_papers_size", "replication_probability", "interpretations", "holds", "where_it_holds"]
+    columns = [
+        "statement",
+        "verdict",
+        "verdict_papers_size",
+        "replication_probability",
+        "interpretations",
+        "holds",
+        "where_it_holds",
+    ]
     columns += ["units_to_decide", "published", "effect", "size", "n"]
     shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
     for column in shown.columns.intersection(["effect", "replication_probability"]):
-        shown[column] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown[column]]
+        shown[column] = [
+            f"{value:.3g}" if isinstance(value, float) else value for value in shown[column]
+        ]
     # Read from a file with gaps, whole numbers are floats.
     for column in shown.columns.intersection(["units_to_decide", "n"]):
-        shown[column] = [f"{value:.0f}" if isinstance(value, float) else value for value in shown[column]]
+        shown[column] = [
+            f"{value:.0f}" if isinstance(value, float) else value for value in shown[column]
+        ]
     return table_text(shown)
 
 
 def with_block(text: str, name: str, block: str) -> str:
-    """The text with the part between `<!-- name -->` and `<!-- /name -->` replaced. Raises ValueError if there is no such part."""
+    """The text with the part between `<!-- name -->` and `<!-- /name -->` replaced. Raises
+    ValueError if there is no such part.
+    """
     begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
     if not 0 <= text.find(begin) < text.find(end):
         raise ValueError(f"no part between {begin} and {end}")

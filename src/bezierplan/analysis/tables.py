@@ -2,12 +2,15 @@
 
 A table's description (`spec`) has the keys
 
-    index, columns   columns of the runs table, and the words `value` (which entry of `values`) and `statistic`; a word that is needed to
-                     distinguish numbers but not named becomes a level of the columns. `columns` is optional
-    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a list of names, the last three are
-                     optional
-    where            which runs: column -> value or list of values; a list also gives the order. Optional
-    within           the column that all runs of one experiment of the paper share, such as layout. Optional
+    index, columns   columns of the runs table, and the words `value` (which entry of `values`) and
+                     `statistic`; a word that is needed to distinguish numbers but not named becomes
+                     a level of the columns. `columns` is optional
+    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a
+                     list of names, the last three are optional
+    where            which runs: column -> value or list of values; a list also gives the order.
+                     Optional
+    within           the column that all runs of one experiment of the paper share, such as layout.
+                     Optional
 """
 
 from collections.abc import Sequence
@@ -27,11 +30,18 @@ def keys(spec: dict) -> list[str]:
 
 
 def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.DataFrame:
-    """The table with its key columns as ordered categories, so that sorting follows the configuration.
+    """The table with its key columns as ordered categories, so that sorting follows the
+    configuration.
 
-    Values are ordered as listed in `where`, problems as in their experiment, all others sorted after them; missing values are last.
+    Values are ordered as listed in `where`, problems as in their experiment, all others sorted
+    after them; missing values are last.
     """
-    orders = {"problem": list(problems), **{key: wanted for key, wanted in spec.get("where", {}).items() if isinstance(wanted, list)}}
+    orders = {
+        "problem": list(problems),
+        **{
+            key: wanted for key, wanted in spec.get("where", {}).items() if isinstance(wanted, list)
+        },
+    }
     ordered = {}
     for key in table.columns.intersection([*keys(spec), *orders]):
         first = orders.get(key, [])
@@ -42,30 +52,41 @@ def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.Dat
 
 
 def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
-    """The numbers behind a table: one row for each group of runs with equal keys, entry of `values`, and statistic.
+    """The numbers behind a table: one row for each group of runs with equal keys, entry of
+    `values`, and statistic.
 
-    Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count,
-    which satisfy the entry's `where` and have one; asked: how many satisfy `where`, with or without one; groups: the numbers as one
-    array for each value of the column `within`, None without that key; least, most: the range of the metric for one run (`least` of an
-    entry is stronger than that of its metric); and over all
-    runs of the group: runs (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones) of the
-    metric's kind of length.
+    Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted
+    (n,): the metric of the runs that count, which satisfy the entry's `where` and have one; asked:
+    how many satisfy `where`, with or without one; groups: the numbers as one array for each value
+    of the column `within`, None without that key; least, most: the range of the metric for one run
+    (`least` of an entry is stronger than that of its metric); and over all runs of the group: runs
+    (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones)
+    of the metric's kind of length.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.get("where", {})).sort_values("id", ignore_index=True)
     entries = spec["values"]
     described = [metrics.METRICS[entry["metric"]] for entry in entries]
-    wanted = {metric.gap for metric in described} | {entry["metric"] for entry, metric in zip(entries, described) if not metric.among_rows}
+    wanted = {metric.gap for metric in described} | {
+        entry["metric"] for entry, metric in zip(entries, described) if not metric.among_rows
+    }
     measured = {name: _measured(runs, name, results, spec).to_numpy() for name in sorted(wanted)}
     # What compares methods compares those that the entry's `where` leaves.
     taken = [
-        _measured(select(runs, entry.get("where", {})), entry["metric"], results, spec).reindex(runs.index).to_numpy()
+        _measured(select(runs, entry.get("where", {})), entry["metric"], results, spec)
+        .reindex(runs.index)
+        .to_numpy()
         if metric.among_rows
         else measured[entry["metric"]]
         for entry, metric in zip(entries, described)
     ]
     leasts = [entry.get("least", metric.least) for entry, metric in zip(entries, described)]
-    named = {name for metric, least in zip(described, leasts) for name in (metric.bound, least) if isinstance(name, str)}
+    named = {
+        name
+        for metric, least in zip(described, leasts)
+        for name in (metric.bound, least)
+        if isinstance(name, str)
+    }
     bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
     feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
     asked = [runs.index.isin(select(runs, entry.get("where", {})).index) for entry in entries]
@@ -73,27 +94,60 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     rows = []
     for key, group in runs[keys].groupby(keys, dropna=False):
         positions = group.index.to_numpy()
-        shares = {"share_claimed": claimed[positions].mean(), "share_feasible": feasible[positions].mean()}
+        shares = {
+            "share_claimed": claimed[positions].mean(),
+            "share_feasible": feasible[positions].mean(),
+        }
         same = {**dict(zip(keys, key)), "runs": len(positions), **shares}
         for value, (entry, metric) in enumerate(zip(entries, described)):
             of_group = {
                 "bound": _median(bounds[metric.bound][positions]),
                 "gap": _median(measured[metric.gap][positions]),
-                "least": np.fmin.reduce(bounds[leasts[value]][positions]) if isinstance(leasts[value], str) else leasts[value],
+                "least": np.fmin.reduce(bounds[leasts[value]][positions])
+                if isinstance(leasts[value], str)
+                else leasts[value],
                 "most": metric.most,
             }
             chosen = positions[asked[value][positions]]
-            cell = {"value": value, "metric": entry["metric"], "decimals": entry.get("decimals"), "asked": len(chosen)}
+            cell = {
+                "value": value,
+                "metric": entry["metric"],
+                "decimals": entry.get("decimals"),
+                "asked": len(chosen),
+            }
             chosen = chosen[~np.isnan(taken[value][chosen])]  # a run without a value counts nowhere
             numbers = taken[value][chosen]
             # Tuples, because pandas would expand lists of arrays.
-            groups = None if units is None else tuple(np.sort(numbers[units[chosen] == unit]) for unit in np.unique(units[chosen]))
+            groups = (
+                None
+                if units is None
+                else tuple(
+                    np.sort(numbers[units[chosen] == unit]) for unit in np.unique(units[chosen])
+                )
+            )
             for statistic in _statistics(entry):
-                rows.append(same | of_group | cell | {"statistic": statistic, "numbers": np.sort(numbers), "groups": groups})
+                rows.append(
+                    same
+                    | of_group
+                    | cell
+                    | {"statistic": statistic, "numbers": np.sort(numbers), "groups": groups}
+                )
     of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
-    columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "asked", "numbers", "groups"]
+    columns = [
+        *keys,
+        *of_runs,
+        "value",
+        "metric",
+        "statistic",
+        "decimals",
+        "asked",
+        "numbers",
+        "groups",
+    ]
     # Of type object, so that integers stay integers next to entries without decimals.
-    return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
+    return pd.DataFrame(rows, columns=columns).assign(
+        decimals=pd.Series([row["decimals"] for row in rows], dtype=object)
+    )
 
 
 def _median(values: np.ndarray) -> float:
@@ -102,7 +156,9 @@ def _median(values: np.ndarray) -> float:
 
 
 def _measured(runs: pd.DataFrame, metric: str, results: Results, spec: dict) -> pd.Series:
-    """A metric of each run; if it compares a table's methods, NaN for runs of methods outside the table (`beside`)."""
+    """A metric of each run; if it compares a table's methods, NaN for runs of methods outside the
+    table (`beside`).
+    """
     counted = runs
     if metrics.METRICS[metric].among_rows:
         counted = runs[~runs["method"].isin(spec.get("beside", []))]
@@ -112,50 +168,78 @@ def _measured(runs: pd.DataFrame, metric: str, results: Results, spec: dict) -> 
 def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
     """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
-    labels: how names are printed. Column levels are joined into one name, such as `objective value: smooth`; index levels stay columns of
-    the csv file. Where some runs have no value, a column beside the values says how many have one (`_with_counts`).
+    labels: how names are printed. Column levels are joined into one name, such as `objective value:
+    smooth`; index levels stay columns of the csv file. Where some runs have no value, a column
+    beside the values says how many have one (`_with_counts`).
     """
     index, columns = _levels(spec)
     table = in_order(cells(results, spec, keys(spec)), spec, list(results.problems))
-    statistic_order = list(dict.fromkeys(statistic for entry in spec["values"] for statistic in _statistics(entry)))
-    table["statistic"] = pd.Categorical(table["statistic"], categories=statistic_order, ordered=True)
+    statistic_order = list(
+        dict.fromkeys(statistic for entry in spec["values"] for statistic in _statistics(entry))
+    )
+    table["statistic"] = pd.Categorical(
+        table["statistic"], categories=statistic_order, ordered=True
+    )
     table["text"] = [
         _printed(statistics.statistic(statistic, numbers), decimals)
-        for statistic, numbers, decimals in zip(table["statistic"], table["numbers"], table["decimals"])
+        for statistic, numbers, decimals in zip(
+            table["statistic"], table["numbers"], table["decimals"]
+        )
     ]
-    rows, heads = (table[levels].drop_duplicates().sort_values(levels) for levels in (index, columns))
+    rows, heads = (
+        table[levels].drop_duplicates().sort_values(levels) for levels in (index, columns)
+    )
     table["counted"] = [len(numbers) for numbers in table["numbers"]]
     cells_by_place = table.set_index(index + columns)
     wide, counted, asked = (
-        cells_by_place[name].unstack(columns).reindex(index=_index(rows), columns=_index(heads)) for name in ("text", "counted", "asked")
+        cells_by_place[name].unstack(columns).reindex(index=_index(rows), columns=_index(heads))
+        for name in ("text", "counted", "asked")
     )
     wide = wide.fillna("")
     titles = [entry.get("label", entry["metric"]) for entry in spec["values"]]
-    rows, heads = (levels.apply(_labelled, labels=labels, titles=titles) for levels in (rows, heads))
-    stems = [": ".join(levels) for levels in heads.drop(columns="statistic", errors="ignore").itertuples(index=False)]
+    rows, heads = (
+        levels.apply(_labelled, labels=labels, titles=titles) for levels in (rows, heads)
+    )
+    stems = [
+        ": ".join(levels)
+        for levels in heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
+    ]
     wide.columns = [": ".join(levels) for levels in heads.itertuples(index=False)]
     wide = _with_counts(wide, counted, asked, stems)
     wide.index = _index(rows.rename(columns=labels))
     return wide
 
 
-def _with_counts(wide: pd.DataFrame, counted: pd.DataFrame, asked: pd.DataFrame, stems: list[str]) -> pd.DataFrame:
-    """A table with a column such as `20 of 30` beside the values of which some runs have none, for example because they failed.
+def _with_counts(
+    wide: pd.DataFrame, counted: pd.DataFrame, asked: pd.DataFrame, stems: list[str]
+) -> pd.DataFrame:
+    """A table with a column such as `20 of 30` beside the values of which some runs have none, for
+    example because they failed.
 
-    counted, asked: how many runs have a value, and of how many, at the places of the table. stems: the name of each column without its
-    statistic. Neighbouring columns with equal counts share one column.
+    counted, asked: how many runs have a value, and of how many, at the places of the table. stems:
+    the name of each column without its statistic. Neighbouring columns with equal counts share one
+    column.
     """
     columns, first = [], 0
     for row in range(len(stems)):
         columns.append(wide.iloc[:, row])
         last = row + 1 == len(stems)
-        if not last and all(table.iloc[:, row].equals(table.iloc[:, row + 1]) for table in (counted, asked)):
+        if not last and all(
+            table.iloc[:, row].equals(table.iloc[:, row + 1]) for table in (counted, asked)
+        ):
             continue
         have, of = counted.iloc[:, row], asked.iloc[:, row]
         if (have < of).any():
-            texts = [f"{number:.0f} of {total:.0f}" if total > 0 else "" for number, total in zip(have, of)]
+            texts = [
+                f"{number:.0f} of {total:.0f}" if total > 0 else ""
+                for number, total in zip(have, of)
+            ]
             name = " to ".join(filter(None, dict.fromkeys([stems[first], stems[row]])))
-            columns.append(pd.Series(texts, wide.index, object, f"runs counted: {name}" if name else "runs counted"))
+            columns.append(
+                pd.Series(
+                    texts, wide.index, object, f"runs counted: {name}" if name else "runs counted"
+                )
+            )
         first = row + 1
     return pd.concat(columns, axis=1) if columns else wide
 
@@ -168,7 +252,9 @@ def _statistics(entry: dict) -> list[str]:
 def _levels(spec: dict) -> tuple[list[str], list[str]]:
     """Levels of the index and of the columns, including necessary words that were left out."""
     index, columns = list(spec["index"]), list(spec.get("columns", []))
-    if "statistic" not in index + columns and any(len(_statistics(entry)) > 1 for entry in spec["values"]):
+    if "statistic" not in index + columns and any(
+        len(_statistics(entry)) > 1 for entry in spec["values"]
+    ):
         columns.append("statistic")
     if "value" not in index + columns and (len(spec["values"]) > 1 or not columns):
         columns.insert(0, "value")
@@ -182,12 +268,18 @@ def _index(levels: pd.DataFrame) -> pd.Index:
 
 def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd.Series:
     """A level of rows or columns as printed."""
-    names = [titles[value] for value in level] if level.name == "value" else [labels.get(str(value), str(value)) for value in level]
+    names = (
+        [titles[value] for value in level]
+        if level.name == "value"
+        else [labels.get(str(value), str(value)) for value in level]
+    )
     return pd.Series(names, index=level.index, dtype=object)
 
 
 def _printed(number: float, decimals: int | None) -> str:
-    """A number with the given decimals, or with six significant digits if none are given; empty for NaN."""
+    """A number with the given decimals, or with six significant digits if none are given; empty for
+    NaN.
+    """
     if np.isnan(number):
         return ""
     return f"{number:.6g}" if decimals is None else f"{number:.{decimals}f}"

@@ -1,9 +1,12 @@
-"""Is an installation sound? Its numbers beside those of the kept outcome, by a test that a sound one fails with a stated probability.
+"""Is an installation sound? Its numbers beside those of the kept outcome, by a test that a sound
+one fails with a stated probability.
 
-On the platform of the kept outcome the numbers are equal. On another the last bit of a library's `sin` can differ, a search amplifies it,
-and a number is that of other runs of the same distribution. Then two estimates differ by chance: each has a bootstrap interval, from which
-its standard error follows, and Student's t with the degrees of freedom of the smaller sample judges their difference. Bonferroni's
-correction over all numbers limits the probability that any of them fails by chance.
+On the platform of the kept outcome the numbers are equal. On another the last bit of a library's
+`sin` can differ, a search amplifies it, and a number is that of other runs of the same
+distribution. Then two estimates differ by chance: each has a bootstrap interval, from which its
+standard error follows, and Student's t with the degrees of freedom of the smaller sample judges
+their difference. Bonferroni's correction over all numbers limits the probability that any of them
+fails by chance.
 """
 
 import numpy as np
@@ -11,7 +14,9 @@ import pandas as pd
 from scipy import stats
 
 ERROR_RATE = 0.01
-"""How often a sound installation fails, at most: equal seeds make its runs more alike than independent ones."""
+"""How often a sound installation fails, at most: equal seeds make its runs more alike than
+independent ones.
+"""
 ALIKE = 1e-6
 """Relative difference of numbers that no chance decides, such as lengths of exact paths."""
 TIMES = ("s", "ms")
@@ -21,22 +26,32 @@ _WIDTH = 2 * stats.norm.ppf(0.975)
 
 
 def compared(kept: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
-    """The numbers of an installation's comparison beside those kept of the same table: the columns that name one, value_kept, value_own, p.
+    """The numbers of an installation's comparison beside those kept of the same table: the columns
+    that name one, value_kept, value_own, p.
 
-    p: probability of a difference as large by chance; nan where nothing can be said: times, numbers of fewer than two runs, extremes.
+    p: probability of a difference as large by chance; nan where nothing can be said: times, numbers
+    of fewer than two runs, extremes.
     """
     names = [*again.columns[: again.columns.get_loc("unit") + 1], "n_published", "value_published"]
-    kept, again = (frame.assign(**{name: _plain(frame[name]) for name in names}).drop_duplicates(names) for frame in (kept, again))
+    kept, again = (
+        frame.assign(**{name: _plain(frame[name]) for name in names}).drop_duplicates(names)
+        for frame in (kept, again)
+    )
     both = kept.merge(again, on=names, suffixes=("_kept", "_own"))
     values, widths, sizes = (
-        [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")] for name in ("value_ours", "width", "n_ours")
+        [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")]
+        for name in ("value_ours", "width", "n_ours")
     )
-    found = both[names].assign(value_kept=values[0], value_own=values[1], p=p_values(values, widths, sizes))
+    found = both[names].assign(
+        value_kept=values[0], value_own=values[1], p=p_values(values, widths, sizes)
+    )
     return found.assign(p=found["p"].where(~both["unit"].isin(TIMES)))
 
 
 def _plain(values: pd.Series) -> pd.Series:
-    """Values as text, alike whether a column was read as whole numbers or, beside empty cells, as others."""
+    """Values as text, alike whether a column was read as whole numbers or, beside empty cells, as
+    others.
+    """
     numbers = pd.to_numeric(values, errors="coerce")
     return values.astype(str).where(numbers.isna(), numbers.map("{:.12g}".format))
 
@@ -46,8 +61,11 @@ def with_width(comparison: pd.DataFrame) -> pd.DataFrame:
     return comparison.assign(width=comparison["high95_ours"] - comparison["low95_ours"])
 
 
-def p_values(values: list[np.ndarray], widths: list[np.ndarray], sizes: list[np.ndarray]) -> np.ndarray:
-    """Two-sided p of the difference of pairs of estimates, from the widths of their 95 % bootstrap intervals and their numbers of runs.
+def p_values(
+    values: list[np.ndarray], widths: list[np.ndarray], sizes: list[np.ndarray]
+) -> np.ndarray:
+    """Two-sided p of the difference of pairs of estimates, from the widths of their 95 % bootstrap
+    intervals and their numbers of runs.
 
     nan without an interval. A bootstrap's standard error is too small by sqrt(1 - 1/n).
     """
@@ -62,5 +80,7 @@ def p_values(values: list[np.ndarray], widths: list[np.ndarray], sizes: list[np.
 
 
 def failed(found: pd.DataFrame) -> pd.DataFrame:
-    """The numbers that differ by more than chance, at `ERROR_RATE` for all together, the least probable first."""
+    """The numbers that differ by more than chance, at `ERROR_RATE` for all together, the least
+    probable first.
+    """
     return found[found["p"] * found["p"].notna().sum() < ERROR_RATE].sort_values("p")

@@ -1,18 +1,17 @@
-"""What each method is worth beside a baseline that anyone could use: the exact shortest path with rounded corners.
+"""What each method is worth beside a baseline that anyone could use: the exact shortest path with
+rounded corners.
 
-A method is measured under the conditions of some experiments, a condition being a problem with the values of the varied settings. Under
-each, the median of its runs is divided by the median of the baseline's runs; the table has the median of these ratios over the conditions.
+A method is measured under the conditions of some experiments, a condition being a problem with the
+values of the varied settings. Under each, the median of its runs is divided by the median of the
+baseline's runs; the table has the median of these ratios over the conditions.
 
-| column | meaning |
-| --- | --- |
-| study, method, baseline | what is measured, and against what |
-| conditions | conditions under which both have runs |
-| feasible, feasible_baseline | share of their runs whose path the certified checker accepts |
-| compared | conditions under which both have a feasible run |
-| length | length over the baseline's, feasible runs only |
-| bent | those of the compared conditions under which the baseline's path bends and has no corners |
-| curvature | largest curvature over the baseline's under these conditions, feasible runs only; infinite for paths with corners |
-| cpu | CPU time over the baseline's, all runs |
+| column | meaning | | --- | --- | | study, method, baseline | what is measured, and against what |
+| conditions | conditions under which both have runs | | feasible, feasible_baseline | share of
+their runs whose path the certified checker accepts | | compared | conditions under which both have
+a feasible run | | length | length over the baseline's, feasible runs only | | bent | those of the
+compared conditions under which the baseline's path bends and has no corners | | curvature | largest
+curvature over the baseline's under these conditions, feasible runs only; infinite for paths with
+corners | | cpu | CPU time over the baseline's, all runs |
 """
 
 from collections.abc import Mapping
@@ -41,32 +40,50 @@ BASELINE = "the exact shortest path with rounded corners"
 
 
 def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
-    """One row for each method of some experiments, in all of which the baseline runs; `COLUMNS` but for the study."""
-    medians = pd.concat([_medians(results).assign(experiment=name) for name, results in found.items()], ignore_index=True)
+    """One row for each method of some experiments, in all of which the baseline runs; `COLUMNS` but
+    for the study.
+    """
+    medians = pd.concat(
+        [_medians(results).assign(experiment=name) for name, results in found.items()],
+        ignore_index=True,
+    )
     of_baseline = medians["method"] == baseline
-    pairs = medians[~of_baseline].merge(medians[of_baseline], on=["experiment", "condition"], suffixes=("", "_baseline"))
-    bent = np.isfinite(pairs["curvature_baseline"]) & (pairs["curvature_baseline"] * pairs["length_baseline"] > _STRAIGHT)
+    pairs = medians[~of_baseline].merge(
+        medians[of_baseline], on=["experiment", "condition"], suffixes=("", "_baseline")
+    )
+    bent = np.isfinite(pairs["curvature_baseline"]) & (
+        pairs["curvature_baseline"] * pairs["length_baseline"] > _STRAIGHT
+    )
     pairs["curvature_baseline"] = pairs["curvature_baseline"].where(bent)
     for name in ("length", "curvature", "cpu"):
         pairs[name] /= pairs[f"{name}_baseline"]
-    return pd.DataFrame([_row(method, pair, baseline) for method, pair in pairs.groupby("method", sort=False)], columns=COLUMNS[1:])
+    return pd.DataFrame(
+        [_row(method, pair, baseline) for method, pair in pairs.groupby("method", sort=False)],
+        columns=COLUMNS[1:],
+    )
 
 
 def of_studies(job: Mapping[str, dict[str, Any]], files: Mapping[str, Files]) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
-    job: study -> its `baseline`, and `repeats` of the experiments that are measured. files: of experiments, each by `study/experiment`.
+    job: study -> its `baseline`, and `repeats` of the experiments that are measured. files: of
+    experiments, each by `study/experiment`.
     """
     tables = []
     for study, described in job.items():
-        experiments = {name: read(files[f"{study}/{name}"], number, name) for name, number in described["repeats"].items()}
+        experiments = {
+            name: read(files[f"{study}/{name}"], number, name)
+            for name, number in described["repeats"].items()
+        }
         tables.append(measured(experiments, described["baseline"]).assign(study=study))
     rows = pd.concat(tables) if tables else pd.DataFrame()
     return rows.reindex(columns=COLUMNS)
 
 
 def _medians(results: Results) -> pd.DataFrame:
-    """One row for each condition and method: medians of length, curvature and CPU time, and the numbers of runs and of feasible ones."""
+    """One row for each condition and method: medians of length, curvature and CPU time, and the
+    numbers of runs and of feasible ones.
+    """
     runs, problems = results.runs, results.problems
     cornered = metrics.values(runs, "corners", problems) > 0
     values = runs[["condition", "method"]].assign(
@@ -76,7 +93,12 @@ def _medians(results: Results) -> pd.DataFrame:
         free=runs["feasible"].astype(bool),
     )
     groups = values.groupby(["condition", "method"], sort=False)
-    return groups[["length", "curvature", "cpu"]].median().join(groups["free"].agg(free="sum", runs="count")).reset_index()
+    return (
+        groups[["length", "curvature", "cpu"]]
+        .median()
+        .join(groups["free"].agg(free="sum", runs="count"))
+        .reset_index()
+    )
 
 
 def _row(method: str, pair: pd.DataFrame, baseline: str) -> dict:
@@ -95,7 +117,8 @@ def _row(method: str, pair: pd.DataFrame, baseline: str) -> dict:
 
 
 def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
-    """Paragraphs of the summary: a heading, what is compared, and a sentence for each study; none without rows.
+    """Paragraphs of the summary: a heading, what is compared, and a sentence for each study; none
+    without rows.
 
     rows: those of all studies, with the columns `COLUMNS`. titles: of the studies, by name.
     """
@@ -103,9 +126,13 @@ def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
         return []
     return [
         f"## Comparison with {BASELINE}",
-        "The baseline is what a practitioner could drive without any of these planners. `worth.csv` has the numbers: medians over "
+        "The baseline is what a practitioner could drive without any of these planners. "
+        "`worth.csv` has the numbers: medians over "
         "conditions of a method's median over the baseline's.",
-        *(f"**{titles[study]}** {sentence(own)}" for study, own in rows.groupby("study", sort=False)),
+        *(
+            f"**{titles[study]}** {sentence(own)}"
+            for study, own in rows.groupby("study", sort=False)
+        ),
     ]
 
 
@@ -113,13 +140,16 @@ def sentence(rows: pd.DataFrame) -> str:
     """What follows from the rows of one study."""
     count = len(rows)
     parts = [
-        f"{_counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs (baseline: "
-        f"{number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} times the baseline's CPU time."
+        f"{_counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs "
+        f"(baseline: "
+        f"{number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} times the "
+        f"baseline's CPU time."
     ]
     if rows["length"].notna().any():
         cornered, less = np.isinf(rows["curvature"]).sum(), (rows["curvature"] < 1 - EQUAL).sum()
         parts.append(
-            f"Feasible paths are {span(rows['length'])} times as long; those of {less} of {_counted(count, 'method')} curve less, those of "
+            f"Feasible paths are {span(rows['length'])} times as long; those of {less} of "
+            f"{_counted(count, 'method')} curve less, those of "
             f"{cornered} have corners."
         )
     return " ".join([*parts, _verdict(rows)])
@@ -132,12 +162,17 @@ def _verdict(own: pd.DataFrame) -> str:
     if reliable.empty:
         return "No method is feasible as often as the baseline."
     if better.empty:
-        return f"Of the {len(reliable)} feasible as often as the baseline, none is shorter or curves less."
+        return (
+            f"Of the {len(reliable)} feasible as often as the baseline, none is shorter or "
+            f"curves less."
+        )
     best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
     found = "is shorter or curves less" if len(better) == 1 else "are shorter or curve less"
     return (
-        f"Of the {len(reliable)} feasible as often as the baseline, {len(better)} {found}; the least curved, {best['method']}, has "
-        f"{number(best['curvature'])} times the curvature, {number(best['length'])} times the length and {number(best['cpu'])} times "
+        f"Of the {len(reliable)} feasible as often as the baseline, {len(better)} {found}; the "
+        f"least curved, {best['method']}, has "
+        f"{number(best['curvature'])} times the curvature, {number(best['length'])} times the "
+        f"length and {number(best['cpu'])} times "
         "the CPU time."
     )
 

@@ -1,9 +1,14 @@
-"""The commands of `python -m bezierplan`, one file each: `main` adds its arguments to a parser, parses the words, and runs."""
+"""The commands of `python -m bezierplan`, one file each: `main` adds its arguments to a parser,
+parses the words, and runs.
+"""
 
 from argparse import ArgumentParser
 
 
 def add_studies(parser: ArgumentParser) -> None:
     """Let a command use studies other than those in config/config.yaml."""
-    text = "studies instead of those of config/config.yaml: names of folders in config/studies, or paths"
+    text = (
+        "studies instead of those of config/config.yaml: names of folders in config/studies, "
+        "or paths"
+    )
     parser.add_argument("--studies", nargs="+", metavar="STUDY", help=text)

@@ -12,14 +12,31 @@ from bezierplan.study import reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print the findings of a planner's contract tests; exit with status 1 if a test failed. Raises Fault."""
-    planner = parser.add_argument("planner", help="its name, or the path of its file; with --study the name of a method")
+    """Print the findings of a planner's contract tests; exit with status 1 if a test failed. Raises
+    Fault.
+    """
+    planner = parser.add_argument(
+        "planner", help="its name, or the path of its file; with --study the name of a method"
+    )
     named(planner, known_planners)
     given = parser.add_mutually_exclusive_group()
-    given.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="a value for each of its settings, as in a study")
-    given.add_argument("--study", metavar="STUDY", help="a name in config/studies, or a path: planner and settings are those of its method")
+    given.add_argument(
+        "--settings",
+        default="{}",
+        metavar="'{NAME: VALUE, ...}'",
+        help="a value for each of its settings, as in a study",
+    )
+    given.add_argument(
+        "--study",
+        metavar="STUDY",
+        help="a name in config/studies, or a path: planner and settings are those of its method",
+    )
     words = parser.parse_args(words)
-    planner, settings = of_study(words.study, words.planner) if words.study else (words.planner, of_text(words.settings))
+    planner, settings = (
+        of_study(words.study, words.planner)
+        if words.study
+        else (words.planner, of_text(words.settings))
+    )
     failed = total = 0
     for check in (contract.check_planner, contract.check_elsewhere):
         for finding in check(planner, settings):
@@ -45,5 +62,7 @@ def of_study(name: str, method: str) -> tuple[str, dict[str, Any]]:
     """The planner and settings of a study's method. Raises Fault."""
     (study,) = reading.load(reading.read_config({"studies": [name]})).values()
     if method not in study.methods:
-        raise checked.Fault(f"{name}: methods: {method}: unknown{checked.closest(method, study.methods)}")
+        raise checked.Fault(
+            f"{name}: methods: {method}: unknown{checked.closest(method, study.methods)}"
+        )
     return study.planner(method), study.resolved(method)

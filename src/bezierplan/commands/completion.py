@@ -15,7 +15,10 @@ class _DeclaredError(Exception):
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Print what a shell evaluates to complete the words of `bezierplan`."""
-    parser.epilog = 'bash: eval "$(bezierplan completion bash)" in ~/.bashrc; fish: bezierplan completion fish | source'
+    parser.epilog = (
+        'bash: eval "$(bezierplan completion bash)" in ~/.bashrc; fish: bezierplan '
+        "completion fish | source"
+    )
     parser.add_argument("shell", choices=SHELLS, help="whose words are to be completed")
     shell = parser.parse_args(words).shell
     import argcomplete
@@ -29,7 +32,9 @@ def named(action: Action, names: Callable[[], Iterable[str]]) -> None:
 
 
 def answer(commands: dict[str, str]) -> None:
-    """Tell the shell, which asks by its environment, how the words go on, and end the process. commands: name -> what it does."""
+    """Tell the shell, which asks by its environment, how the words go on, and end the process.
+    commands: name -> what it does.
+    """
     import argcomplete
 
     parser = ArgumentParser(prog="bezierplan")

@@ -11,30 +11,42 @@ import pyarrow.parquet as parquet
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print a hash of each run table below a folder. Raises FileNotFoundError, or ValueError for an unreadable file."""
+    """Print a hash of each run table below a folder. Raises FileNotFoundError, or ValueError for an
+    unreadable file.
+    """
     parser.add_argument("folder", type=Path, help="a folder of results, such as results/full")
     for name, files in run_tables(parser.parse_args(words).folder).items():
         print(f"{table_digest(files)}  {name}", flush=True)
 
 
 def run_tables(folder: Path) -> dict[str, list[Path]]:
-    """The chunk files of each run table below a folder, by `study/experiment/method`. Raises FileNotFoundError if there is none."""
+    """The chunk files of each run table below a folder, by `study/experiment/method`. Raises
+    FileNotFoundError if there is none.
+    """
     tables: dict[str, list[Path]] = {}
     for file in sorted(folder.rglob("runs/*/*/*.parquet")):
         if file.stem.isdecimal():  # not the times and traces next to it
             study, _, experiment, method, _ = file.parts[-5:]
             tables.setdefault(f"{study}/{experiment}/{method}", []).append(file)
     if not tables:
-        raise FileNotFoundError(f"{folder}: no runs here; expected a folder of results, such as results/full")
+        raise FileNotFoundError(
+            f"{folder}: no runs here; expected a folder of results, such as results/full"
+        )
     return tables
 
 
 def read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
-    """The rows of a chunk file, or only those with one id. Raises ValueError for a file without runs."""
+    """The rows of a chunk file, or only those with one id. Raises ValueError for a file without
+    runs.
+    """
     try:
-        return parquet.read_table(file, filters=[("id", "=", identity)] if identity else None).to_pylist()
+        return parquet.read_table(
+            file, filters=[("id", "=", identity)] if identity else None
+        ).to_pylist()
     except pa.ArrowException:
-        raise ValueError(f"{file}: not a whole Parquet file of runs; delete it: the workflow reproduces it") from None
+        raise ValueError(
+            f"{file}: not a whole Parquet file of runs; delete it: the workflow reproduces it"
+        ) from None
 
 
 def row_text(row: dict[str, Any]) -> str:

@@ -1,4 +1,6 @@
-"""Where the time of the last start of the workflow in this folder went, from what its jobs and Snakemake noted."""
+"""Where the time of the last start of the workflow in this folder went, from what its jobs and
+Snakemake noted.
+"""
 
 import json
 from argparse import ArgumentParser
@@ -8,7 +10,8 @@ from pathlib import Path
 from bezierplan.running import effort, records
 from bezierplan.running.effort import Session
 
-# Rules -> what their jobs do, apart from importing and from loading and compiling kernels; of `runs` and `drives` also apart from planning.
+# Rules -> what their jobs do, apart from importing and from loading and compiling kernels; of
+# `runs` and `drives` also apart from planning.
 WORK = {
     "runs": "checking paths, warm-up, files of runs",
     "drives": "checking paths, warm-up, files of runs",
@@ -44,18 +47,34 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     try:
         session = effort.last(Path())
     except FileNotFoundError:
-        raise FileNotFoundError(f"{effort.SESSION}: no start of the workflow ended well in this folder; run `snakemake` first") from None
+        raise FileNotFoundError(
+            f"{effort.SESSION}: no start of the workflow ended well in this folder; run "
+            f"`snakemake` first"
+        ) from None
     print("\n".join(lines(session, *spent(session, Path()))))
 
 
 def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
-    """CPU seconds by what they were for, the number of jobs, and the seconds of the clock in which jobs waited for kernels."""
-    seconds: Counter[str] = Counter({"Snakemake itself": session.snakemake, "importing once for all jobs, forking": session.forked})
+    """CPU seconds by what they were for, the number of jobs, and the seconds of the clock in which
+    jobs waited for kernels.
+    """
+    seconds: Counter[str] = Counter(
+        {
+            "Snakemake itself": session.snakemake,
+            "importing once for all jobs, forking": session.forked,
+        }
+    )
     jobs: dict[str, tuple[str, list[Path]]] = {}
     for file in (folder / records.METADATA).glob("*"):
         content = json.loads(file.read_text(encoding="utf-8"))
-        if content.get("log") and content["rule"] in WORK and session.started <= content["starttime"] <= session.ended:
-            jobs.setdefault(content["log"][0], (content["rule"], []))[1].append(folder / records.output_of(file))
+        if (
+            content.get("log")
+            and content["rule"] in WORK
+            and session.started <= content["starttime"] <= session.ended
+        ):
+            jobs.setdefault(content["log"][0], (content["rule"], []))[1].append(
+                folder / records.output_of(file)
+            )
     waited = by_themselves = 0.0
     for log, (rule, outputs) in jobs.items():
         noted = effort.of_job(folder / log) or {"cpu": 0.0}
@@ -73,13 +92,16 @@ def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
 
 
 def lines(session: Session, parts: Counter[str], jobs: int, waited: float) -> list[str]:
-    """A table in Markdown. What the cores did not do for this workflow is what remains of their time."""
+    """A table in Markdown. What the cores did not do for this workflow is what remains of their
+    time.
+    """
     clock = session.ended - session.started
     whole = clock * session.cores
     rest = {"cores idle, or busy with other programs": whole - parts.total()}
     rows = [(name, parts[name]) for name in ROWS if parts[name]] + list(rest.items())
     return [
-        f"{jobs} jobs in {clock:.0f} s on {session.cores} cores; jobs waited {waited:.0f} s for kernels that another job compiled",
+        f"{jobs} jobs in {clock:.0f} s on {session.cores} cores; jobs waited {waited:.0f} s for "
+        f"kernels that another job compiled",
         "",
         "| what | seconds of a core | share |",
         "| --- | --- | --- |",

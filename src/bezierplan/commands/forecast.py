@@ -1,7 +1,8 @@
 """How long a target takes, how much disk, and which jobs are the longest: from recorded times.
 
-What is left to do comes from a dry run of Snakemake; how long it takes from the times of this folder's own jobs, and where there are none
-from docs/outcome/times.csv, those of the last full outcome.
+What is left to do comes from a dry run of Snakemake; how long it takes from the times of this
+folder's own jobs, and where there are none from docs/outcome/times.csv, those of the last full
+outcome.
 """
 
 import heapq
@@ -38,20 +39,41 @@ class Step(NamedTuple):
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Print a forecast. Raises ValueError for an unknown target."""
-    parser.add_argument("target", metavar="TARGET", help="as for snakemake: all, smoke, extended, a study, STUDY_TABLE, a file")
-    parser.add_argument("--scale", choices=SCALES, default="full", help="of a study, a table or a figure (default: full)")
-    parser.add_argument("--cores", type=int, default=os.cpu_count(), metavar="N", help="how many jobs run at once (default: those here)")
+    parser.add_argument(
+        "target",
+        metavar="TARGET",
+        help="as for snakemake: all, smoke, extended, a study, STUDY_TABLE, a file",
+    )
+    parser.add_argument(
+        "--scale",
+        choices=SCALES,
+        default="full",
+        help="of a study, a table or a figure (default: full)",
+    )
+    parser.add_argument(
+        "--cores",
+        type=int,
+        default=os.cpu_count(),
+        metavar="N",
+        help="how many jobs run at once (default: those here)",
+    )
     parser.add_argument("--anew", action="store_true", help="count what is there already as well")
     arguments = parser.parse_args(words)
     if arguments.cores < 1:
         raise Fault(f"--cores: {arguments.cores}; expected a whole number of at least 1")
     studies = reading.load(reading.read_config({}))
     steps = planned(files(studies, arguments.target, arguments.scale), arguments.anew)
-    print("\n".join(lines(arguments.target, steps, estimates(studies, steps, Path()), arguments.cores)))
+    print(
+        "\n".join(
+            lines(arguments.target, steps, estimates(studies, steps, Path()), arguments.cores)
+        )
+    )
 
 
 def files(studies: dict[str, Study], target: str, scale: str) -> list[str]:
-    """What snakemake is asked for: the files of a study or artefact at a scale; other targets as they are. Raises Fault."""
+    """What snakemake is asked for: the files of a study or artefact at a scale; other targets as
+    they are. Raises Fault.
+    """
     known = {"all": {"smoke": "smoke", "full": "all", "extended": "extended"}[scale]}
     known |= {name: name for name in ("smoke", "extended", "alternatives", "interpretations")}
     if target in known or "/" in target:
@@ -67,7 +89,17 @@ def files(studies: dict[str, Study], target: str, scale: str) -> list[str]:
 
 def planned(wanted: list[str], anew: bool) -> list[Step]:
     """The jobs that snakemake would run, from a dry run. Raises Fault with snakemake's words."""
-    command = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile"), "--workflow-profile", "none", "--cores", "1"]
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--snakefile",
+        str(TREE / "Snakefile"),
+        "--workflow-profile",
+        "none",
+        "--cores",
+        "1",
+    ]
     triggers = ["--rerun-triggers", "mtime", "input", "params"]
     done = subprocess.run(
         [*command, "--dry-run", "--nolock", *wanted, *triggers, *(["--forceall"] if anew else [])],
@@ -79,9 +111,14 @@ def planned(wanted: list[str], anew: bool) -> list[Step]:
         raise Fault((done.stderr or done.stdout).strip().splitlines()[-1])
     steps = {}
     for body in re.split(r"^(?:local)?rule ", done.stdout + done.stderr, flags=re.M)[1:]:
-        parts = {name: text.split(", ") for name, text in re.findall(r"^    (input|output|log): (.*)$", body, flags=re.M)}
+        parts = {
+            name: text.split(", ")
+            for name, text in re.findall(r"^    (input|output|log): (.*)$", body, flags=re.M)
+        }
         if "log" in parts:
-            steps[parts["log"][0]] = Step(parts["log"][0], frozenset(parts.get("input", ())), tuple(parts["output"]))
+            steps[parts["log"][0]] = Step(
+                parts["log"][0], frozenset(parts.get("input", ())), tuple(parts["output"])
+            )
     return list(steps.values())
 
 
@@ -91,16 +128,24 @@ def units_of(studies: dict[str, Study], job: Job) -> int:
         return 1
     key, _, experiment, method = job.name.split("/")
     study = studies.get(key)
-    if study is None or experiment not in study.experiments or method not in study.methods_of(experiment):
+    if (
+        study is None
+        or experiment not in study.experiments
+        or method not in study.methods_of(experiment)
+    ):
         return 1
     described = jobs.job(study, experiment, method, job.scale, job.chunk)
-    conditions = len(described["problems"]) * prod(len(values) for values in described["vary"].values())
+    conditions = len(described["problems"]) * prod(
+        len(values) for values in described["vary"].values()
+    )
     first, last = described["repeats"]
     alike = getattr(planner_module(described["planner"]), "deterministic", False)
     return conditions * (1 if alike else last - first)
 
 
-def estimates(studies: dict[str, Study], steps: Iterable[Step], folder: Path) -> dict[str, Record | None]:
+def estimates(
+    studies: dict[str, Study], steps: Iterable[Step], folder: Path
+) -> dict[str, Record | None]:
     """What each job takes, by log file; None where nothing like it was recorded."""
 
     def units(job: Job) -> int:
@@ -110,20 +155,31 @@ def estimates(studies: dict[str, Study], steps: Iterable[Step], folder: Path) ->
     known: dict[str, Record | None] = {}
     for step in steps:
         job = records.job_of(step.log)
-        same = own.get((job.scale, job.name)) or kept.get(job.name) or next((own[s, n] for s, n in own if n == job.name), None)
+        same = (
+            own.get((job.scale, job.name))
+            or kept.get(job.name)
+            or next((own[s, n] for s, n in own if n == job.name), None)
+        )
         known[step.log] = same and same.scaled(units(job))
     return known
 
 
 def keep(studies: dict[str, Study], folder: Path) -> None:
-    """Renew the kept times of what this folder's jobs of scale full took; those of other jobs stay."""
+    """Renew the kept times of what this folder's jobs of scale full took; those of other jobs
+    stay.
+    """
     own = records.measured(folder, lambda job: units_of(studies, job))
     known = records.kept(TREE / records.KEPT) if (TREE / records.KEPT).is_file() else {}
-    records.keep(known | {name: record for (scale, name), record in own.items() if scale == "full"}, TREE / records.KEPT)
+    records.keep(
+        known | {name: record for (scale, name), record in own.items() if scale == "full"},
+        TREE / records.KEPT,
+    )
 
 
 def duration(steps: list[Step], seconds: dict[str, float], cores: int) -> float:
-    """How long jobs take on some cores, each of which takes the next job whose input is there, in the given order."""
+    """How long jobs take on some cores, each of which takes the next job whose input is there, in
+    the given order.
+    """
     maker = {file: step.log for step in steps for file in step.outputs}
     waits = {step.log: {maker[file] for file in step.inputs if file in maker} for step in steps}
     after: dict[str, list[str]] = {}
@@ -145,7 +201,9 @@ def duration(steps: list[Step], seconds: dict[str, float], cores: int) -> float:
     return now
 
 
-def lines(target: str, steps: list[Step], recorded: dict[str, Record | None], cores: int) -> list[str]:
+def lines(
+    target: str, steps: list[Step], recorded: dict[str, Record | None], cores: int
+) -> list[str]:
     """The forecast, one line each."""
     if not steps:
         return [f"{target}: nothing is left to do"]
@@ -161,7 +219,10 @@ def lines(target: str, steps: list[Step], recorded: dict[str, Record | None], co
         told.append(f"not recorded: {len(steps) - len(known)} jobs, counted as {usual:.0f} s each")
     told.append("the longest jobs:")
     longest = sorted(seconds, key=seconds.__getitem__, reverse=True)[:LONGEST]
-    return told + [f"  {shown(seconds[log]):>9}  {log.removesuffix('.log').replace('/logs/', '/', 1)}" for log in longest]
+    return told + [
+        f"  {shown(seconds[log]):>9}  {log.removesuffix('.log').replace('/logs/', '/', 1)}"
+        for log in longest
+    ]
 
 
 def shown(seconds: float) -> str:

@@ -16,19 +16,27 @@ from bezierplan.study.experiments import SCALES
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print the contents of the configured studies, or of those named. Raises Fault for a word that is neither a kind nor a study."""
+    """Print the contents of the configured studies, or of those named. Raises Fault for a word that
+    is neither a kind nor a study.
+    """
     described = f"kinds ({', '.join(KINDS)}) and studies; without any, all of them"
     named(
         parser.add_argument("words", nargs="*", metavar="KIND_OR_STUDY", help=described),
         lambda: [*KINDS, *(folder.name for folder in STUDIES.iterdir())],
     )
     add_studies(parser)
-    parser.add_argument("--settings", action="store_true", help="each planner's settings: accepted values, meaning, unit, source")
+    parser.add_argument(
+        "--settings",
+        action="store_true",
+        help="each planner's settings: accepted values, meaning, unit, source",
+    )
     asked = parser.parse_args(words)
     studies = reading.load(reading.read_config({"studies": asked.studies} if asked.studies else {}))
     for word in asked.words:
         if word not in KINDS and word not in studies:
-            raise Fault(f"list: {word}: neither a kind nor a study{closest(word, [*KINDS, *studies])}")
+            raise Fault(
+                f"list: {word}: neither a kind nor a study{closest(word, [*KINDS, *studies])}"
+            )
     kinds = [word for word in asked.words if word in KINDS] or list(KINDS)
     for key, study in studies.items():
         if key in asked.words or not studies.keys() & set(asked.words):
@@ -39,7 +47,8 @@ def settings(study: Study) -> list[str]:
     """The settings of a study's planners, one per line."""
     planners = dict.fromkeys(map(study.planner, study.methods))
     return [
-        f"{study.key}: {planner}: {name:24} {declared}" + (f"; {declared.meaning}" if declared.meaning else "")
+        f"{study.key}: {planner}: {name:24} {declared}"
+        + (f"; {declared.meaning}" if declared.meaning else "")
         for planner in planners
         for name, declared in planner_settings(planner_module(planner)).items()
     ]
@@ -47,7 +56,10 @@ def settings(study: Study) -> list[str]:
 
 def lines(study: Study, kinds: list[str]) -> list[str]:
     """A study's title and what it has of some kinds of `KINDS`, one per line."""
-    return [f"{study.key}: {study.title}", *(f"  {kind.removesuffix('s'):12}{line}" for kind in kinds for line in KINDS[kind](study))]
+    return [
+        f"{study.key}: {study.title}",
+        *(f"  {kind.removesuffix('s'):12}{line}" for kind in kinds for line in KINDS[kind](study)),
+    ]
 
 
 def _tables(study: Study) -> Iterator[str]:
@@ -64,7 +76,12 @@ def _methods(study: Study) -> Iterator[str]:
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
-        says = (inspect.getdoc(planner_module(planner)) or "").split("\n\n")[0].replace("\n", " ").rstrip(".")
+        says = (
+            (inspect.getdoc(planner_module(planner)) or "")
+            .split("\n\n")[0]
+            .replace("\n", " ")
+            .rstrip(".")
+        )
         yield f"{name:20} {planner}{variant}" + (f": {says}" if says else "")
 
 
@@ -76,7 +93,10 @@ def _workspaces(study: Study) -> Iterator[str]:
 def _experiments(study: Study) -> Iterator[str]:
     for name, experiment in study.experiments.items():
         repeats = ", ".join(f"{experiment.repeats[scale]} ({scale})" for scale in SCALES)
-        yield f"{name:20} {len(experiment.problems)} problems, {len(experiment.methods)} methods, repeats {repeats}"
+        yield (
+            f"{name:20} {len(experiment.problems)} problems, {len(experiment.methods)} methods, "
+            f"repeats {repeats}"
+        )
 
 
 def _claims(study: Study) -> Iterator[str]:

@@ -1,4 +1,6 @@
-"""A new study: `python -m bezierplan new FOLDER` copies one that runs at once, `--from MAP` puts a map of your own into it."""
+"""A new study: `python -m bezierplan new FOLDER` copies one that runs at once, `--from MAP` puts a
+map of your own into it.
+"""
 
 import shutil
 from argparse import ArgumentParser
@@ -17,8 +19,19 @@ TEMPLATE = PACKAGE / "template"
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Make the folder of a study. Raises Fault."""
-    parser.add_argument("folder", type=Path, metavar="FOLDER", help="where the study will lie; its name is the study's")
-    parser.add_argument("--from", type=Path, dest="map", metavar="MAP", help="a map file of your own; needs --start and --target")
+    parser.add_argument(
+        "folder",
+        type=Path,
+        metavar="FOLDER",
+        help="where the study will lie; its name is the study's",
+    )
+    parser.add_argument(
+        "--from",
+        type=Path,
+        dest="map",
+        metavar="MAP",
+        help="a map file of your own; needs --start and --target",
+    )
     parser.add_argument("--start", metavar="X,Y", help="where paths begin on that map, in its unit")
     parser.add_argument("--target", metavar="X,Y", help="where they end")
     arguments = parser.parse_args(words)
@@ -26,13 +39,18 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     if arguments.folder.exists():
         raise Fault(f"{arguments.folder}: is there already; expected a new folder")
     if not arguments.folder.parent.is_dir():
-        raise Fault(f"{arguments.folder}: no folder {arguments.folder.parent}; expected one that exists")
+        raise Fault(
+            f"{arguments.folder}: no folder {arguments.folder.parent}; expected one that exists"
+        )
     if arguments.map is None and (arguments.start or arguments.target):
         raise Fault("--start and --target: expected only with --from, a map of your own")
     map_file = _own_map(arguments.map, arguments.start, arguments.target) if arguments.map else None
     shutil.copytree(TEMPLATE, arguments.folder, ignore=shutil.ignore_patterns("__pycache__"))
     readme = arguments.folder / "README.md"
-    readme.write_text(readme.read_text(encoding="utf-8").replace("mystudy", arguments.folder.name), encoding="utf-8")
+    readme.write_text(
+        readme.read_text(encoding="utf-8").replace("mystudy", arguments.folder.name),
+        encoding="utf-8",
+    )
     if map_file:
         _put(arguments.folder, *map_file)
     print(f"{arguments.folder}: a study; next: bezierplan run {arguments.folder}")
@@ -42,7 +60,9 @@ Ends = dict[str, list[float]]
 
 
 def _own_map(file: Path, start: str | None, target: str | None) -> tuple[list[Path], dict, Ends]:
-    """The files of a map, its workspace as a study describes it, and the ends of the paths. Raises ValueError for a faulty map."""
+    """The files of a map, its workspace as a study describes it, and the ends of the paths. Raises
+    ValueError for a faulty map.
+    """
     ends = {"start": list(point("--start", start)), "target": list(point("--target", target))}
     workspace = described(file, cells=True)
     files.load(workspace, file.parent)
@@ -50,19 +70,31 @@ def _own_map(file: Path, start: str | None, target: str | None) -> tuple[list[Pa
 
 
 def _put(folder: Path, sources: list[Path], workspace: dict, ends: Ends) -> None:
-    """Put a map in the place of the room. The claims and the published number are about the room, so they go."""
+    """Put a map in the place of the room. The claims and the published number are about the room,
+    so they go.
+    """
     for source in sources:
         shutil.copyfile(source, folder / source.name)
     (folder / "room.txt").unlink()
     shutil.rmtree(folder / "published")
     (folder / "claims.yaml").unlink()
     artefacts = folder / "artefacts.yaml"
-    artefacts.write_text(artefacts.read_text(encoding="utf-8").replace("    published: lengths.csv\n", ""), encoding="utf-8")
+    artefacts.write_text(
+        artefacts.read_text(encoding="utf-8").replace("    published: lengths.csv\n", ""),
+        encoding="utf-8",
+    )
     experiments = folder / "experiments.yaml"
     lines = experiments.read_text(encoding="utf-8").splitlines(keepends=True)
-    replaced = {"  room:": f"  room: {_flow(workspace)}", "  across:": f"  across: {_flow({'workspace': 'room'} | ends)}"}
+    replaced = {
+        "  room:": f"  room: {_flow(workspace)}",
+        "  across:": f"  across: {_flow({'workspace': 'room'} | ends)}",
+    }
     experiments.write_text(
-        "".join(next((new for key, new in replaced.items() if line.startswith(key)), line) for line in lines), encoding="utf-8"
+        "".join(
+            next((new for key, new in replaced.items() if line.startswith(key)), line)
+            for line in lines
+        ),
+        encoding="utf-8",
     )
 
 

@@ -1,8 +1,9 @@
 """The outcome kept in the repository: docs/outcome and the README's table.
 
-Verdicts and numbers are those of scale extended: they are about the methods, not about the papers' samples. Next to each verdict stand the
-verdict at the paper's own number of runs and, of studies whose alternatives were tried, how many interpretations of what the paper leaves
-open agree; both come from scale full.
+Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
+samples. Next to each verdict stand the verdict at the paper's own number of runs and, of studies
+whose alternatives were tried, how many interpretations of what the paper leaves open agree; both
+come from scale full.
 """
 
 import shutil
@@ -24,10 +25,15 @@ PICTURES = ("song2016/figures/figure3.png", "song2016/figures/identified.png")
 DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
 # Tables of each study at scale full.
-SENSITIVITY, INTERPRETATIONS = "sensitivity.csv", ("interpretations.csv", "explained.csv", "held_out.csv")
+SENSITIVITY, INTERPRETATIONS = (
+    "sensitivity.csv",
+    ("interpretations.csv", "explained.csv", "held_out.csv"),
+)
 LIKELY = (
-    "Which experiment was it? What each paper leaves open was varied together; these interpretations make its printed numbers most likely. "
-    "The paper's page of the documentation says what each choice means, and which numbers no interpretation explains. *by exchange*: how "
+    "Which experiment was it? What each paper leaves open was varied together; these "
+    "interpretations make its printed numbers most likely. "
+    "The paper's page of the documentation says what each choice means, and which numbers no "
+    "interpretation explains. *by exchange*: how "
     "many would be in range if printed numbers of one kind were exchanged with each other."
 )
 WORTH = "worth.csv"
@@ -39,7 +45,9 @@ SCALES = {
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Write docs/outcome and the README's table from results/extended and results/full. Raises Fault if one of them is incomplete."""
+    """Write docs/outcome and the README's table from results/extended and results/full. Raises
+    Fault if one of them is incomplete.
+    """
     parser.parse_args(words)
     try:
         write()
@@ -48,14 +56,28 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 
 def write() -> None:
-    """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results are missing."""
+    """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results
+    are missing.
+    """
     studies = reading.load(reading.read_config({}))
     titles = {key: study.title for key, study in studies.items()}
-    varied, searched = ([key for key in titles if (FULL / key / name).is_file()] for name in (SENSITIVITY, INTERPRETATIONS[0]))
-    tables = tuple(pd.concat(pd.read_csv(FULL / key / name) for key in searched) for name in INTERPRETATIONS) if searched else None
+    varied, searched = (
+        [key for key in titles if (FULL / key / name).is_file()]
+        for name in (SENSITIVITY, INTERPRETATIONS[0])
+    )
+    tables = (
+        tuple(
+            pd.concat(pd.read_csv(FULL / key / name) for key in searched)
+            for name in INTERPRETATIONS
+        )
+        if searched
+        else None
+    )
     claims = pd.read_csv(RESULTS / "claims.csv")
     if varied:
-        claims = summary.with_interpretations(claims, pd.concat(pd.read_csv(FULL / key / SENSITIVITY) for key in varied))
+        claims = summary.with_interpretations(
+            claims, pd.concat(pd.read_csv(FULL / key / SENSITIVITY) for key in varied)
+        )
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     numbers = pd.read_csv(RESULTS / "numbers.csv")
     measured = pd.read_csv(RESULTS / WORTH)
@@ -63,7 +85,9 @@ def write() -> None:
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
     shutil.copyfile(FULL / "numbers.csv", KEPT / NUMBERS_FULL)
-    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, tables), encoding="utf-8")
+    (KEPT / "summary.md").write_text(
+        summary.report(numbers, claims, measured, titles, RESULTS.name, tables), encoding="utf-8"
+    )
     for key in titles:
         for name in (SENSITIVITY, *INTERPRETATIONS):
             kept = KEPT / f"{key}_{name}"
@@ -75,19 +99,34 @@ def write() -> None:
     for picture in PICTURES:
         shutil.copyfile(FULL / picture, KEPT / picture.replace("/figures/", "_"))
     replay.animate(replay.replay(DRIVE, studies), KEPT / ANIMATION)
-    README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
+    README.write_text(
+        summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8"
+    )
 
 
 def table(kept: Path) -> str:
-    """The README's headline, from the tables in a folder, and below it the scale, from the summary there."""
+    """The README's headline, from the tables in a folder, and below it the scale, from the summary
+    there.
+    """
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
-    found = headline.headline(*(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", WORTH)), titles)
+    found = headline.headline(
+        *(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", WORTH)), titles
+    )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
-    return f"{headline.markdown(found)}\n\nScale `{scale}`: {SCALES[scale]}{_most_likely(kept, list(titles))}"
+    return (
+        f"{headline.markdown(found)}\n\nScale `{scale}`: "
+        f"{SCALES[scale]}{_most_likely(kept, list(titles))}"
+    )
 
 
 def _most_likely(kept: Path, studies: list[str]) -> str:
-    """The interpretations under which the papers' numbers are most likely, as far as they were searched."""
+    """The interpretations under which the papers' numbers are most likely, as far as they were
+    searched.
+    """
     files = [file for key in studies if (file := kept / f"{key}_{INTERPRETATIONS[0]}").is_file()]
-    return f"\n\n{LIKELY}\n\n{table_text(explained.brief(pd.concat(map(pd.read_csv, files))))}" if files else ""
+    return (
+        f"\n\n{LIKELY}\n\n{table_text(explained.brief(pd.concat(map(pd.read_csv, files))))}"
+        if files
+        else ""
+    )

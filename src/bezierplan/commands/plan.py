@@ -36,7 +36,18 @@ PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
 
 _FROM_MAPS = (
-    *("start", "target", "via", "cell", "rule", "margin", "resolution", "unknown", "most_pixels", "scenario"),
+    *(
+        "start",
+        "target",
+        "via",
+        "cell",
+        "rule",
+        "margin",
+        "resolution",
+        "unknown",
+        "most_pixels",
+        "scenario",
+    ),
     *("robot_radius", "footprint", "smooth", "strict", "turning_radius"),
 )
 """What messages about a map or a problem may begin with: here these are options."""
@@ -101,9 +112,17 @@ examples:
 
 
 class _Once(Action):
-    """Stores a value; of an option that is given twice, argparse would drop the first without a word."""
+    """Stores a value; of an option that is given twice, argparse would drop the first without a
+    word.
+    """
 
-    def __call__(self, parser: ArgumentParser, namespace: Namespace, values: Any, option_string: str | None = None) -> None:
+    def __call__(
+        self,
+        parser: ArgumentParser,
+        namespace: Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
         """Raises Fault for an option that was given before."""
         seen = vars(namespace).setdefault("seen", set())
         if self.dest in seen:
@@ -113,7 +132,9 @@ class _Once(Action):
 
 
 def _joined(words: list[str]) -> list[str]:
-    """Words of a command line, in which coordinates that begin with a minus belong to their option: argparse takes them for another one."""
+    """Words of a command line, in which coordinates that begin with a minus belong to their option:
+    argparse takes them for another one.
+    """
     joined: list[str] = []
     for word in words:
         if joined and joined[-1] in ("--start", "--target", "--via") and re.match(r"-[0-9.]", word):
@@ -129,47 +150,115 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.description, parser.epilog = MANUAL.strip(), EXAMPLES.strip()
     parser.add_argument("map", type=File, metavar="MAP", help="a map file")
-    parser.add_argument("--start", metavar="X,Y[,THETA]", help="where the path begins, in the map's unit; the heading there, in radians")
-    parser.add_argument("--target", metavar="X,Y[,THETA]", help="where it ends, and the heading there")
     parser.add_argument(
-        "--via", action="append", default=[], metavar="X,Y", help="a place to pass on the way; may be given several times, in their order"
+        "--start",
+        metavar="X,Y[,THETA]",
+        help="where the path begins, in the map's unit; the heading there, in radians",
     )
-    parser.add_argument("--scenario", metavar="FILE:NUMBER", help="start and target of a MovingAI scenario, numbered from 1")
+    parser.add_argument(
+        "--target", metavar="X,Y[,THETA]", help="where it ends, and the heading there"
+    )
+    parser.add_argument(
+        "--via",
+        action="append",
+        default=[],
+        metavar="X,Y",
+        help="a place to pass on the way; may be given several times, in their order",
+    )
+    parser.add_argument(
+        "--scenario",
+        metavar="FILE:NUMBER",
+        help="start and target of a MovingAI scenario, numbered from 1",
+    )
     chosen = parser.add_mutually_exclusive_group()
     chosen.add_argument(
         "--planner",
         metavar="NAME",
-        help="a planner, or the path of a planner's file (default: rounded_shortest_path, with headings dubins_search)",
+        help="a planner, or the path of a planner's file (default: rounded_shortest_path, with "
+        "headings dubins_search)",
     )
-    chosen.add_argument("--like", metavar="STUDY/METHOD", help="planner and settings of a study's method")
-    parser.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="settings in place of the planner's own")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the random numbers (default: 0)")
+    chosen.add_argument(
+        "--like", metavar="STUDY/METHOD", help="planner and settings of a study's method"
+    )
     parser.add_argument(
-        "--cell", type=float, metavar="SIDE", help=f"side of a cell (default: 1; of polygons the longer side / {map_files.CELLS})"
+        "--settings",
+        default="{}",
+        metavar="'{NAME: VALUE, ...}'",
+        help="settings in place of the planner's own",
     )
-    parser.add_argument("--rule", choices=("overlap", "centre"), help="which cells obstacles occupy (default: overlap)")
-    parser.add_argument("--robot-radius", type=float, metavar="R", help="the distance that the path keeps from obstacles and border")
-    parser.add_argument("--footprint", metavar="'[[X, Y], ...]'", help="the robot's outline, a convex polygon, in place of a radius")
-    parser.add_argument("--smooth", choices=legs.SMOOTH, default=legs.SMOOTH[0], help="turn along arcs, or with continuous curvature")
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="of the random numbers (default: 0)"
+    )
+    parser.add_argument(
+        "--cell",
+        type=float,
+        metavar="SIDE",
+        help=f"side of a cell (default: 1; of polygons the longer side / {map_files.CELLS})",
+    )
+    parser.add_argument(
+        "--rule",
+        choices=("overlap", "centre"),
+        help="which cells obstacles occupy (default: overlap)",
+    )
+    parser.add_argument(
+        "--robot-radius",
+        type=float,
+        metavar="R",
+        help="the distance that the path keeps from obstacles and border",
+    )
+    parser.add_argument(
+        "--footprint",
+        metavar="'[[X, Y], ...]'",
+        help="the robot's outline, a convex polygon, in place of a radius",
+    )
+    parser.add_argument(
+        "--smooth",
+        choices=legs.SMOOTH,
+        default=legs.SMOOTH[0],
+        help="turn along arcs, or with continuous curvature",
+    )
     parser.add_argument(
         "--strict",
         action="store_true",
-        help="refuse a path that turns tighter than the turning radius, whose curvature jumps, or on which the footprint is not free",
+        help="refuse a path that turns tighter than the turning radius, whose curvature jumps, or "
+        "on which the footprint is not free",
     )
-    parser.add_argument("--margin", type=float, metavar="D", help="how far the border lies from the obstacles of a .geojson without one")
     parser.add_argument(
-        "--resolution", type=float, metavar="SIDE", help="side of a pixel of an image without a YAML file, or a user unit of an .svg"
+        "--margin",
+        type=float,
+        metavar="D",
+        help="how far the border lies from the obstacles of a .geojson without one",
     )
-    parser.add_argument("--unknown", choices=("occupied", "free"), help="what unknown pixels count as (default: occupied)")
+    parser.add_argument(
+        "--resolution",
+        type=float,
+        metavar="SIDE",
+        help="side of a pixel of an image without a YAML file, or a user unit of an .svg",
+    )
+    parser.add_argument(
+        "--unknown",
+        choices=("occupied", "free"),
+        help="what unknown pixels count as (default: occupied)",
+    )
     parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of an image")
-    parser.add_argument("--unit", metavar="NAME", help="the unit of length that is printed (default: m, of grids cell)")
+    parser.add_argument(
+        "--unit",
+        metavar="NAME",
+        help="the unit of length that is printed (default: m, of grids cell)",
+    )
     parser.add_argument(
         "--out",
         type=File,
         metavar="FILE",
-        help="the path as a picture (.svg, .png), points (.csv), a .geojson line, or ROS's message (.yaml)",
+        help="the path as a picture (.svg, .png), points (.csv), a .geojson line, or ROS's "
+        "message (.yaml)",
     )
-    parser.add_argument("--step", type=float, metavar="D", help="largest distance between points in the file (default: the length / 1000)")
+    parser.add_argument(
+        "--step",
+        type=float,
+        metavar="D",
+        help="largest distance between points in the file (default: the length / 1000)",
+    )
     _plan(parser.parse_args(_joined(words)))
 
 
@@ -201,18 +290,32 @@ def _plan(arguments: Namespace) -> None:
             if first is None:
                 return solution, judged
             try:
-                wide = _problem(arguments, described, planner, places, robot.grow(original(home), radius), regions)
+                wide = _problem(
+                    arguments,
+                    described,
+                    planner,
+                    places,
+                    robot.grow(original(home), radius),
+                    regions,
+                )
                 found = _solution(task, wide)
             except ValueError:  # no room for a disc that large
                 return None
             return found, _judged(task, problem, found, solution.bound, outline)
 
-        solution, judged = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
+        solution, judged = footprints.first_that_holds(
+            outline, attempt, lambda each: each[1].feasible
+        )
     kept = legs.kept(planner, solution.plan, settings)
     if arguments.strict:
         with _as_options():
             footprints.check_held(outline, judged.feasible)
-            legs.check_continuous(arguments.smooth, judged.curvature_jump, judged.curvature_bound, problem.workspace.unit)
+            legs.check_continuous(
+                arguments.smooth,
+                judged.curvature_jump,
+                judged.curvature_bound,
+                problem.workspace.unit,
+            )
             legs.check_kept(settings["turning_radius"], kept, problem.workspace.unit)
     for name, text in _told(judged, task, solution, kept):
         print(f"{name:16}{text}")
@@ -226,7 +329,9 @@ def _plan(arguments: Namespace) -> None:
 
 
 class _Task(NamedTuple):
-    """What to plan with: a planner with its settings in force, way points, how smooth, and the blocked regions of maps."""
+    """What to plan with: a planner with its settings in force, way points, how smooth, and the
+    blocked regions of maps.
+    """
 
     planner: str
     module: ModuleType
@@ -238,7 +343,9 @@ class _Task(NamedTuple):
 
 
 class _Solution(NamedTuple):
-    """A planner's answer, the CPU seconds that it took, the exact shortest path, and the radius of the disc for which both are."""
+    """A planner's answer, the CPU seconds that it took, the exact shortest path, and the radius of
+    the disc for which both are.
+    """
 
     plan: Plan
     seconds: float
@@ -247,45 +354,73 @@ class _Solution(NamedTuple):
 
 
 def _solution(task: _Task, problem: Problem) -> _Solution:
-    """The planner's answer to a problem. Raises Fault without a free way, and if the planner fails."""
+    """The planner's answer to a problem. Raises Fault without a free way, and if the planner
+    fails.
+    """
     parts, blocked = legs.legs(problem, task.via, task.regions), task.regions(problem.workspace)
     bounds = legs.shortest(parts, blocked)
     bound = legs.whole(bounds)
     if not np.isfinite(bound.length):
         x, y = problem.target
-        raise Fault(f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one that can be reached")
+        raise Fault(
+            f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
+            f"that can be reached"
+        )
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
         if task.planner in legs.TURNING:
             begin = time.process_time()
             plan = legs.solved(task.planner, parts, bounds, blocked, task.settings, task.smooth)
             seconds = time.process_time() - begin
         else:
-            answers = [_answer(task.module, part, task.planner, task.settings, task.seed) for part in parts]
-            plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
+            answers = [
+                _answer(task.module, part, task.planner, task.settings, task.seed) for part in parts
+            ]
+            plan, seconds = (
+                legs.joined([answer for answer, _ in answers]),
+                sum(taken for _, taken in answers),
+            )
     grown = grown_of(problem.workspace)
     return _Solution(plan, seconds, bound, grown.radius if grown else 0.0)
 
 
-def _judged(task: _Task, problem: Problem, solution: _Solution, bound: shortest_paths.Bound, outline: Footprint | None) -> api.Judged:
-    """The verdict on a path, beside the exact shortest one. Raises Fault if the two contradict each other."""
+def _judged(
+    task: _Task,
+    problem: Problem,
+    solution: _Solution,
+    bound: shortest_paths.Bound,
+    outline: Footprint | None,
+) -> api.Judged:
+    """The verdict on a path, beside the exact shortest one. Raises Fault if the two contradict each
+    other.
+    """
     try:
-        judged = api.Judged(**api.verdict(problem, solution.plan.path, bound.length, task.regions, task.via, outline))
+        judged = api.Judged(
+            **api.verdict(
+                problem, solution.plan.path, bound.length, task.regions, task.via, outline
+            )
+        )
     except ValueError as error:
         raise Fault(f"--planner: {task.planner}: {error}") from None
     if judged.feasible and judged.length < shortest_paths.least_length(bound):
         raise Fault(
-            f"--planner: {task.planner}: its path is {judged.length:.12g} long and feasible, but no free path is shorter than"
+            f"--planner: {task.planner}: its path is {judged.length:.12g} long and feasible, but "
+            f"no free path is shorter than"
             f" {bound.length:.12g}: the checker or the bound is wrong"
         )
     return judged
 
 
 def _footprint(arguments: Namespace) -> Footprint | None:
-    """The footprint that is asked for. Raises ValueError, naming the option, for one that is none, or beside a radius."""
+    """The footprint that is asked for. Raises ValueError, naming the option, for one that is none,
+    or beside a radius.
+    """
     if arguments.footprint is None:
         return None
     if arguments.robot_radius is not None:
-        raise Fault("--footprint: given beside --robot-radius, which is a footprint of its own; expected one of them")
+        raise Fault(
+            "--footprint: given beside --robot-radius, which is a footprint of its own; expected "
+            "one of them"
+        )
     return footprint(checked.parse(arguments.footprint, "--footprint"))
 
 
@@ -298,22 +433,36 @@ def _check_words(arguments: Namespace) -> None:
     if arguments.seed < 0:
         raise Fault(f"--seed: {arguments.seed}; expected a whole number of at least 0")
     if arguments.scenario and (arguments.start or arguments.target):
-        raise Fault(f"--scenario: {arguments.scenario}: has a start and a target of its own; expected no --start and no --target beside it")
+        raise Fault(
+            f"--scenario: {arguments.scenario}: has a start and a target of its own; expected no "
+            f"--start and no --target beside it"
+        )
     if arguments.step is not None and not 0 < arguments.step < math.inf:
         raise Fault(f"--step: {arguments.step:g}; expected a number above 0")
-    if arguments.step is not None and (arguments.out is None or arguments.out.suffix.lower() in PICTURES):
-        raise Fault(f"--step: {arguments.step:g}: only for --out with a file that ends in {', '.join(OUT[len(PICTURES) :])}")
+    if arguments.step is not None and (
+        arguments.out is None or arguments.out.suffix.lower() in PICTURES
+    ):
+        raise Fault(
+            f"--step: {arguments.step:g}: only for --out with a file that ends in "
+            f"{', '.join(OUT[len(PICTURES) :])}"
+        )
 
 
 @contextmanager
 def _as_options() -> Iterator[None]:
-    """Have the message of a ValueError that begins with a name begin with the option of that name."""
+    """Have the message of a ValueError that begins with a name begin with the option of that
+    name.
+    """
     try:
         yield
     except ValueError as error:
         name, colon, told = str(error).partition(":")
         if colon and name in _FROM_MAPS:
-            option = "--settings: turning_radius" if name == "turning_radius" else f"--{name.replace('_', '-')}"
+            option = (
+                "--settings: turning_radius"
+                if name == "turning_radius"
+                else f"--{name.replace('_', '-')}"
+            )
             raise Fault(f"{option}:{told}") from None
         raise
 
@@ -337,8 +486,12 @@ def _unwritable(out: File, error: OSError) -> Fault:
     return Fault(f"--out: {out}: cannot be written ({error.strerror or type(error).__name__})")
 
 
-def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int) -> tuple[Plan, float]:
-    """A planner's answer, through the door of all answers, and its CPU seconds. Raises Fault, in one line, however the planner fails."""
+def _answer(
+    module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int
+) -> tuple[Plan, float]:
+    """A planner's answer, through the door of all answers, and its CPU seconds. Raises Fault, in
+    one line, however the planner fails.
+    """
     loan = lend({problem.name: problem})[problem.name]
     try:
         with watchdog.watching(None) as watch, watchdog.executing(f"--planner: {planner}", watch):
@@ -355,20 +508,37 @@ def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[s
     return plan, seconds
 
 
-def _told(judged: api.Judged, task: _Task, solution: _Solution, kept: float) -> list[tuple[str, str]]:
+def _told(
+    judged: api.Judged, task: _Task, solution: _Solution, kept: float
+) -> list[tuple[str, str]]:
     """The names and values to print."""
-    home, planner, settings, seconds = judged.problem.workspace, task.planner, task.settings, solution.seconds
+    home, planner, settings, seconds = (
+        judged.problem.workspace,
+        task.planner,
+        task.settings,
+        solution.seconds,
+    )
     unit = home.unit
-    told = ", ".join(f"{name} {'any' if value is None else value}" for name, value in settings.items())
+    told = ", ".join(
+        f"{name} {'any' if value is None else value}" for name, value in settings.items()
+    )
     lines = [("planner", planner), ("settings", told or "none")]
     if judged.footprint:
         within, around = judged.footprint.inscribed, judged.footprint.circumscribed
         lines.append(
-            ("footprint", f"{len(judged.footprint.corners)} corners, circles of {within:.6g} {unit} within and {around:.6g} around it")
+            (
+                "footprint",
+                f"{len(judged.footprint.corners)} corners, circles of {within:.6g} {unit} within "
+                f"and {around:.6g} around it",
+            )
         )
         lines.append(("planned for", f"a disc of {solution.radius:.6g} {unit}"))
     elif judged.robot_radius:
-        whole = f", by whole cells of {home.cell:g} {unit}" if isinstance(home, Grid) and not home.drawn else ""
+        whole = (
+            f", by whole cells of {home.cell:g} {unit}"
+            if isinstance(home, Grid) and not home.drawn
+            else ""
+        )
         lines.append(("robot radius", f"{judged.robot_radius:g} {unit}{whole}"))
     lines.append(("shortest path", f"{judged.shortest:.6g} {unit}"))
     if judged.path is None:
@@ -380,17 +550,40 @@ def _told(judged: api.Judged, task: _Task, solution: _Solution, kept: float) -> 
     if planner in legs.TURNING:
         asked = settings["turning_radius"]
         met = kept >= asked * (1 - 1e-9)
-        lines.append(("turning radius", f"{asked:.6g} {unit} asked{' and kept' if met else f', {kept:.6g} {unit} kept'}"))
-    lines.append(("clearance", f"{_told_number(judged.clearance, 6)} {unit}{' of the footprint' if judged.footprint else ''}"))
+        lines.append(
+            (
+                "turning radius",
+                f"{asked:.6g} {unit} asked{' and kept' if met else f', {kept:.6g} {unit} kept'}",
+            )
+        )
+    lines.append(
+        (
+            "clearance",
+            f"{_told_number(judged.clearance, 6)} "
+            f"{unit}{' of the footprint' if judged.footprint else ''}",
+        )
+    )
     if judged.feasible:
         lines.append(("feasible", "yes"))
     elif judged.footprint and not judged.depth:
         x, y = judged.collision
-        lines.append(("feasible", f"no: the footprint enters an obstacle at {x:.6g},{y:.6g}; nor is it free on the paths of larger discs"))
+        lines.append(
+            (
+                "feasible",
+                f"no: the footprint enters an obstacle at {x:.6g},{y:.6g}; nor is it free on the "
+                f"paths of larger discs",
+            )
+        )
     else:
         x, y = judged.collision
-        what = "comes closer to an obstacle than the robot's radius" if judged.clearance > 0 else "enters an obstacle"
-        lines.append(("feasible", f"no: {what} at {x:.6g},{y:.6g}, at most {judged.depth:.6g} {unit} deep"))
+        what = (
+            "comes closer to an obstacle than the robot's radius"
+            if judged.clearance > 0
+            else "enters an obstacle"
+        )
+        lines.append(
+            ("feasible", f"no: {what} at {x:.6g},{y:.6g}, at most {judged.depth:.6g} {unit} deep")
+        )
     return [*lines, ("CPU time", f"{seconds:.3g} s")]
 
 
@@ -399,22 +592,34 @@ def _told_curvature(judged: api.Judged, smooth: str) -> str:
     if math.isfinite(bound):
         told = f"at most {_told_number(bound, 6)} / {unit}"
     else:
-        told = f"at most {_told_number(judged.curvature, 6)} / {unit} at samples, without a bound where the path stands still"
+        told = (
+            f"at most {_told_number(judged.curvature, 6)} / {unit} at samples, without a bound "
+            f"where the path stands still"
+        )
     if judged.corners:
         return f"{told}, and corners"
     if smooth == "continuous":
         continuous = legs.is_continuous(judged.curvature_jump, bound)
-        told += ", continuous" if continuous else f", jumps by up to {judged.curvature_jump:.3g} / {unit} where transitions have no room"
+        told += (
+            ", continuous"
+            if continuous
+            else f", jumps by up to {judged.curvature_jump:.3g} / {unit} where transitions have "
+            f"no room"
+        )
     return told
 
 
 def _told_number(value: float, digits: int) -> str:
-    """A number with some digits; 0 if it is within the checker's tolerance, where it says nothing."""
+    """A number with some digits; 0 if it is within the checker's tolerance, where it says
+    nothing.
+    """
     return f"{value:.{digits}g}" if abs(value) > checker.TOLERANCE else "0"
 
 
 def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str, float]]:
-    """Start and target, as far as they are given, and the headings there, by the names of their settings."""
+    """Start and target, as far as they are given, and the headings there, by the names of their
+    settings.
+    """
     places, headings = {}, {}
     with _as_options():
         for end in () if given.scenario else ("start", "target"):
@@ -430,12 +635,17 @@ def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dic
     if not isinstance(changed, dict):
         raise Fault(f"--settings: {arguments.settings}: expected '{{name: value, ...}}'")
     if twice := headings.keys() & changed.keys():
-        raise Fault(f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as well; expected once")
+        raise Fault(
+            f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as "
+            f"well; expected once"
+        )
     if arguments.like:
         planner, preset = _like(arguments.like)
     else:
         planner = arguments.planner or (
-            legs.DRIVEN if {"start_heading", "target_heading"} & (headings.keys() | changed.keys()) else legs.ROUNDED
+            legs.DRIVEN
+            if {"start_heading", "target_heading"} & (headings.keys() | changed.keys())
+            else legs.ROUNDED
         )
         if not planner.endswith(".py") and planner not in known_planners():
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
@@ -443,7 +653,10 @@ def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dic
         preset = {} if planner in legs.TURNING or planner.endswith(".py") else _preset(planner)
     if headings and planner != legs.DRIVEN:
         end = min(headings).removesuffix("_heading")
-        raise Fault(f"--{end}: {getattr(arguments, end)}: a heading is only for {legs.DRIVEN}; the planner is {planner}")
+        raise Fault(
+            f"--{end}: {getattr(arguments, end)}: a heading is only for {legs.DRIVEN}; the "
+            f"planner is {planner}"
+        )
     interface.refuse_unknown(planner_module(planner), changed, "--settings")
     return planner, preset | changed | headings
 
@@ -457,7 +670,9 @@ def _like(name: str) -> tuple[str, dict[str, Any]]:
         raise Fault(f"--like: {name}; expected STUDY/METHOD, such as song2016/smooth")
     (study,) = reading.load(reading.read_config({"studies": [key]})).values()
     if method not in study.methods:
-        raise Fault(f"--like: {name}: the study has no method {method}{closest(method, study.methods)}")
+        raise Fault(
+            f"--like: {name}: the study has no method {method}{closest(method, study.methods)}"
+        )
     return study.planner(method), study.resolved(method)
 
 
@@ -466,7 +681,11 @@ def _preset(planner: str) -> dict[str, Any]:
     from bezierplan.study import reading
 
     # Away from the project's folder no configuration is found.
-    named = {} if File("config/config.yaml").is_file() else checked.read(TREE / "config" / "config.yaml")
+    named = (
+        {}
+        if File("config/config.yaml").is_file()
+        else checked.read(TREE / "config" / "config.yaml")
+    )
     for study in reading.load(reading.read_config(named)).values():
         for method in study.methods:
             if study.planner(method) == planner:
@@ -486,16 +705,26 @@ def _map(arguments: Namespace, planner: str) -> tuple[dict[str, Any], Workspace]
 
 
 def _problem(
-    arguments: Namespace, described: dict[str, Any], planner: str, places: dict[str, tuple[float, float]], home: Workspace, regions: Regions
+    arguments: Namespace,
+    described: dict[str, Any],
+    planner: str,
+    places: dict[str, tuple[float, float]],
+    home: Workspace,
+    regions: Regions,
 ) -> Problem:
     """The map with start and target."""
     served = getattr(planner_module(planner), "workspaces", None)
     workspace = robot.suited(home, served)
     met = "polygons" if isinstance(workspace, Polygons) else "grid"
     if served is not None and met not in served:
-        raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")
+        raise Fault(
+            f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is "
+            f"{met}"
+        )
     if arguments.scenario:
-        return problems.build("", _scenario(arguments, described, original(workspace)), workspace, regions)
+        return problems.build(
+            "", _scenario(arguments, described, original(workspace)), workspace, regions
+        )
     return problems.build("", places, workspace, regions)
 
 
@@ -503,12 +732,21 @@ def _scenario(given: Namespace, described: dict, workspace: Workspace) -> dict:
     """Start and target of a scenario, as a problem describes them."""
     file, _, number = given.scenario.rpartition(":")
     if not (file and is_count(number)):
-        raise Fault(f"--scenario: {given.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1")
-    return problems.scenario(described | {"scenarios": str(File(file).resolve())}, int(number), workspace, given.map.parent)
+        raise Fault(
+            f"--scenario: {given.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1"
+        )
+    return problems.scenario(
+        described | {"scenarios": str(File(file).resolve())},
+        int(number),
+        workspace,
+        given.map.parent,
+    )
 
 
 def _write(out: File, judged: api.Judged, step: float | None) -> None:
-    """The path as a picture, as points with heading and curvature, as a GeoJSON line, or as a message of ROS."""
+    """The path as a picture, as points with heading and curvature, as a GeoJSON line, or as a
+    message of ROS.
+    """
     suffix = out.suffix.lower()
     if suffix in PICTURES:
         judged.to_picture(out)

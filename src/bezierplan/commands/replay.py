@@ -22,14 +22,22 @@ from bezierplan.workspaces.problem import Problem
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Rerun it, print the outcome and whether it equals the stored run, and save its picture below results/replay. Raises Fault."""
+    """Rerun it, print the outcome and whether it equals the stored run, and save its picture below
+    results/replay. Raises Fault.
+    """
     parser.add_argument("run", help="its name: study/experiment/condition/method/repeat")
     add_studies(parser)
     arguments = parser.parse_args(words)
-    studies = reading.load(reading.read_config({"studies": arguments.studies} if arguments.studies else {}))
+    studies = reading.load(
+        reading.read_config({"studies": arguments.studies} if arguments.studies else {})
+    )
     reproduced = replay(arguments.run, studies)
     run = reproduced.runs.iloc[0]
-    for name, text in described(run, reproduced.problems[run["problem"]], studies[run["study"]].experiments[run["experiment"]]):
+    for name, text in described(
+        run,
+        reproduced.problems[run["problem"]],
+        studies[run["study"]].experiments[run["experiment"]],
+    ):
         print(f"{name:18}{text}")
     for file, stored in stored_runs(arguments.run, Path("results")).items():
         print(f"{'stored in':18}{file}: {'equal' if equal(run, stored) else 'NOT EQUAL'}")
@@ -42,19 +50,37 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 
 def described(run: pd.Series, problem: Problem, experiment: Experiment) -> list[tuple[str, str]]:
-    """Names and values to print of a run, with units and four digits; what a run does not have is left out."""
+    """Names and values to print of a run, with units and four digits; what a run does not have is
+    left out.
+    """
     unit = problem.workspace.unit
     lines = [("objective", f"{run['objective']:.4g}")] if np.isfinite(run["objective"]) else []
     if np.isfinite(run["length"]):
-        excess = f", {100 * (run['length'] / run['bound'] - 1):.4g} % above the shortest path" if 0 < run["bound"] < np.inf else ""
+        excess = (
+            f", {100 * (run['length'] / run['bound'] - 1):.4g} % above the shortest path"
+            if 0 < run["bound"] < np.inf
+            else ""
+        )
         lines.append(("length", f"{run['length']:.4g} {unit}{excess}"))
-        lines.append(("clearance", f"{0 if abs(run['clearance']) <= checker.TOLERANCE else run['clearance']:.4g} {unit}"))
+        lines.append(
+            (
+                "clearance",
+                f"{0 if abs(run['clearance']) <= checker.TOLERANCE else run['clearance']:.4g} "
+                f"{unit}",
+            )
+        )
     lines.append(("feasible", _verdict(run, unit)))
     lines.append(("planner's check", "feasible" if run["claimed_feasible"] else "not feasible"))
     lines.append(("evaluations", f"{run['evaluations']:,}; stopped by: {run['stop']}"))
     most = max(experiment.repeats[scale] for scale in SCALES)
     if run["repeat"] >= most:
-        lines.append(("note", f"no table has this repeat: this experiment has {most} at most, from 0 to {most - 1}"))
+        lines.append(
+            (
+                "note",
+                f"no table has this repeat: this experiment has {most} at most, from 0 to "
+                f"{most - 1}",
+            )
+        )
     return lines
 
 
@@ -65,9 +91,15 @@ def _verdict(run: pd.Series, unit: str) -> str:
     if not np.isfinite(run["collision_at"]):
         return "no: no path from start to target"
     if "steps" in run:  # of a drive: when, not where
-        return f"no: first collision at step {run['collision_at']:.4g}, at most {run['collision_depth']:.4g} {unit} deep"
+        return (
+            f"no: first collision at step {run['collision_at']:.4g}, at most "
+            f"{run['collision_depth']:.4g} {unit} deep"
+        )
     x, y = curves.point_at(results.path_of(run), run["collision_at"])
-    return f"no: enters an obstacle at {x:.4g},{y:.4g}, at most {run['collision_depth']:.4g} {unit} deep"
+    return (
+        f"no: enters an obstacle at {x:.4g},{y:.4g}, at most {run['collision_depth']:.4g} "
+        f"{unit} deep"
+    )
 
 
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
@@ -87,16 +119,22 @@ def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
 
 
 def draw(made: results.Results, study: Study, file: Path) -> None:
-    """Save the picture of a reproduced run: its path, control points, first collision, if any, and the shortest path; of a drive, its end
-    with the plans; svg, png and csv.
+    """Save the picture of a reproduced run: its path, control points, first collision, if any, and
+    the shortest path; of a drive, its end with the plans; svg, png and csv.
     """
     run = made.runs.iloc[0]
-    panel = {"kind": "paths", "experiment": run["experiment"], "pick": {"repeat": int(run["repeat"])}}
+    panel = {
+        "kind": "paths",
+        "experiment": run["experiment"],
+        "pick": {"repeat": int(run["repeat"])},
+    }
     if made.worlds:
         panel |= {"kind": "snapshot", "at": 1}
     panels = [panel_of(panel)]
     unit = made.problems[run["problem"]].workspace.unit
-    scene = sheet.Scene({run["experiment"]: made.problems}, {}, study.labels, unit, jobs.looks(study))
+    scene = sheet.Scene(
+        {run["experiment"]: made.problems}, {}, study.labels, unit, jobs.looks(study)
+    )
     file.parent.mkdir(parents=True, exist_ok=True)
     frame = sheet.data(panels, Sources({run["experiment"]: made}))
     sheet.write_data(frame, str(file.with_suffix(".csv")))
@@ -108,5 +146,11 @@ def animate(made: results.Results, file: Path) -> None:
     """Save a reproduced drive as an animated gif."""
     run = made.runs.iloc[0]
     name = run["problem"]
-    ride, verdict = rides.rerun(made.jobs[run["method"]], run["condition"], int(run["repeat"]), made.problems[name], made.worlds[name])
+    ride, verdict = rides.rerun(
+        made.jobs[run["method"]],
+        run["condition"],
+        int(run["repeat"]),
+        made.problems[name],
+        made.worlds[name],
+    )
     animation.save(made.worlds[name], made.problems[name], ride, verdict, file)

@@ -1,4 +1,6 @@
-"""The workflow from any folder: `python -m bezierplan run STUDY ...` starts Snakemake with this package's Snakefile and profile."""
+"""The workflow from any folder: `python -m bezierplan run STUDY ...` starts Snakemake with this
+package's Snakefile and profile.
+"""
 
 import json
 import subprocess
@@ -23,11 +25,22 @@ examples:
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Start Snakemake and end with its status. Raises Fault if no word is given."""
     parser.formatter_class, parser.description = RawDescriptionHelpFormatter, MANUAL.strip()
-    parser.add_argument("words", nargs="*", metavar="WORD", help="a folder of a study, a target, or an option of Snakemake")
+    parser.add_argument(
+        "words",
+        nargs="*",
+        metavar="WORD",
+        help="a folder of a study, a target, or an option of Snakemake",
+    )
     words = parser.parse_known_args(words)[0] and words
     if not words:
-        raise Fault("expected at least one word, such as the folder of a study; bezierplan run --help shows examples")
-    from snakemake.cli import get_argument_parser, parse_cores  # here its absence is told as that of the extra
+        raise Fault(
+            "expected at least one word, such as the folder of a study; bezierplan run --help "
+            "shows examples"
+        )
+    from snakemake.cli import (
+        get_argument_parser,
+        parse_cores,
+    )  # here its absence is told as that of the extra
     from snakemake.exceptions import CliException
 
     started = command(words)
@@ -43,8 +56,19 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 def command(words: list[str]) -> list[str]:
     """The command that runs words."""
-    folders = [Path(word).resolve() for word in words if (Path(word) / "experiments.yaml").is_file()]
+    folders = [
+        Path(word).resolve() for word in words if (Path(word) / "experiments.yaml").is_file()
+    ]
     others = [word for word in words if not (Path(word) / "experiments.yaml").is_file()]
     studies = ["--config", f"studies={json.dumps(list(map(str, folders)))}"] if folders else []
     profile = ["--workflow-profile", str(TREE / "profiles" / "default")]
-    return [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile"), *profile, *others, *studies]
+    return [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--snakefile",
+        str(TREE / "Snakefile"),
+        *profile,
+        *others,
+        *studies,
+    ]

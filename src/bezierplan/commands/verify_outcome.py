@@ -1,6 +1,8 @@
-"""Numbers made here beside those of docs/outcome: is this installation sound? `make verify-outcome` makes the tables first.
+"""Numbers made here beside those of docs/outcome: is this installation sound? `make verify-outcome`
+makes the tables first.
 
-These are the tables that are compared with published numbers: minutes, where the whole outcome takes hours.
+These are the tables that are compared with published numbers: minutes, where the whole outcome
+takes hours.
 """
 
 import sys
@@ -22,8 +24,14 @@ SHOWN = 10
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print how many numbers agree; exit code 1 if any differs by more than chance. Raises FileNotFoundError without tables."""
-    parser.add_argument("--targets", action="store_true", help="print the tables to be made first, as targets of snakemake")
+    """Print how many numbers agree; exit code 1 if any differs by more than chance. Raises
+    FileNotFoundError without tables.
+    """
+    parser.add_argument(
+        "--targets",
+        action="store_true",
+        help="print the tables to be made first, as targets of snakemake",
+    )
     given = parser.parse_args(words)
     studies = reading.load(reading.read_config({}))
     if given.targets:
@@ -37,11 +45,18 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 def tables(studies: dict[str, Study]) -> list[tuple[str, str]]:
     """The tables compared with published numbers, by study and name."""
-    return [(key, name) for key, study in studies.items() for name, table in study.compared().items() if table.published]
+    return [
+        (key, name)
+        for key, study in studies.items()
+        for name, table in study.compared().items()
+        if table.published
+    ]
 
 
 def verified(studies: dict[str, Study]) -> pd.DataFrame:
-    """The numbers of all tables, made here and kept (`verification.compared`). Raises FileNotFoundError, and Fault if none are alike."""
+    """The numbers of all tables, made here and kept (`verification.compared`). Raises
+    FileNotFoundError, and Fault if none are alike.
+    """
     kept = verification.with_width(pd.read_csv(KEPT))
     compared = []
     for key, table in tables(studies):
@@ -52,12 +67,21 @@ def verified(studies: dict[str, Study]) -> pd.DataFrame:
         pair = verification.compared(kept[(kept["study"] == key) & (kept["table"] == table)], own)
         if pair.empty:
             raise Fault(f"{file}: none of its numbers is kept in {KEPT.relative_to(TREE)}")
-        names = pair[list(own.columns[: own.columns.get_loc("statistic") + 1])].itertuples(index=False)
+        names = pair[list(own.columns[: own.columns.get_loc("statistic") + 1])].itertuples(
+            index=False
+        )
         pair["number"] = [f"{key}/{table}/{'/'.join(name)}" for name in names]
         compared.append(pair[["number", "value_kept", "value_own", "p"]])
-    numbers = pd.concat(compared, ignore_index=True) if compared else pd.DataFrame(columns=["number", "p"])
+    numbers = (
+        pd.concat(compared, ignore_index=True)
+        if compared
+        else pd.DataFrame(columns=["number", "p"])
+    )
     if numbers["p"].notna().sum() == 0:
-        raise Fault(f"{RESULTS}: no number of {KEPT.relative_to(TREE)} is here; expected tables of the configured studies")
+        raise Fault(
+            f"{RESULTS}: no number of {KEPT.relative_to(TREE)} is here; expected tables of the "
+            f"configured studies"
+        )
     return numbers
 
 
@@ -65,9 +89,22 @@ def lines(found: pd.DataFrame, failed: pd.DataFrame) -> list[str]:
     """The outcome of the verification, one line each."""
     tested = found[found["p"].notna()]
     equal = int((tested["value_kept"] == tested["value_own"]).sum())
-    told = [f"{len(tested)} numbers compared, {equal} equal, {len(failed)} different by more than chance"]
+    told = [
+        f"{len(tested)} numbers compared, {equal} equal, {len(failed)} different by more than "
+        f"chance"
+    ]
     if failed.empty:
-        return [*told, f"sound: a sound installation fails with a probability of at most {verification.ERROR_RATE:.0%}"]
+        return [
+            *told,
+            f"sound: a sound installation fails with a probability of at most "
+            f"{verification.ERROR_RATE:.0%}",
+        ]
     for row in failed.head(SHOWN).itertuples():
-        told.append(f"  {row.number}: {row.value_own:.6g} here, {row.value_kept:.6g} kept, p = {row.p:.2g}")
-    return [*told, f"not sound: chance alone does this with a probability of at most {verification.ERROR_RATE:.0%}"]
+        told.append(
+            f"  {row.number}: {row.value_own:.6g} here, {row.value_kept:.6g} kept, p = {row.p:.2g}"
+        )
+    return [
+        *told,
+        f"not sound: chance alone does this with a probability of at most "
+        f"{verification.ERROR_RATE:.0%}",
+    ]

@@ -19,25 +19,35 @@ if TYPE_CHECKING:
     from bezierplan.workspaces.problem import Problem
     from bezierplan.workspaces.worlds import World
 
-# Frames of an animation and milliseconds of each, of the last one longer; inches, dots per inch and colours: together a few hundred kB.
+# Frames of an animation and milliseconds of each, of the last one longer; inches, dots per inch and
+# colours: together a few hundred kB.
 FRAMES = 45
 EACH, LAST = 120, 1500
 _SIDE, _DOTS, _COLOURS = 3.6, 100, 32
 
 
 def save(world: World, problem: Problem, ride: Ride, verdict: Verdict, file: Path) -> None:
-    """Save a drive as an animated gif: obstacles, way driven, current plan, and dropped plans in grey."""
+    """Save a drive as an animated gif: obstacles, way driven, current plan, and dropped plans in
+    grey.
+    """
     from PIL import Image
 
-    frames = [_frame(world, problem, ride, verdict, number / (FRAMES - 1)) for number in range(FRAMES)]
-    # The colours of one frame serve for all, so that neighbouring frames differ only where something moves.
+    frames = [
+        _frame(world, problem, ride, verdict, number / (FRAMES - 1)) for number in range(FRAMES)
+    ]
+    # The colours of one frame serve for all, so that neighbouring frames differ only where
+    # something moves.
     palette = frames[FRAMES // 2].quantize(_COLOURS, Image.Quantize.MAXCOVERAGE)
     first, *others = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     file.parent.mkdir(parents=True, exist_ok=True)
-    first.save(file, save_all=True, append_images=others, duration=[EACH] * (FRAMES - 1) + [LAST], loop=0)
+    first.save(
+        file, save_all=True, append_images=others, duration=[EACH] * (FRAMES - 1) + [LAST], loop=0
+    )
 
 
-def _frame(world: World, problem: Problem, ride: Ride, verdict: Verdict, share: float) -> Image.Image:
+def _frame(
+    world: World, problem: Problem, ride: Ride, verdict: Verdict, share: float
+) -> Image.Image:
     """The picture of a share of a drive's time."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -17,8 +17,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw(axes: Axes, problem: Problem, path: Path | None, shortest: np.ndarray, collision: tuple[float, float] | None) -> None:
-    """The map, the exact shortest path (n, 2), the path, if any, and the first collision, if any."""
+def draw(
+    axes: Axes,
+    problem: Problem,
+    path: Path | None,
+    shortest: np.ndarray,
+    collision: tuple[float, float] | None,
+) -> None:
+    """The map, the exact shortest path (n, 2), the path, if any, and the first collision, if
+    any.
+    """
     workspace.shade(axes, workspace.parts(problem.workspace))
     workspace.scale(axes, problem.workspace.unit)
     drawn = {"path": paths.steps(path)} if path else {}
@@ -29,7 +37,9 @@ def draw(axes: Axes, problem: Problem, path: Path | None, shortest: np.ndarray, 
 
 
 def save(file: File, drawn: Callable[[Axes], object]) -> None:
-    """What a function draws on axes as a picture with a legend, of the kind that the file's suffix names."""
+    """What a function draws on axes as a picture with a legend, of the kind that the file's suffix
+    names.
+    """
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

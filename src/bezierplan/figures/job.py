@@ -1,4 +1,6 @@
-"""The jobs that draw figures: from files of runs, problems, bounds and published numbers to pictures and the table of what they show."""
+"""The jobs that draw figures: from files of runs, problems, bounds and published numbers to
+pictures and the table of what they show.
+"""
 
 import importlib
 from collections.abc import Mapping
@@ -31,15 +33,24 @@ class NarrowPictures(Protocol):
     pdf: str
 
 
-def draw(job: dict[str, Any], files: Mapping[str, Files], published_files: Mapping[str, str], folder: Path, output: Pictures) -> None:
-    """Draw the figure of a job (`study.targets.figure_params`), from the table that is written first and read back.
+def draw(
+    job: dict[str, Any],
+    files: Mapping[str, Files],
+    published_files: Mapping[str, str],
+    folder: Path,
+    output: Pictures,
+) -> None:
+    """Draw the figure of a job (`study.targets.figure_params`), from the table that is written
+    first and read back.
 
-    files: by experiment. published_files: of published numbers, by table. folder: that of the study, with its maps.
+    files: by experiment. published_files: of published numbers, by table. folder: that of the
+    study, with its maps.
     """
     published = {name: results.published_table(file) for name, file in published_files.items()}
     numbers = results.joined_numbers(published)
     experiments = {
-        name: runs._replace(published=numbers, jobs=job["jobs"].get(name)) for name, runs in results.read_all(files, job["repeats"]).items()
+        name: runs._replace(published=numbers, jobs=job["jobs"].get(name))
+        for name, runs in results.read_all(files, job["repeats"]).items()
     }
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     panels, scene = _drawn(job, {name: runs.problems for name, runs in experiments.items()}, folder)
@@ -50,15 +61,32 @@ def draw(job: dict[str, Any], files: Mapping[str, Files], published_files: Mappi
     Path(output.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
 
 
-def draw_narrow(job: dict[str, Any], problems: Mapping[str, str], data: str, folder: Path, output: NarrowPictures) -> None:
-    """Draw the figure of a job on a sheet of one text column. problems: files by experiment. data: the file of what is drawn."""
-    panels, scene = _drawn(job, {name: problem_files.read(problems[name]) for name in job["repeats"]}, folder)
-    figure = sheet.draw(panels, sheet.read_data(data), scene, sheet.narrow_columns(panels), style.NARROW)
+def draw_narrow(
+    job: dict[str, Any],
+    problems: Mapping[str, str],
+    data: str,
+    folder: Path,
+    output: NarrowPictures,
+) -> None:
+    """Draw the figure of a job on a sheet of one text column. problems: files by experiment. data:
+    the file of what is drawn.
+    """
+    panels, scene = _drawn(
+        job, {name: problem_files.read(problems[name]) for name in job["repeats"]}, folder
+    )
+    figure = sheet.draw(
+        panels, sheet.read_data(data), scene, sheet.narrow_columns(panels), style.NARROW
+    )
     sheet.save(figure, output.svg, pdf=output.pdf)
 
 
-def _drawn(job: dict[str, Any], problems: dict[str, dict[str, Problem]], folder: Path) -> tuple[list[Panel], sheet.Scene]:
+def _drawn(
+    job: dict[str, Any], problems: dict[str, dict[str, Problem]], folder: Path
+) -> tuple[list[Panel], sheet.Scene]:
     """The panels of a job, and what they are drawn with. problems: by experiment, then by name."""
-    workspaces = {name: workspace_files.load(described, folder) for name, described in job["workspaces"].items()}
+    workspaces = {
+        name: workspace_files.load(described, folder)
+        for name, described in job["workspaces"].items()
+    }
     scene = sheet.Scene(problems, workspaces, job["labels"], job["unit"], job["looks"])
     return [panel_of(panel) for panel in job["spec"]["panels"]], scene

@@ -29,9 +29,10 @@ from bezierplan.workspaces.problem import Problem, Workspace
 class Scene(NamedTuple):
     """What drawings need in addition to the table of what is drawn.
 
-    problems: by experiment, then by name. workspaces: those without an experiment, by name. labels: how names are printed.
-    unit: name of the study's unit of length. looks: method -> the name of its look (`style.LOOKS`). narrow: whether panels are too narrow
-    for more than the shortest notes; set by `draw`.
+    problems: by experiment, then by name. workspaces: those without an experiment, by name. labels:
+    how names are printed. unit: name of the study's unit of length. looks: method -> the name of
+    its look (`style.LOOKS`). narrow: whether panels are too narrow for more than the shortest
+    notes; set by `draw`.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -43,8 +44,8 @@ class Scene(NamedTuple):
 
 
 def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
-    """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the first column. Raises ValueError for
-    options or runs that a kind cannot draw.
+    """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the
+    first column. Raises ValueError for options or runs that a kind cannot draw.
     """
     frames = []
     for number, panel in enumerate(panels):
@@ -64,11 +65,15 @@ def read_data(file: str) -> pd.DataFrame:
     return pd.read_csv(file, low_memory=False)  # each column read whole, with one type
 
 
-def draw(panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, width: float | None = None) -> Figure:
-    """The figure of a table made by `data`. Its label is its caption: for each panel the run that it shows, and what it counts.
+def draw(
+    panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, width: float | None = None
+) -> Figure:
+    """The figure of a table made by `data`. Its label is its caption: for each panel the run that
+    it shows, and what it counts.
 
-    frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its content. columns: panels per row. width:
-    of the sheet, in inches; left out: one text column for one column of panels, otherwise two.
+    frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its
+    content. columns: panels per row. width: of the sheet, in inches; left out: one text column for
+    one column of panels, otherwise two.
     """
     rows = math.ceil(len(panels) / columns)
     width = width or (style.NARROW if columns == 1 else style.WIDE)
@@ -76,7 +81,11 @@ def draw(panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, w
     scene = scene._replace(narrow=width / columns < style.NARROW_PANEL, labels=labels)
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
-        FigureCanvasAgg(figure)  # remembers the extents of texts, which the bare canvas of a figure measures anew for each question
+        FigureCanvasAgg(
+            figure
+            # Remembers the extents of texts, which the bare canvas of a figure measures anew for
+            # each question.
+        )
         grid = _places(figure, panels, rows, columns)
         titles, notes = [], []
         for number, panel in enumerate(panels):
@@ -90,7 +99,11 @@ def draw(panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, w
         legend = _draw_legend(figure)
         _lay_out(figure, grid, legend, _ROUNDS)
         room = 72 * figure.get_figwidth() * grid.flat[0].get_position(original=True).width
-        letters = [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]] if len(panels) > 1 else [""]
+        letters = (
+            [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]]
+            if len(panels) > 1
+            else [""]
+        )
         headings = [_heading(*each, room) for each in zip(letters, titles, notes)]
         for first in range(0, len(panels), columns):
             _write_headings(grid.flat[first : first + columns], headings[first : first + columns])
@@ -104,7 +117,9 @@ _MOST_BELOW = 4
 
 
 def narrow_columns(panels: list[Panel]) -> int:
-    """Panels side by side on a sheet of one text column: one, or two of many, which would make the sheet longer than a page."""
+    """Panels side by side on a sheet of one text column: one, or two of many, which would make the
+    sheet longer than a page.
+    """
     return 1 if len(panels) <= _MOST_BELOW or any(panel.named_rows for panel in panels) else 2
 
 
@@ -112,12 +127,17 @@ def _places(figure: Figure, panels: list[Panel], rows: int, columns: int) -> np.
     """Axes (rows, columns) for panels, row by row, including empty places in the last row."""
     projections = [getattr(kind_module(panel.kind), "PROJECTION", None) for panel in panels]
     projections += [None] * (rows * columns - len(panels))
-    places = [figure.add_subplot(rows, columns, number + 1, projection=projection) for number, projection in enumerate(projections)]
+    places = [
+        figure.add_subplot(rows, columns, number + 1, projection=projection)
+        for number, projection in enumerate(projections)
+    ]
     return np.array(places).reshape(rows, columns)
 
 
 def _title(panel: Panel, frame: pd.DataFrame, scene: Scene) -> list[str]:
-    """A panel's title, and the method whose runs it shows, if there is only one: it says how to read the curve."""
+    """A panel's title, and the method whose runs it shows, if there is only one: it says how to
+    read the curve.
+    """
     words = [_plain(panel.title)] if panel.title else []
     methods = frame["method"].dropna().unique() if "method" in frame else []
     return [*words, scene.labels.get(methods[0], methods[0])] if len(methods) == 1 else words
@@ -148,8 +168,8 @@ def _lines(title: str, room: float) -> int:
 
 
 def _heading(letter: str, title: list[str], note: Note, room: float) -> _Heading:
-    """What stands above a panel, in lines of a width in points: its title, with its method if that fits, and, if a line is left, the few
-    words. The caption has the rest.
+    """What stands above a panel, in lines of a width in points: its title, with its method if that
+    fits, and, if a line is left, the few words. The caption has the rest.
     """
     named = _lines(letter + ", ".join(title), room) <= _MOST_LINES
     told = [*([] if named else title[1:]), *([note.told] if note.told else [])]
@@ -161,10 +181,18 @@ def _heading(letter: str, title: list[str], note: Note, room: float) -> _Heading
 
 
 def _write_headings(row: np.ndarray, headings: list[_Heading]) -> None:
-    """Write the titles of a row of panels at one height, and their words between them and the panels."""
+    """Write the titles of a row of panels at one height, and their words between them and the
+    panels.
+    """
     lines = max(len(heading.words.splitlines()) for heading in headings)
     top = 3 + 1.25 * style.SMALLEST_TEXT * lines
-    place = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, top), "textcoords": "offset points", "va": "top"}
+    place = {
+        "xy": (0, 1),
+        "xycoords": "axes fraction",
+        "xytext": (0, top),
+        "textcoords": "offset points",
+        "va": "top",
+    }
     for axes, heading in zip(row, headings):
         axes.set_title(heading.title, loc="left", pad=top + 3)
         if heading.words:
@@ -176,12 +204,18 @@ def _caption(letters: list[str], told: list[list[str]]) -> str:
     same: dict[str, list[str]] = {}
     for letter, clauses in zip(letters, told):
         if clauses:
-            same.setdefault("; ".join(" ".join(clause.split()) for clause in clauses), []).append(letter.strip())
-    return " ".join(f"{', '.join(filter(None, own))} {words}.".lstrip() for words, own in same.items())
+            same.setdefault("; ".join(" ".join(clause.split()) for clause in clauses), []).append(
+                letter.strip()
+            )
+    return " ".join(
+        f"{', '.join(filter(None, own))} {words}.".lstrip() for words, own in same.items()
+    )
 
 
 def _name_axes_once(grid: np.ndarray) -> None:
-    """Keep axis names only at the left and lower edge of the panels (rows, columns) where a row or a column shares them."""
+    """Keep axis names only at the left and lower edge of the panels (rows, columns) where a row or
+    a column shares them.
+    """
     for row in grid:
         if len({axes.get_ylabel() for axes in row if axes.get_visible()}) == 1:
             for axes in row[1:]:
@@ -196,11 +230,15 @@ def _name_axes_once(grid: np.ndarray) -> None:
 @functools.cache
 def _width(text: str, size: float) -> float:
     """Width of a line of text, in points."""
-    return text_to_path.get_text_width_height_descent(text.replace(r"\$", "$"), FontProperties(size=size), ismath=False)[0]
+    return text_to_path.get_text_width_height_descent(
+        text.replace(r"\$", "$"), FontProperties(size=size), ismath=False
+    )[0]
 
 
 def _broken(text: str, room: float, size: float) -> str:
-    """Text broken after spaces, commas and slashes into lines that fit a width; width and text size in points."""
+    """Text broken after spaces, commas and slashes into lines that fit a width; width and text size
+    in points.
+    """
     lines = []
     for paragraph in text.splitlines():
         line = ""
@@ -214,7 +252,9 @@ def _broken(text: str, room: float, size: float) -> str:
 
 
 def _draw_legend(figure: Figure) -> float:
-    """One legend for all panels below them, with each label once, in as few rows as the width allows; returns the room for it in inches."""
+    """One legend for all panels below them, with each label once, in as few rows as the width
+    allows; returns the room for it in inches.
+    """
     handles = {}
     for part in itertools.chain.from_iterable((axes, *axes.child_axes) for axes in figure.axes):
         for handle, label in zip(*part.get_legend_handles_labels()):
@@ -229,11 +269,13 @@ def _draw_legend(figure: Figure) -> float:
 
 
 def _lay_out(figure: Figure, grid: np.ndarray, legend: float, rounds: int) -> None:
-    """Place panels (rows, columns), all as wide as the sheet allows, the tops of each row level, and fit the sheet's height to them.
+    """Place panels (rows, columns), all as wide as the sheet allows, the tops of each row level,
+    and fit the sheet's height to them.
 
-    Takes rounds, because the labels beside a panel depend on its size: ticks, and names of axes, which are broken to fit its sides.
-    Ticks may change to and fro with the size that they leave, so each round has room for those of the one before as well. legend: room for
-    it, in inches. Raises ValueError if labels leave no room.
+    Takes rounds, because the labels beside a panel depend on its size: ticks, and names of axes,
+    which are broken to fit its sides. Ticks may change to and fro with the size that they leave, so
+    each round has room for those of the one before as well. legend: room for it, in inches. Raises
+    ValueError if labels leave no room.
     """
     names = {axes: (_joined(axes.get_xlabel()), _joined(axes.get_ylabel())) for axes in grid.flat}
     before = np.zeros((*grid.shape, 4))
@@ -245,7 +287,10 @@ def _lay_out(figure: Figure, grid: np.ndarray, legend: float, rounds: int) -> No
         sheet_width = figure.get_figwidth()
         width = (sheet_width - (left + right).sum()) / len(left)
         if width <= 0:
-            raise ValueError("the labels leave no room for the panels; shorten them, or put fewer panels side by side (columns)")
+            raise ValueError(
+                "the labels leave no room for the panels; shorten them, or put fewer panels side "
+                "by side (columns)"
+            )
         heights = width * np.array([[_shape(axes) for axes in row] for row in grid])
         depths = np.cumsum(top + heights.max(axis=1) + bottom)
         sheet_height = depths[-1] + legend
@@ -268,32 +313,53 @@ def _joined(name: str) -> str:
 
 
 def _margins(axes: Axes) -> tuple[float, float, float, float]:
-    """How far labels extend beyond a panel to the left, to the right, below and above, in inches."""
+    """How far labels extend beyond a panel to the left, to the right, below and above, in
+    inches.
+    """
     outer = axes.get_tightbbox(for_layout_only=True)
     if outer is None:  # a place without a panel
         return 0.0, 0.0, 0.0, 0.0
     inner = axes.get_window_extent()
-    dots = np.array([inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1])
+    dots = np.array(
+        [inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1]
+    )
     return tuple(np.maximum(dots, 0) / axes.figure.dpi)
 
 
 def _shape(axes: Axes) -> float:
-    """Height of a panel as a share of its width: to scale or as its kind requires, otherwise the same for all."""
+    """Height of a panel as a share of its width: to scale or as its kind requires, otherwise the
+    same for all.
+    """
     if axes.name == "3d":
         return style.HIGH_PANEL_HEIGHT
     if axes.get_box_aspect() is not None:
         return axes.get_box_aspect()
-    return style.PANEL_HEIGHT if axes.get_aspect() == "auto" else axes.get_data_ratio() * axes.get_aspect()
+    return (
+        style.PANEL_HEIGHT
+        if axes.get_aspect() == "auto"
+        else axes.get_data_ratio() * axes.get_aspect()
+    )
 
 
 def save(figure: Figure, svg: str, png: str | None = None, pdf: str | None = None) -> None:
-    """Save a figure as svg and, if they are asked for, as png of 300 dots per inch and as pdf; equal drawings give equal bytes at any time.
-    Each picture has its caption in its metadata.
+    """Save a figure as svg and, if they are asked for, as png of 300 dots per inch and as pdf;
+    equal drawings give equal bytes at any time. Each picture has its caption in its metadata.
     """
     told = figure.get_label() or None
     with mpl.rc_context(style.SETTINGS):
-        figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None, "Description": told})
+        figure.savefig(
+            svg, format="svg", metadata={"Date": None, "Creator": None, "Description": told}
+        )
         if png:
-            figure.savefig(png, format="png", dpi=300, metadata={"Software": None} | ({"Description": told} if told else {}))
+            figure.savefig(
+                png,
+                format="png",
+                dpi=300,
+                metadata={"Software": None} | ({"Description": told} if told else {}),
+            )
         if pdf:
-            figure.savefig(pdf, format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None, "Subject": told})
+            figure.savefig(
+                pdf,
+                format="pdf",
+                metadata={"CreationDate": None, "Creator": None, "Producer": None, "Subject": told},
+            )

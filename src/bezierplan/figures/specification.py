@@ -1,6 +1,8 @@
-"""The specification curve of a study: interpretations in the order of what they explain, and which choices each of them makes.
+"""The specification curve of a study: interpretations in the order of what they explain, and which
+choices each of them makes.
 
-After Simonsohn, Simmons and Nelson (2020), "Specification curve analysis", Nature Human Behaviour 4, 1208.
+After Simonsohn, Simmons and Nelson (2020), "Specification curve analysis", Nature Human Behaviour
+4, 1208.
 """
 
 from __future__ import annotations
@@ -21,8 +23,8 @@ _ROW, _ABOVE = 0.115, 1.7  # height of a row of choices, and of the curve with i
 
 
 def draw(interpretations: pd.DataFrame, choices: list[str]) -> Figure:
-    """interpretations: as interpretations.csv, the best first. choices: the columns that hold choices; those that no interpretation changes
-    are left out.
+    """interpretations: as interpretations.csv, the best first. choices: the columns that hold
+    choices; those that no interpretation changes are left out.
     """
     with mpl.rc_context(style.SETTINGS):
         ordered = interpretations.iloc[::-1].reset_index(drop=True)
@@ -34,7 +36,9 @@ def draw(interpretations: pd.DataFrame, choices: list[str]) -> Figure:
         ]
         height = _ABOVE + _ROW * max(len(rows), 1) + 0.5
         figure = Figure(figsize=(style.WIDE, height), layout="constrained")
-        above, below = figure.subplots(2, 1, sharex=True, height_ratios=[_ABOVE, max(_ROW * len(rows), _ROW)])
+        above, below = figure.subplots(
+            2, 1, sharex=True, height_ratios=[_ABOVE, max(_ROW * len(rows), _ROW)]
+        )
         _draw_curve(above, ordered)
         _draw_choices(below, ordered, rows)
     return figure
@@ -42,11 +46,23 @@ def draw(interpretations: pd.DataFrame, choices: list[str]) -> Figure:
 
 def _draw_curve(axes: Axes, ordered: pd.DataFrame) -> None:
     place = np.arange(len(ordered))
-    axes.plot(place, ordered["in_range"], label="in range", marker="o", markersize=2.5, **style.OURS)
-    axes.plot(place, ordered["by_chance"], label="expected with the printed numbers permuted", **style.REFERENCE)
+    axes.plot(
+        place, ordered["in_range"], label="in range", marker="o", markersize=2.5, **style.OURS
+    )
+    axes.plot(
+        place,
+        ordered["by_chance"],
+        label="expected with the printed numbers permuted",
+        **style.REFERENCE,
+    )
     axes.axhline(ordered["numbers"].iloc[0], label="all", **style.BOUND)
     default = ordered.index[ordered["interpretation"] == "default"]
-    axes.plot(default, ordered["in_range"][default], label="the default interpretation", **style.PUBLISHED_MARK)
+    axes.plot(
+        default,
+        ordered["in_range"][default],
+        label="the default interpretation",
+        **style.PUBLISHED_MARK,
+    )
     axes.set_ylim(bottom=0)
     axes.set_ylabel("published numbers")
     axes.legend(loc="lower right", ncols=2)
@@ -55,7 +71,9 @@ def _draw_curve(axes: Axes, ordered: pd.DataFrame) -> None:
 def _draw_choices(axes: Axes, ordered: pd.DataFrame, rows: list[tuple[str, str]]) -> None:
     for row, (choice, value) in enumerate(rows):
         made = np.flatnonzero(ordered[choice].fillna("").astype(str) == value)
-        axes.plot(made, np.full(len(made), row), linestyle="", marker="|", markersize=5, color=style.BLACK)
+        axes.plot(
+            made, np.full(len(made), row), linestyle="", marker="|", markersize=5, color=style.BLACK
+        )
     axes.set_yticks(range(len(rows)), [f"{choice} = {value}" for choice, value in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xlabel("interpretation, ordered by how many published numbers it explains")

@@ -1,7 +1,7 @@
 """The style of every figure of the project.
 
-Colours differ in lightness as well as in hue, and items that could be confused in a grey print also differ in line style, width or mark.
-A method has one look, in all figures of all studies.
+Colours differ in lightness as well as in hue, and items that could be confused in a grey print also
+differ in line style, width or mark. A method has one look, in all figures of all studies.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ TITLE_TEXT = 8
 SETTINGS = {
     "font.family": "DejaVu Sans",  # ships with matplotlib, so it is the same everywhere
     "font.size": SMALLEST_TEXT,
-    "text.hinting": "no_hinting",  # so that a text is as wide in every file, whatever its dots per inch, as where it was laid out
+    # So that a text is as wide in every file, whatever its dots per inch, as where it was laid out.
+    "text.hinting": "no_hinting",
     "axes.titlesize": TITLE_TEXT,
     "axes.labelsize": SMALLEST_TEXT,
     "xtick.labelsize": SMALLEST_TEXT,
@@ -36,7 +37,8 @@ SETTINGS = {
     "ytick.major.size": 2.5,
     "axes.grid": False,
     "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,  # an offset above the axis would stand in the subtitle, and hide what is shown
+    # An offset above the axis would stand in the subtitle, and hide what is shown.
+    "axes.formatter.useoffset": False,
     "grid.color": "0.88",
     "grid.linewidth": 0.5,
     "lines.solid_capstyle": "butt",
@@ -61,8 +63,9 @@ RUN_SHOWN = {"color": RED, "linestyle": "-", "linewidth": 1.8}
 REFERENCE = {"color": BLACK, "linestyle": (0, (6, 1.5, 1, 1.5)), "linewidth": 0.8}
 BOUND = {"color": BLACK, "linestyle": (0, (1, 1.2)), "linewidth": 1.0}
 
-# How methods look in every figure: colour, dashes of lines, mark. All colours are at least three times as dark as paper, and those that a
-# reader may confuse, whatever his eyes, differ in dashes and marks.
+# How methods look in every figure: colour, dashes of lines, mark. All colours are at least three
+# times as dark as paper, and those that a reader may confuse, whatever his eyes, differ in dashes
+# and marks.
 LOOKS = {
     "black": ("#000000", (0, (6, 1.5, 1, 1.5)), "s"),
     "vermilion": ("#D55E00", "-", "o"),
@@ -77,7 +80,8 @@ LOOKS = {
     "olive": ("#6B7000", (0, (8, 1, 1, 1, 1, 1)), "h"),
     "violet": ("#7E67D6", (0, (2, 1)), "d"),
 }
-# What a planner looks like in all studies, unless a study gives its method another look (`looks` in artefacts.yaml).
+# What a planner looks like in all studies, unless a study gives its method another look (`looks` in
+# artefacts.yaml).
 LOOK_OF_PLANNER = {
     "rounded_shortest_path": "black",
     "shortest_path": "purple",
@@ -96,52 +100,70 @@ LOOK_OF_PLANNER = {
     "ant_colony_genetic": "blue",
     "fish_swarm_genetic": "purple",
 }
-# Numbers take their colours from a scale, the higher the lighter, without its lightest end, which is invisible on paper.
+# Numbers take their colours from a scale, the higher the lighter, without its lightest end, which
+# is invisible on paper.
 SCALE, _DARKEST, _LIGHTEST = "viridis", 0.0, 0.58
 
 BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
-PUBLISHED_MARK = {"color": BLACK, "linestyle": "", "marker": "D", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "markeredgewidth": 0.9}
+PUBLISHED_MARK = {
+    "color": BLACK,
+    "linestyle": "",
+    "marker": "D",
+    "markersize": 4.5,
+    "markerfacecolor": "#FFFFFF",
+    "markeredgewidth": 0.9,
+}
 
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
-# A panel narrower than this, in inches, shows only the shortest notes, and names its axes only at the edge of the sheet.
+# A panel narrower than this, in inches, shows only the shortest notes, and names its axes only at
+# the edge of the sheet.
 NARROW_PANEL = 2.0
 
-# Intervals of more lines than this in one panel are drawn as bars at their points or at their ends: more bands on top of each other hide
-# the lines.
+# Intervals of more lines than this in one panel are drawn as bars at their points or at their ends:
+# more bands on top of each other hide the lines.
 MOST_BANDS = 5
 
-# A panel whose lengths of time are shorter than this, in seconds, shows them in milliseconds. Values that differ by more than this factor
-# are drawn on a logarithmic axis. An axis shows at least this share of its values.
+# A panel whose lengths of time are shorter than this, in seconds, shows them in milliseconds.
+# Values that differ by more than this factor are drawn on a logarithmic axis. An axis shows at
+# least this share of its values.
 _SHORT, _WIDE_RANGE, _LEAST_SPAN = 0.1, 10.0, 0.01
 
-# Height of a panel with two unlike axes, as a share of its width: by default, and if names beside it need height and leave little width.
-# Room between panels, in inches.
+# Height of a panel with two unlike axes, as a share of its width: by default, and if names beside
+# it need height and leave little width. Room between panels, in inches.
 PANEL_HEIGHT = 0.62
 HIGH_PANEL_HEIGHT = 0.9
 GAP = 0.1
 
 
 def ground(share: float) -> str:
-    """The colour of terrain at a share of the range from the lowest to the highest: pale, so that lines stand out."""
+    """The colour of terrain at a share of the range from the lowest to the highest: pale, so that
+    lines stand out.
+    """
     import matplotlib as mpl
 
     return mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))
 
 
 def interval_band(colour: str) -> dict[str, Any]:
-    """The style of a line's interval: pale in the line's colour, with an edge that stays visible where bands overlap."""
+    """The style of a line's interval: pale in the line's colour, with an edge that stays visible
+    where bands overlap.
+    """
     return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
 
 
 def looks_of(planners: Mapping[str, str], declared: Mapping[str, str]) -> dict[str, str]:
-    """Method -> the name of its look in every figure: the declared one, else its planner's, else one that few other methods have.
+    """Method -> the name of its look in every figure: the declared one, else its planner's, else
+    one that few other methods have.
 
     planners: method -> planner.
     """
-    looks = {method: declared.get(method) or LOOK_OF_PLANNER.get(planner) for method, planner in planners.items()}
+    looks = {
+        method: declared.get(method) or LOOK_OF_PLANNER.get(planner)
+        for method, planner in planners.items()
+    }
     for method, look in looks.items():
         if look is None:
             counts = Counter(filter(None, looks.values()))
@@ -149,17 +171,26 @@ def looks_of(planners: Mapping[str, str], declared: Mapping[str, str]) -> dict[s
     return {method: str(look) for method, look in looks.items()}
 
 
-def lines(values: list[Any], looks: Mapping[str, str] = MappingProxyType({})) -> list[dict[str, Any]]:
-    """Styles of lines for values side by side, one each: a colour scale for numbers; for methods their looks; else looks in order.
+def lines(
+    values: list[Any], looks: Mapping[str, str] = MappingProxyType({})
+) -> list[dict[str, Any]]:
+    """Styles of lines for values side by side, one each: a colour scale for numbers; for methods
+    their looks; else looks in order.
 
-    looks: method -> the name of its look. A look that another of the values has already is replaced by the next one that is free.
+    looks: method -> the name of its look. A look that another of the values has already is replaced
+    by the next one that is free.
     """
     import matplotlib as mpl
 
     if len(values) > 1 and not isinstance(values[0], str):
         scale = mpl.colormaps[SCALE]
-        colours = [mpl.colors.to_hex(scale(_DARKEST + (_LIGHTEST - _DARKEST) * i / (len(values) - 1))) for i in range(len(values))]
-        parts = [(colour, *list(LOOKS.values())[i % len(LOOKS)][1:]) for i, colour in enumerate(colours)]
+        colours = [
+            mpl.colors.to_hex(scale(_DARKEST + (_LIGHTEST - _DARKEST) * i / (len(values) - 1)))
+            for i in range(len(values))
+        ]
+        parts = [
+            (colour, *list(LOOKS.values())[i % len(LOOKS)][1:]) for i, colour in enumerate(colours)
+        ]
     else:
         names: list[str] = []
         for value in values:
@@ -167,11 +198,16 @@ def lines(values: list[Any], looks: Mapping[str, str] = MappingProxyType({})) ->
             free = [name for name in LOOKS if name not in names] or list(LOOKS)
             names.append(own if own is not None and own not in names else free[0])
         parts = [LOOKS[name] for name in names]
-    return [{"color": colour, "linestyle": dashes, "marker": mark, "linewidth": 1.1, "markersize": 3.5} for colour, dashes, mark in parts]
+    return [
+        {"color": colour, "linestyle": dashes, "marker": mark, "linewidth": 1.1, "markersize": 3.5}
+        for colour, dashes, mark in parts
+    ]
 
 
 def is_wide(values: Iterable[float]) -> bool:
-    """Whether values that an axis shows need a logarithmic scale: all positive, with a large ratio of the largest to the smallest."""
+    """Whether values that an axis shows need a logarithmic scale: all positive, with a large ratio
+    of the largest to the smallest.
+    """
     import numpy as np
 
     known = np.array([value for value in values if np.isfinite(value)])
@@ -179,8 +215,9 @@ def is_wide(values: Iterable[float]) -> bool:
 
 
 def fit(axis: Any, values: Iterable[float], middles: Iterable[float]) -> None:
-    """Scale an axis of measured values: logarithmic, with plain numbers, if what is compared differs widely; otherwise no closer than a
-    hundredth of the values, so that what differs by less looks equal.
+    """Scale an axis of measured values: logarithmic, with plain numbers, if what is compared
+    differs widely; otherwise no closer than a hundredth of the values, so that what differs by less
+    looks equal.
 
     middles: a typical value of each method or group that is compared.
     """
@@ -192,7 +229,9 @@ def fit(axis: Any, values: Iterable[float], middles: Iterable[float]) -> None:
     if is_wide(middles) and known.min() > 0:
         (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
         set_limits(known.min() / 1.5, known.max() * 1.5)
-        axis.set_major_locator(LogLocator(subs=(1.0,) if known.max() > 300 * known.min() else (1.0, 3.0)))
+        axis.set_major_locator(
+            LogLocator(subs=(1.0,) if known.max() > 300 * known.min() else (1.0, 3.0))
+        )
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
         axis.set_minor_formatter(NullFormatter())
         return
@@ -215,7 +254,9 @@ def in_milliseconds(axis: Any, values: Iterable[float]) -> None:
 
 
 def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
-    """The distinct values of a column: those in a panel's `where`, in its order, then the others, sorted."""
+    """The distinct values of a column: those in a panel's `where`, in its order, then the others,
+    sorted.
+    """
     wanted = where.get(values.name)
     listed = wanted if isinstance(wanted, list) else []
     present = values.dropna().unique().tolist()
@@ -223,8 +264,14 @@ def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
 
 
 def printed(value: Any, column: str, labels: dict[str, str]) -> str:
-    """How a value of a column is printed: a name as its label, a number after the column's label."""
-    return labels.get(value, value) if isinstance(value, str) else f"{column_name(column, labels)} = {value:g}"
+    """How a value of a column is printed: a name as its label, a number after the column's
+    label.
+    """
+    return (
+        labels.get(value, value)
+        if isinstance(value, str)
+        else f"{column_name(column, labels)} = {value:g}"
+    )
 
 
 def column_name(column: str, labels: dict[str, str]) -> str:

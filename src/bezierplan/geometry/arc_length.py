@@ -12,7 +12,9 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 @allocation_free
 def _speed(differences: np.ndarray, t: float) -> float:
-    """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule in Bernstein form."""
+    """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule in
+    Bernstein form.
+    """
     n = len(differences) - 1
     s = 1.0 - t
     first = s if n else 1.0
@@ -32,8 +34,12 @@ def _speed(differences: np.ndarray, t: float) -> float:
 
 
 @allocation_free
-def _integral(differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray) -> float:
-    """Gauss-Legendre quadrature of the speed between two parameters; nodes, weights: (n,), on -1 to 1."""
+def _integral(
+    differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray
+) -> float:
+    """Gauss-Legendre quadrature of the speed between two parameters; nodes, weights: (n,), on -1 to
+    1.
+    """
     total = 0.0
     for node, weight in zip(nodes, weights):
         total += weight * _speed(differences, 0.5 * ((high - low) * node + high + low))
@@ -42,9 +48,11 @@ def _integral(differences: np.ndarray, low: float, high: float, nodes: np.ndarra
 
 @compiled
 def piece_length(piece: np.ndarray) -> float:
-    """Arc length of one Bezier piece (degree + 1, 2), in its unit, to a relative 1e-10, by adaptive Gauss-Legendre quadrature of its speed.
+    """Arc length of one Bezier piece (degree + 1, 2), in its unit, to a relative 1e-10, by adaptive
+    Gauss-Legendre quadrature of its speed.
 
-    Orders 8 and 16 are compared on each interval, which is halved if they differ; a cusp costs only about twenty halvings.
+    Orders 8 and 16 are compared on each interval, which is halved if they differ; a cusp costs only
+    about twenty halvings.
     """
     if len(piece) == 2:
         return math.hypot(piece[1, 0] - piece[0, 0], piece[1, 1] - piece[0, 1])

@@ -1,10 +1,12 @@
-"""The cells that a path touches, and lengths that count cells: 1 for a straight step, 1.5 for a diagonal one (elhoseny2017, Section 4.6).
+"""The cells that a path touches, and lengths that count cells: 1 for a straight step, 1.5 for a
+diagonal one (elhoseny2017, Section 4.6).
 
-The paper does not say which cells of a curve it counts. `cells4` counts every cell that the curve touches: a free diagonal of N cells costs
-1.5 N, any other curve that is monotone in x and y about 2 N. `cells8` leaves out the corner cells of that sequence, as line rasterisation
-usually does.
+The paper does not say which cells of a curve it counts. `cells4` counts every cell that the curve
+touches: a free diagonal of N cells costs 1.5 N, any other curve that is monotone in x and y about 2
+N. `cells8` leaves out the corner cells of that sequence, as line rasterisation usually does.
 
-In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i reaches from i to i + 1.
+In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i
+reaches from i to i + 1.
 """
 
 import math
@@ -19,8 +21,8 @@ from bezierplan.workspaces.problem import Path
 STRAIGHT = 1.0
 DIAGONAL = 1.5
 
-# A coordinate this close to a grid line, in cells, keeps the cell of the previous sample. Otherwise rounding would decide, and the two
-# diagonals of a field would differ in length.
+# A coordinate this close to a grid line, in cells, keeps the cell of the previous sample. Otherwise
+# rounding would decide, and the two diagonals of a field would differ in length.
 _ON_LINE = 1e-9
 
 # Two grid lines that a segment crosses at parameters this close are crossed at their corner.
@@ -35,15 +37,18 @@ _CENTRE = 1e-9
 
 @allocation_free
 def parts(points: np.ndarray) -> int:
-    """Number of equal parameter intervals over each of which a Bezier piece (degree + 1, 2), in cells, moves less than one cell.
+    """Number of equal parameter intervals over each of which a Bezier piece (degree + 1, 2), in
+    cells, moves less than one cell.
 
-    The parts of a straight piece are at most half a cell long. The speed of a curve is at most its degree times the longest leg of its
-    polygon.
+    The parts of a straight piece are at most half a cell long. The speed of a curve is at most its
+    degree times the longest leg of its polygon.
     """
     degree = len(points) - 1
     total = longest = 0.0
     for i in range(degree):
-        leg = math.sqrt((points[i + 1, 0] - points[i, 0]) ** 2 + (points[i + 1, 1] - points[i, 1]) ** 2)
+        leg = math.sqrt(
+            (points[i + 1, 0] - points[i, 0]) ** 2 + (points[i + 1, 1] - points[i, 1]) ** 2
+        )
         total += leg
         longest = max(longest, leg)
     if degree == 1:
@@ -60,14 +65,24 @@ def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
 
 @allocation_free
 def write_samples(
-    points: np.ndarray, last: int, first: int, stride: int, count: int, x: np.ndarray, y: np.ndarray, t: np.ndarray, power: np.ndarray
+    points: np.ndarray,
+    last: int,
+    first: int,
+    stride: int,
+    count: int,
+    x: np.ndarray,
+    y: np.ndarray,
+    t: np.ndarray,
+    power: np.ndarray,
 ) -> None:
-    """Write x and y of a Bezier piece (degree + 1, 2) at `count` parameters: first / last, (first + stride) / last, ..., at most 1.
+    """Write x and y of a Bezier piece (degree + 1, 2) at `count` parameters: first / last, (first +
+    stride) / last, ..., at most 1.
 
     t, power: (count,) or more, scratch.
 
-    Horner's rule in Bernstein form, all weights positive, for all samples at once; two control points at a time, so that each sample is
-    read and written fewer times. A sample is the same to the last bit, whichever others are written with it.
+    Horner's rule in Bernstein form, all weights positive, for all samples at once; two control
+    points at a time, so that each sample is read and written fewer times. A sample is the same to
+    the last bit, whichever others are written with it.
     """
     degree = len(points) - 1
     for s in range(count):
@@ -99,7 +114,9 @@ def write_samples(
 
 @allocation_free
 def _cell(coordinate: float, before: int) -> int:
-    """Column or row of a coordinate; on a grid line that of the previous sample, if it is next to the line."""
+    """Column or row of a coordinate; on a grid line that of the previous sample, if it is next to
+    the line.
+    """
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
         return before
@@ -107,7 +124,8 @@ def _cell(coordinate: float, before: int) -> int:
 
 
 def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Columns and rows of the cells that a polyline touches, in order; consecutive vertices are less than a cell apart.
+    """Columns and rows of the cells that a polyline touches, in order; consecutive vertices are
+    less than a cell apart.
 
     A step is diagonal only where the polyline passes through a corner of cells.
     """
@@ -141,7 +159,9 @@ def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows:
 
 @allocation_free
 def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
-    """Number of cells of a sequence that are occupied or outside the grid; `occupied` is bool (rows, columns)."""
+    """Number of cells of a sequence that are occupied or outside the grid; `occupied` is bool
+    (rows, columns).
+    """
     count = 0
     for i in range(len(columns)):
         inside = 0 <= rows[i] < occupied.shape[0] and 0 <= columns[i] < occupied.shape[1]
@@ -153,13 +173,19 @@ def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) 
 def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
     """Whether all cells that a straight leg touches are free; cells outside the grid are not free.
 
-    These are the cells of `touched_cells`, found without samples: from grid line to grid line. A leg counts as passing through a corner if
-    it comes so close that no sample could tell the difference, so no leg is free here that is not free there.
+    These are the cells of `touched_cells`, found without samples: from grid line to grid line. A
+    leg counts as passing through a corner if it comes so close that no sample could tell the
+    difference, so no leg is free here that is not free there.
     """
     rows, columns = occupied.shape
     column, row = math.floor(x0), math.floor(y0)
     last_column, last_row = _last_cell(x0, x1), _last_cell(y0, y1)
-    if min(column, last_column) < 0 or max(column, last_column) >= columns or min(row, last_row) < 0 or max(row, last_row) >= rows:
+    if (
+        min(column, last_column) < 0
+        or max(column, last_column) >= columns
+        or min(row, last_row) < 0
+        or max(row, last_row) >= rows
+    ):
         return False
     if occupied[row, column]:
         return False
@@ -203,11 +229,17 @@ def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
 
 @allocation_free
 def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
-    """Length of a sequence of cells in which two straight steps that form a diagonal one are replaced by it, from the beginning onwards."""
+    """Length of a sequence of cells in which two straight steps that form a diagonal one are
+    replaced by it, from the beginning onwards.
+    """
     length = 0.0
     i = 0
     while i < len(columns) - 1:
-        if i + 2 < len(columns) and abs(columns[i + 2] - columns[i]) == 1 and abs(rows[i + 2] - rows[i]) == 1:
+        if (
+            i + 2 < len(columns)
+            and abs(columns[i + 2] - columns[i]) == 1
+            and abs(rows[i + 2] - rows[i]) == 1
+        ):
             one_step = columns[i + 1] == columns[i] or rows[i + 1] == rows[i]
             if one_step and (columns[i + 2] == columns[i + 1] or rows[i + 2] == rows[i + 1]):
                 length += DIAGONAL
@@ -226,14 +258,19 @@ def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
 
 @allocation_free
 def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
-    """`polyline_length`, for kernels. steps: scratch, at least as many numbers as in a block or as steps."""
-    # Square roots and their sum are computed in two loops, so that the first can use vector instructions, and the order of the sum stays as
-    # written; by blocks, so that a processor takes the roots of one block while it still adds those of the one before.
+    """`polyline_length`, for kernels. steps: scratch, at least as many numbers as in a block or as
+    steps.
+    """
+    # Square roots and their sum are computed in two loops, so that the first can use vector
+    # instructions, and the order of the sum stays as written; by blocks, so that a processor takes
+    # the roots of one block while it still adds those of the one before.
     length = 0.0
     for first in range(0, len(x) - 1, _BLOCK):
         size = min(_BLOCK, len(x) - 1 - first)
         for s in range(size):
-            steps[s] = math.sqrt((x[first + s + 1] - x[first + s]) ** 2 + (y[first + s + 1] - y[first + s]) ** 2)
+            steps[s] = math.sqrt(
+                (x[first + s + 1] - x[first + s]) ** 2 + (y[first + s + 1] - y[first + s]) ** 2
+            )
         for s in range(size):
             length += steps[s]
     return length
@@ -241,7 +278,9 @@ def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
 
 def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """x and y of samples of a path, in cells, less than a cell apart."""
-    xs, ys = zip(*(sample(piece, parts(piece)) for piece in grid.in_cells(curves.bezier_pieces(path))))
+    xs, ys = zip(
+        *(sample(piece, parts(piece)) for piece in grid.in_cells(curves.bezier_pieces(path)))
+    )
     return np.concatenate(xs), np.concatenate(ys)
 
 
@@ -257,7 +296,8 @@ def length4(path: Path, grid: Grid) -> float:
 
 
 def length8(path: Path, grid: Grid) -> float:
-    """`cells8` of a path, in units. A path that runs from centre to centre of neighbouring cells is measured on exactly these cells.
+    """`cells8` of a path, in units. A path that runs from centre to centre of neighbouring cells is
+    measured on exactly these cells.
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
@@ -269,7 +309,9 @@ def length8(path: Path, grid: Grid) -> float:
 
 
 def _is_cell_path(path: Path, grid: Grid) -> bool:
-    """Whether a path is a polyline through centres of cells, whose legs run along rows, columns and diagonals."""
+    """Whether a path is a polyline through centres of cells, whose legs run along rows, columns and
+    diagonals.
+    """
     if path.curve != "polyline":
         return False
     points = grid.in_cells(path.points) - 0.5

@@ -1,8 +1,9 @@
 """The largest curvature of a path, certified: by halving its pieces, not by samples.
 
-The curvature of a piece is p' x p'' / |p'|^3. Numerator and |p'|^2 are polynomials, which lie between their least and their largest
-coefficient in Bernstein form; so the quotient of these bounds that of the functions. A part is halved as long as its bound is above the
-largest curvature that is attained so far by more than `CURVATURE_TOLERANCE`.
+The curvature of a piece is p' x p'' / |p'|^3. Numerator and |p'|^2 are polynomials, which lie
+between their least and their largest coefficient in Bernstein form; so the quotient of these bounds
+that of the functions. A part is halved as long as its bound is above the largest curvature that is
+attained so far by more than `CURVATURE_TOLERANCE`.
 """
 
 import math
@@ -19,15 +20,20 @@ CURVATURE_TOLERANCE = 1e-6
 # A part that turns by less than this, in radians, is straight: it is rounding.
 _STRAIGHT = 1e-13
 
-# A share of a piece this short whose curvature is still not bounded stands still or turns on the spot.
+# A share of a piece this short whose curvature is still not bounded stands still or turns on the
+# spot.
 _SHORTEST = 1e-9
 
-_BINOMIAL = np.array([[math.comb(n, k) for k in range(2 * LARGEST_DEGREE)] for n in range(2 * LARGEST_DEGREE)], dtype=float)
+_BINOMIAL = np.array(
+    [[math.comb(n, k) for k in range(2 * LARGEST_DEGREE)] for n in range(2 * LARGEST_DEGREE)],
+    dtype=float,
+)
 
 
 class LargestCurvature(NamedTuple):
-    """attained: a curvature, absolute, that the path has somewhere. bound: one that it has nowhere more than; infinite at a cusp, and where
-    it stands still. Both in 1/unit; a corner between two pieces has none.
+    """attained: a curvature, absolute, that the path has somewhere. bound: one that it has nowhere
+    more than; infinite at a cusp, and where it stands still. Both in 1/unit; a corner between two
+    pieces has none.
     """
 
     attained: float
@@ -38,13 +44,20 @@ def largest_curvature(pieces: np.ndarray) -> LargestCurvature:
     """The largest curvature of Bezier pieces (pieces, degree + 1, 2) of a degree of at most 60."""
     if pieces.shape[1] < 3:
         return LargestCurvature(0.0, 0.0)
-    # Velocities are halved, not points: differences of points that are close to each other would lose digits.
-    return LargestCurvature(*_largest(np.ascontiguousarray((pieces.shape[1] - 1) * np.diff(pieces, axis=1), dtype=float)))
+    # Velocities are halved, not points: differences of points that are close to each other would
+    # lose digits.
+    return LargestCurvature(
+        *_largest(
+            np.ascontiguousarray((pieces.shape[1] - 1) * np.diff(pieces, axis=1), dtype=float)
+        )
+    )
 
 
 @compiled
 def _largest(velocities):
-    """Both values of `LargestCurvature` from the control vectors (pieces, degree, 2) of the velocities."""
+    """Both values of `LargestCurvature` from the control vectors (pieces, degree, 2) of the
+    velocities.
+    """
     stack, width = np.empty((STACK, velocities.shape[1], 2)), np.empty(STACK)
     attained = bound = 0.0
     for piece in range(len(velocities)):
@@ -69,9 +82,13 @@ def _largest(velocities):
 
 @allocation_free
 def _at_ends(velocities, width):
-    """Curvature at both ends of a part of a piece, which is the given share of it; 0 where it stands still there."""
+    """Curvature at both ends of a part of a piece, which is the given share of it; 0 where it
+    stands still there.
+    """
     m = len(velocities) - 1
-    return _at_end(velocities[0], velocities[1], m / width), _at_end(velocities[m], velocities[m - 1], m / width)
+    return _at_end(velocities[0], velocities[1], m / width), _at_end(
+        velocities[m], velocities[m - 1], m / width
+    )
 
 
 @allocation_free
@@ -99,7 +116,11 @@ def _bound(velocities, width):
         for i in range(max(0, k - m + 1), min(m, k) + 1):
             j = k - i
             x, y = velocities[j + 1, 0] - velocities[j, 0], velocities[j + 1, 1] - velocities[j, 1]
-            cross += _BINOMIAL[m, i] * _BINOMIAL[m - 1, j] * (velocities[i, 0] * y - velocities[i, 1] * x)
+            cross += (
+                _BINOMIAL[m, i]
+                * _BINOMIAL[m - 1, j]
+                * (velocities[i, 0] * y - velocities[i, 1] * x)
+            )
         largest = max(largest, m * abs(cross) / _BINOMIAL[2 * m - 1, k])
     if largest <= _STRAIGHT * fastest:
         return 0.0

@@ -1,14 +1,18 @@
-"""Every curve kind as one linear map from control points to Bezier pieces; samples, exact length, curvature.
+"""Every curve kind as one linear map from control points to Bezier pieces; samples, exact length,
+curvature.
 
-Four kinds are clamped uniform B-splines of n control points and differ only in degree: `polyline` (1), `piecewise_quadratic` (2),
-`piecewise_cubic` (3), and `bezier` (n - 1, which has one piece). A piece of a B-spline is a Bezier curve whose control points are values of
-the spline's blossom (its polar form).
+Four kinds are clamped uniform B-splines of n control points and differ only in degree: `polyline`
+(1), `piecewise_quadratic` (2), `piecewise_cubic` (3), and `bezier` (n - 1, which has one piece). A
+piece of a B-spline is a Bezier curve whose control points are values of the spline's blossom (its
+polar form).
 
-Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform parameters, with not-a-knot ends.
-`ferguson` is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and its tangent, the
-derivative with respect to the piece's own parameter: P0, T0, V, TV, ..., P1, T1.
+Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform
+parameters, with not-a-knot ends. `ferguson` is a chain of cubic Hermite pieces (tharwat2018's
+reference 33); its control points are pairs of a point and its tangent, the derivative with respect
+to the piece's own parameter: P0, T0, V, TV, ..., P1, T1.
 
-A `cubic_chain` is any chain of cubic Bezier pieces, each beginning where the previous one ends: 3 k + 1 control points for k pieces.
+A `cubic_chain` is any chain of cubic Bezier pieces, each beginning where the previous one ends: 3 k
++ 1 control points for k pieces.
 """
 
 import math
@@ -22,8 +26,8 @@ _DEGREE = {"polyline": 1, "piecewise_quadratic": 2, "piecewise_cubic": 3, "bezie
 B_SPLINES = tuple(_DEGREE)
 CURVES = (*B_SPLINES, "spline", "ferguson", "cubic_chain")
 
-# Below this share of the curve's highest speed a point counts as standing still, as happens with repeated control points; curvature is
-# undefined there.
+# Below this share of the curve's highest speed a point counts as standing still, as happens with
+# repeated control points; curvature is undefined there.
 STANDSTILL = 1e-3
 
 
@@ -35,12 +39,16 @@ def least_points(curve: str) -> int:
 
 
 def ends(curve: str) -> tuple[int, int]:
-    """Which control points are start and target; the last one of a `ferguson` curve is a tangent."""
+    """Which control points are start and target; the last one of a `ferguson` curve is a
+    tangent.
+    """
     return (0, -2) if curve == "ferguson" else (0, -1)
 
 
 def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
-    """Weights (degree + 1,) of the control points span - degree .. span in a spline's blossom at `degree` arguments."""
+    """Weights (degree + 1,) of the control points span - degree .. span in a spline's blossom at
+    `degree` arguments.
+    """
     degree = len(arguments)
     rows = np.eye(degree + 1)
     for level, u in enumerate(arguments, start=1):
@@ -56,13 +64,16 @@ def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
 def piece_matrix(curve: str, points: int) -> np.ndarray:
     """The linear map from control points to Bezier pieces: (pieces, degree + 1, points). Read-only.
 
-    Raises ValueError for an unknown kind, for too few control points, for an odd number of control points of a `ferguson` curve, and for a
-    number other than 3 k + 1 of a `cubic_chain`.
+    Raises ValueError for an unknown kind, for too few control points, for an odd number of control
+    points of a `ferguson` curve, and for a number other than 3 k + 1 of a `cubic_chain`.
     """
     if curve not in CURVES:
         raise ValueError(f"unknown curve {curve!r}; known: {', '.join(CURVES)}")
     if points < least_points(curve):
-        raise ValueError(f"a curve of kind {curve} needs at least {least_points(curve)} control points, not {points}")
+        raise ValueError(
+            f"a curve of kind {curve} needs at least {least_points(curve)} control points, not "
+            f"{points}"
+        )
     if curve == "ferguson":
         matrix = _ferguson_pieces(points)
     elif curve == "cubic_chain":
@@ -79,12 +90,16 @@ def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
     pieces = points - degree
     if degree == 1:  # chords; ways that were driven have hundreds
         return np.eye(points)[_legs(points)]
-    knots = np.concatenate([np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))])
+    knots = np.concatenate(
+        [np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))]
+    )
     matrix = np.zeros((pieces, degree + 1, points))
     for piece in range(pieces):
         for k in range(degree + 1):
             arguments = np.array([piece] * (degree - k) + [piece + 1.0] * k)
-            matrix[piece, k, piece : piece + degree + 1] = _blossom(knots, piece + degree, arguments)
+            matrix[piece, k, piece : piece + degree + 1] = _blossom(
+                knots, piece + degree, arguments
+            )
     return matrix
 
 
@@ -111,18 +126,26 @@ def _legs(points: int) -> np.ndarray:
 
 def _ferguson_pieces(points: int) -> np.ndarray:
     if points % 2:
-        raise ValueError(f"a curve of kind ferguson needs an even number of control points, not {points}")
+        raise ValueError(
+            f"a curve of kind ferguson needs an even number of control points, not {points}"
+        )
     rows = np.eye(points)
     return _hermite_pieces(rows[::2], rows[1::2])
 
 
 def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Cubic pieces between consecutive values (n, points) with the slopes (n, points) there, with respect to the parameter of a piece."""
-    return np.stack([values[:-1], values[:-1] + slopes[:-1] / 3, values[1:] - slopes[1:] / 3, values[1:]], axis=1)
+    """Cubic pieces between consecutive values (n, points) with the slopes (n, points) there, with
+    respect to the parameter of a piece.
+    """
+    return np.stack(
+        [values[:-1], values[:-1] + slopes[:-1] / 3, values[1:] - slopes[1:] / 3, values[1:]],
+        axis=1,
+    )
 
 
 def bezier_pieces(path: Path) -> np.ndarray:
-    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the previous one ends.
+    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where
+    the previous one ends.
 
     A quadratic B-spline has a joint in the middle of each inner leg of its control polygon:
 
@@ -140,21 +163,26 @@ def bezier_pieces(path: Path) -> np.ndarray:
 
 
 def moved(path: Path, by: tuple[float, float]) -> Path:
-    """A path whose coordinates are larger by a shift. Of a `ferguson` curve every other control point is a tangent, which stays."""
+    """A path whose coordinates are larger by a shift. Of a `ferguson` curve every other control
+    point is a tangent, which stays.
+    """
     points = np.array(path.points, dtype=float)
     points[:: 2 if path.curve == "ferguson" else 1] += by
     return Path(path.curve, points)
 
 
 def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
-    """Bernstein polynomials (len(t), degree + 1) at parameters t in [0, 1] (song2016, eq. 2; tharwat2018, eq. 2)."""
+    """Bernstein polynomials (len(t), degree + 1) at parameters t in [0, 1] (song2016, eq. 2;
+    tharwat2018, eq. 2).
+    """
     k = np.arange(degree + 1)
     binomial = np.array([math.comb(degree, i) for i in k], dtype=float)
     return binomial * t[:, None] ** k * (1 - t[:, None]) ** (degree - k)
 
 
 def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Piece (samples,) and parameter within it (samples,) for parameters that are uniform over a whole curve, both ends included.
+    """Piece (samples,) and parameter within it (samples,) for parameters that are uniform over a
+    whole curve, both ends included.
 
     Joints are hit exactly: the parameters are quotients of integers.
     """
@@ -165,7 +193,9 @@ def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray
 
 @cache
 def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
-    """The linear map from control points to samples, uniform in the parameter over the whole curve: (samples, points). Read-only."""
+    """The linear map from control points to samples, uniform in the parameter over the whole curve:
+    (samples, points). Read-only.
+    """
     matrix = piece_matrix(curve, points)
     piece, t = sample_parameters(len(matrix), samples)
     basis = np.einsum("sk,skp->sp", bernstein(matrix.shape[1] - 1, t), matrix[piece])
@@ -174,7 +204,9 @@ def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
 
 
 def point_at(path: Path, at: float) -> np.ndarray:
-    """The point (2,) of a path at a piece's number plus the parameter within the piece, in the path's unit."""
+    """The point (2,) of a path at a piece's number plus the parameter within the piece, in the
+    path's unit.
+    """
     pieces = bezier_pieces(path)
     piece = min(int(at), len(pieces) - 1)
     return bernstein(pieces.shape[1] - 1, np.array([at - piece]))[0] @ pieces[piece]
@@ -203,10 +235,11 @@ def length_of(pieces: np.ndarray) -> float:
 
 
 def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature along a path (song2016, eq. 5): values (samples,) in 1/unit, and the speeds (samples,) at the same parameters.
+    """Curvature along a path (song2016, eq. 5): values (samples,) in 1/unit, and the speeds
+    (samples,) at the same parameters.
 
-    The value is nan where the curve stands still (`STANDSTILL`). song2016's eq. 4 prints a dot over the control points in the second
-    derivative; the formula needs the points themselves.
+    The value is nan where the curve stands still (`STANDSTILL`). song2016's eq. 4 prints a dot over
+    the control points in the second derivative; the formula needs the points themselves.
     """
     pieces = bezier_pieces(path)
     piece, t = sample_parameters(len(pieces), samples)
@@ -214,12 +247,18 @@ def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature (n,) and speed (n,) of the piece pieces[i] (n, degree + 1, 2) at the parameter t[i]."""
+    """Curvature (n,) and speed (n,) of the piece pieces[i] (n, degree + 1, 2) at the parameter
+    t[i].
+    """
     degree = pieces.shape[1] - 1
     first = degree * np.einsum("sk,skd->sd", bernstein(degree - 1, t), np.diff(pieces, axis=1))
     second = np.zeros_like(first)
     if degree > 1:
-        second = degree * (degree - 1) * np.einsum("sk,skd->sd", bernstein(degree - 2, t), np.diff(pieces, n=2, axis=1))
+        second = (
+            degree
+            * (degree - 1)
+            * np.einsum("sk,skd->sd", bernstein(degree - 2, t), np.diff(pieces, n=2, axis=1))
+        )
     speed = np.hypot(first[:, 0], first[:, 1])
     moving = speed > STANDSTILL * speed.max()
     kappa = np.full(len(t), np.nan)
@@ -229,9 +268,11 @@ def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def curvature_jump(path: Path) -> float:
-    """Largest jump in curvature across the joints of a path, in 1/unit, from the end values of the pieces.
+    """Largest jump in curvature across the joints of a path, in 1/unit, from the end values of the
+    pieces.
 
-    Joints where either side stands still are left out; 0 if there are no joints, infinite where the tangent turns.
+    Joints where either side stands still are left out; 0 if there are no joints, infinite where the
+    tangent turns.
     """
     pieces = bezier_pieces(path)
     if len(pieces) == 1:

@@ -12,22 +12,39 @@ from bezierplan.geometry.samples import Samples
 
 
 def write_csv(file: Path, samples: Samples) -> None:
-    """A heading row, then distance, x, y, heading and curvature of each sample, with nine digits; large coordinates with more."""
+    """A heading row, then distance, x, y, heading and curvature of each sample, with nine digits;
+    large coordinates with more.
+    """
     largest = max(np.abs(samples.x).max(), np.abs(samples.y).max(), 1.0)
     place = f"%.{9 + int(math.log10(largest))}g"
     formats = ["%.9g", place, place, "%.9g", "%.9g"]
-    np.savetxt(file, np.column_stack(samples), fmt=formats, delimiter=",", header=",".join(Samples._fields), comments="")
+    np.savetxt(
+        file,
+        np.column_stack(samples),
+        fmt=formats,
+        delimiter=",",
+        header=",".join(Samples._fields),
+        comments="",
+    )
 
 
 def write_geojson(file: Path, samples: Samples, properties: Mapping[str, Any]) -> None:
     """A feature of kind LineString; nan and infinity, which JSON does not know, become null."""
-    known = {name: value if not isinstance(value, float) or math.isfinite(value) else None for name, value in properties.items()}
+    known = {
+        name: value if not isinstance(value, float) or math.isfinite(value) else None
+        for name, value in properties.items()
+    }
     line = {"type": "LineString", "coordinates": np.column_stack([samples.x, samples.y]).tolist()}
-    file.write_text(json.dumps({"type": "Feature", "properties": known, "geometry": line}) + "\n", encoding="utf-8")
+    file.write_text(
+        json.dumps({"type": "Feature", "properties": known, "geometry": line}) + "\n",
+        encoding="utf-8",
+    )
 
 
 def write_ros(file: Path, samples: Samples, frame: str) -> None:
-    """A `nav_msgs/Path` message as YAML; a pose's orientation is the heading as a quaternion about z."""
+    """A `nav_msgs/Path` message as YAML; a pose's orientation is the heading as a quaternion about
+    z.
+    """
     import yaml
 
     poses = [
@@ -35,7 +52,12 @@ def write_ros(file: Path, samples: Samples, frame: str) -> None:
             "header": {"frame_id": frame},
             "pose": {
                 "position": {"x": float(x), "y": float(y), "z": 0.0},
-                "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(heading / 2), "w": math.cos(heading / 2)},
+                "orientation": {
+                    "x": 0.0,
+                    "y": 0.0,
+                    "z": math.sin(heading / 2),
+                    "w": math.cos(heading / 2),
+                },
             },
         }
         for x, y, heading in zip(samples.x, samples.y, samples.heading, strict=True)

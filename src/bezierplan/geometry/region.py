@@ -1,8 +1,9 @@
-"""The blocked region of a workspace: the single description shared by the certified check and the exact shortest paths.
+"""The blocked region of a workspace: the single description shared by the certified check and the
+exact shortest paths.
 
-The blocked region is open: the interior of the union of all obstacles and of the outside of the border. A path may touch its boundary. The
-union is formed before any test, because a path along the seam of two touching obstacles enters neither of them and yet is deep inside their
-union.
+The blocked region is open: the interior of the union of all obstacles and of the outside of the
+border. A path may touch its boundary. The union is formed before any test, because a path along the
+seam of two touching obstacles enters neither of them and yet is deep inside their union.
 """
 
 from typing import NamedTuple
@@ -14,23 +15,25 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Workspace
 
-# Unit vectors whose cross product is at most this count as collinear: a vertex between them is a rounding artefact of the union, not a
-# corner.
+# Unit vectors whose cross product is at most this count as collinear: a vertex between them is a
+# rounding artefact of the union, not a corner.
 COLLINEAR = 1e-12
 
 
 class GridRegion(NamedTuple):
     """Occupied cells and the outside of the grid, as elements of the doubled grid.
 
-    A doubled grid has an element for every cell, for every open edge between two cells, and for every vertex between four, each in its
-    place: with a ring of cells around the grid to represent the outside, even indices are cells and odd indices are grid lines.
+    A doubled grid has an element for every cell, for every open edge between two cells, and for
+    every vertex between four, each in its place: with a ring of cells around the grid to represent
+    the outside, even indices are cells and odd indices are grid lines.
 
     Attributes
     ----------
     cell : float
         Side of a cell, in units.
     origin : (2,) array
-        x and y of the grid's lower left corner, in units; everything else, including paths, is measured from it (`from_origin`).
+        x and y of the grid's lower left corner, in units; everything else, including paths, is
+        measured from it (`from_origin`).
     blocked : (2 rows + 3, 2 columns + 3) array of bool
         Whether all cells that touch an element are occupied.
     counts : (2 rows + 4, 2 columns + 4) array of int
@@ -38,8 +41,8 @@ class GridRegion(NamedTuple):
     edges : (n, 4) array
         Boundary of the region as x, y, x, y in units, collinear edges joined.
     contacts : (m, 3) array
-        x and y in units of the inner vertices at which two occupied cells share only a corner, and the sign of the slope of the diagonal
-        through their two free cells.
+        x and y in units of the inner vertices at which two occupied cells share only a corner, and
+        the sign of the slope of the diagonal through their two free cells.
     """
 
     cell: float
@@ -77,7 +80,8 @@ class PolygonRegion(NamedTuple):
     Attributes
     ----------
     edges : (n, 4) array
-        As x, y, x, y in units, directed so that free space is on the left, without collinear vertices.
+        As x, y, x, y in units, directed so that free space is on the left, without collinear
+        vertices.
     normals : (n, 2) array
         Unit vectors to the free side.
     following : (n,) array of int
@@ -121,7 +125,8 @@ def region(workspace: Workspace) -> Region:
 
 
 def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
-    """Whether a point lies in the blocked region. Meant for single points: it needs no compiled code.
+    """Whether a point lies in the blocked region. Meant for single points: it needs no compiled
+    code.
 
     Parameters
     ----------
@@ -138,7 +143,10 @@ def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) 
         Whether it lies deeper than the tolerance.
     """
     if isinstance(region, GridRegion):
-        column, row = (_element(value / region.cell, tolerance) for value in from_origin(np.array(point), region))
+        column, row = (
+            _element(value / region.cell, tolerance)
+            for value in from_origin(np.array(point), region)
+        )
         inside = 0 <= row < region.blocked.shape[0] and 0 <= column < region.blocked.shape[1]
         return not inside or bool(region.blocked[row, column])
     x, y = point
@@ -151,38 +159,57 @@ def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) 
     along = end - begin
     share = np.clip(((point - begin) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
     nearest = np.hypot(*(begin + share[:, None] * along - point).T).min(initial=np.inf)
-    # Free space is bounded, so a ray from a free point leaves it and crosses the boundary an odd number of times.
+    # Free space is bounded, so a ray from a free point leaves it and crosses the boundary an odd
+    # number of times.
     across = (begin[:, 1] > y) != (end[:, 1] > y)
     crossing = begin[across, 0] + (y - begin[across, 1]) * along[across, 0] / along[across, 1]
     return nearest > tolerance and int((crossing > x).sum()) % 2 == 0
 
 
 def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
-    """Points (..., 2) in units, in the region's own frame: on a grid, relative to its lower left corner."""
+    """Points (..., 2) in units, in the region's own frame: on a grid, relative to its lower left
+    corner.
+    """
     return points - region.origin if isinstance(region, GridRegion) else points
 
 
 def _element(coordinate: float, tolerance: float) -> int:
-    """Index in the doubled grid of a coordinate in cells: of a grid line if it lies on one, otherwise of a cell."""
+    """Index in the doubled grid of a coordinate in cells: of a grid line if it lies on one,
+    otherwise of a cell.
+    """
     line = round(coordinate)
-    return 2 * line + 1 if abs(coordinate - line) <= tolerance else 2 * int(np.floor(coordinate)) + 2
+    return (
+        2 * line + 1 if abs(coordinate - line) <= tolerance else 2 * int(np.floor(coordinate)) + 2
+    )
 
 
 def border_edges(bounds: tuple[float, float, float, float]) -> np.ndarray:
     """The four edges (4, 4) of a border, as x, y, x, y."""
     left, right, bottom, top = bounds
-    return np.array([[left, bottom, right, bottom], [right, bottom, right, top], [right, top, left, top], [left, top, left, bottom]], float)
+    return np.array(
+        [
+            [left, bottom, right, bottom],
+            [right, bottom, right, top],
+            [right, top, left, top],
+            [left, top, left, bottom],
+        ],
+        float,
+    )
 
 
 def walled(occupied: np.ndarray) -> np.ndarray:
-    """Occupied cells with a ring of occupied cells around them that represents the outside: bool (rows + 2, columns + 2)."""
+    """Occupied cells with a ring of occupied cells around them that represents the outside: bool
+    (rows + 2, columns + 2).
+    """
     return np.ascontiguousarray(np.pad(occupied, 1, constant_values=True))
 
 
 def occupied_around(cells: np.ndarray) -> np.ndarray:
-    """Whether the cells around each inner vertex of `walled` cells are occupied: bool (4, rows + 1, columns + 1).
+    """Whether the cells around each inner vertex of `walled` cells are occupied: bool (4, rows + 1,
+    columns + 1).
 
-    In the order below left, below right, above left, above right. Vertex [i, j] lies at x = j and y = i, in cells.
+    In the order below left, below right, above left, above right. Vertex [i, j] lies at x = j and y
+    = i, in cells.
     """
     return np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]])
 
@@ -197,22 +224,38 @@ def _grid_region(grid: Grid) -> GridRegion:
     blocked[1::2, 1::2] = around.all(axis=0)
     horizontal = _runs(cells[:-1, 1:-1] != cells[1:, 1:-1])
     vertical = _runs(np.ascontiguousarray((cells[1:-1, :-1] != cells[1:-1, 1:]).T))
-    edges = np.ascontiguousarray(np.concatenate([horizontal[:, [1, 0, 2, 0]], vertical[:, [0, 1, 0, 2]]]) * grid.cell)
+    edges = np.ascontiguousarray(
+        np.concatenate([horizontal[:, [1, 0, 2, 0]], vertical[:, [0, 1, 0, 2]]]) * grid.cell
+    )
 
     below_left, below_right, above_left, above_right = around
     falling = below_left & above_right & ~below_right & ~above_left
     rising = ~below_left & ~above_right & below_right & above_left
     row, column = np.nonzero(rising | falling)
-    contacts = np.column_stack([column * grid.cell, row * grid.cell, np.where(rising[row, column], 1.0, -1.0)])
-    return GridRegion(float(grid.cell), np.array(grid.origin, dtype=float), blocked, _prefix_sums(blocked), edges, contacts)
+    contacts = np.column_stack(
+        [column * grid.cell, row * grid.cell, np.where(rising[row, column], 1.0, -1.0)]
+    )
+    return GridRegion(
+        float(grid.cell),
+        np.array(grid.origin, dtype=float),
+        blocked,
+        _prefix_sums(blocked),
+        edges,
+        contacts,
+    )
 
 
 def _prefix_sums(elements: np.ndarray) -> np.ndarray:
-    """The number of true elements below and to the left of each corner of a bool array (rows, columns): (rows + 1, columns + 1).
+    """The number of true elements below and to the left of each corner of a bool array (rows,
+    columns): (rows + 1, columns + 1).
 
-    On a map of 16 million cells this takes most of the time of its region: with half the memory, and row after row, a fifth of it.
+    On a map of 16 million cells this takes most of the time of its region: with half the memory,
+    and row after row, a fifth of it.
     """
-    counts = np.zeros((elements.shape[0] + 1, elements.shape[1] + 1), dtype=np.int32 if elements.size < 2**31 else np.int64)
+    counts = np.zeros(
+        (elements.shape[0] + 1, elements.shape[1] + 1),
+        dtype=np.int32 if elements.size < 2**31 else np.int64,
+    )
     for row, below, above in zip(elements, counts, counts[1:]):
         np.cumsum(row, out=above[1:])
         above += below
@@ -220,9 +263,13 @@ def _prefix_sums(elements: np.ndarray) -> np.ndarray:
 
 
 def _runs(boundary: np.ndarray) -> np.ndarray:
-    """Maximal runs of true values in the rows of a bool array: (n, 3) row, first column, column after the last."""
+    """Maximal runs of true values in the rows of a bool array: (n, 3) row, first column, column
+    after the last.
+    """
     around = np.pad(boundary, ((0, 0), (1, 1)))
-    row, column = np.nonzero(around[:, 1:] != around[:, :-1])  # where a run begins and ends, in turn
+    row, column = np.nonzero(
+        around[:, 1:] != around[:, :-1]
+    )  # where a run begins and ends, in turn
     return np.column_stack([row[::2], column[::2], column[1::2]]).astype(float)
 
 
@@ -246,7 +293,10 @@ def _polygon_region(polygons: Polygons) -> PolygonRegion:
     for part in shapely.get_parts(free):
         if isinstance(part, shapely.Polygon):
             oriented = shapely.geometry.polygon.orient(part)
-            rings += [_corners(shapely.get_coordinates(ring)[:-1]) for ring in (oriented.exterior, *oriented.interiors)]
+            rings += [
+                _corners(shapely.get_coordinates(ring)[:-1])
+                for ring in (oriented.exterior, *oriented.interiors)
+            ]
 
     begin = np.concatenate([np.empty((0, 2)), *rings])
     following = np.empty(len(begin), dtype=np.int64)

@@ -1,4 +1,6 @@
-"""A path as a robot follows it: points at distances along it, with heading, curvature and the speed that limits allow."""
+"""A path as a robot follows it: points at distances along it, with heading, curvature and the speed
+that limits allow.
+"""
 
 import math
 from typing import NamedTuple
@@ -8,7 +10,8 @@ import numpy as np
 from bezierplan.geometry import curves
 from bezierplan.workspaces.problem import Path
 
-# Intervals of a piece's parameter on which arc length is summed, by quadrature of this order; then Newton's method refines each parameter.
+# Intervals of a piece's parameter on which arc length is summed, by quadrature of this order; then
+# Newton's method refines each parameter.
 _INTERVALS = 64
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NEWTON_STEPS = 4
@@ -17,8 +20,9 @@ _NEWTON_STEPS = 4
 class Samples(NamedTuple):
     """Points along a path, each field (n,).
 
-    distance: along the path from its start, in the path's unit. x, y: in that unit. heading: direction of travel, in radians from the
-    x-axis. curvature: signed, positive to the left, in 1/unit; 0 where the curve stands still or turns on the spot.
+    distance: along the path from its start, in the path's unit. x, y: in that unit. heading:
+    direction of travel, in radians from the x-axis. curvature: signed, positive to the left, in
+    1/unit; 0 where the curve stands still or turns on the spot.
     """
 
     distance: np.ndarray
@@ -37,7 +41,8 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     n : int, optional
         Number of samples, at least 2.
     step : float, optional
-        Largest distance between two samples, in the path's unit. Exactly one of `n` and `step` is given.
+        Largest distance between two samples, in the path's unit. Exactly one of `n` and `step` is
+        given.
 
     Returns
     -------
@@ -82,11 +87,18 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     t[0], t[-1] = 0.0, 1.0
     points = _values(pieces[piece], t)
     points[0], points[-1] = pieces[0, 0], pieces[-1, -1]
-    return Samples(distance, points[:, 0], points[:, 1], _headings(pieces[piece], t), _curvatures(pieces[piece], t))
+    return Samples(
+        distance,
+        points[:, 0],
+        points[:, 1],
+        _headings(pieces[piece], t),
+        _curvatures(pieces[piece], t),
+    )
 
 
 def speeds(samples: Samples, limit: float, lateral: float = math.inf) -> np.ndarray:
-    """The speed (n,) at each sample, in units a second, under a limit of speed and one of lateral acceleration in units a second squared.
+    """The speed (n,) at each sample, in units a second, under a limit of speed and one of lateral
+    acceleration in units a second squared.
 
     Raises ValueError for limits that are not above 0.
     """
@@ -94,11 +106,15 @@ def speeds(samples: Samples, limit: float, lateral: float = math.inf) -> np.ndar
         if not value > 0:
             raise ValueError(f"{name}: {value}; expected a number above 0")
     bend = np.abs(samples.curvature)
-    return np.minimum(limit, np.sqrt(np.divide(lateral, bend, out=np.full(len(bend), math.inf), where=bend > 0)))
+    return np.minimum(
+        limit, np.sqrt(np.divide(lateral, bend, out=np.full(len(bend), math.inf), where=bend > 0))
+    )
 
 
 def _lengths(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Arc lengths (pieces * intervals,) of all intervals, and where in a piece's parameter they begin (intervals,)."""
+    """Arc lengths (pieces * intervals,) of all intervals, and where in a piece's parameter they
+    begin (intervals,).
+    """
     knots = np.arange(_INTERVALS) / _INTERVALS
     repeated = np.repeat(pieces, _INTERVALS, axis=0)
     low = np.tile(knots, len(pieces))
@@ -128,7 +144,9 @@ def _speed(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Direction of travel (n,); where the curve stands still, that to a point just ahead, or at a piece's end from one just behind."""
+    """Direction of travel (n,); where the curve stands still, that to a point just ahead, or at a
+    piece's end from one just behind.
+    """
     direction = _derivatives(pieces, t)
     size = np.abs(np.diff(pieces, axis=1)).max(axis=(1, 2))
     still = np.hypot(*direction.T) <= curves.STANDSTILL * size

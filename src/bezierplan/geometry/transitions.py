@@ -1,9 +1,12 @@
-"""Paths of lines and arcs made curvature-continuous: between a line and an arc the curvature rises along a transition, as on a railway.
+"""Paths of lines and arcs made curvature-continuous: between a line and an arc the curvature rises
+along a transition, as on a railway.
 
-An arc of a circle is replaced by one about the same centre with a smaller radius, and by a transition on either side, which begins on the
-line and ends on that arc. It is a cubic Bezier piece with the curvature 0 at one end and that of the arc at the other, close to a clothoid:
-to turn by an angle it needs about the radius times the angle of the line, and shifts the arc inwards by a sixth of the radius times the
-square of the angle. Where an arc has no line beside it, or no room to be shifted, it stays as it is.
+An arc of a circle is replaced by one about the same centre with a smaller radius, and by a
+transition on either side, which begins on the line and ends on that arc. It is a cubic Bezier piece
+with the curvature 0 at one end and that of the arc at the other, close to a clothoid: to turn by an
+angle it needs about the radius times the angle of the line, and shifts the arc inwards by a sixth
+of the radius times the square of the angle. Where an arc has no line beside it, or no room to be
+shifted, it stays as it is.
 """
 
 import math
@@ -23,12 +26,15 @@ SHIFT = MOST_ANGLE**2 / 6
 """By how much a transition shifts an arc, at most, as a share of its radius."""
 
 EXCESS = 1e-4
-"""By which share the curvature of a transition or of a piece of an arc is above that of the arc, at most."""
+"""By which share the curvature of a transition or of a piece of an arc is above that of the arc, at
+most.
+"""
 
 # Largest angle of an arc, in radians, that is one cubic piece.
 _PIECE_ANGLE = math.pi / 16
 
-# Control points this close to a line, as a share of a piece's length, are on it; centres this close, as a share of the radius, are one.
+# Control points this close to a line, as a share of a piece's length, are on it; centres this
+# close, as a share of the radius, are one.
 _ON_LINE = 1e-9
 _SAME_CENTRE = 1e-5
 
@@ -37,7 +43,9 @@ _LEAST_SHARE = 1 / 32
 
 
 class _Part(NamedTuple):
-    """A line (radius 0), or an arc to the left (side 1) or to the right (side -1): points (n, 4, 2), centre, and the angle of all of it."""
+    """A line (radius 0), or an arc to the left (side 1) or to the right (side -1): points (n, 4,
+    2), centre, and the angle of all of it.
+    """
 
     pieces: np.ndarray
     centre: np.ndarray
@@ -47,7 +55,9 @@ class _Part(NamedTuple):
 
 
 def eased(path: Path, blocked: Region) -> Path:
-    """A `cubic_chain` of lines and arcs with transitions between them, which is free where it was. blocked: the region of the map."""
+    """A `cubic_chain` of lines and arcs with transitions between them, which is free where it was.
+    blocked: the region of the map.
+    """
     parts = _parts(bezier_pieces(path))
     share = np.ones(len(parts))
     while True:
@@ -61,7 +71,9 @@ def eased(path: Path, blocked: Region) -> Path:
         if not part.radius:
             chains[number] = _line(
                 chains[number - 1][-1, -1] if number and angles[number - 1] else part.pieces[0, 0],
-                chains[number + 1][0, 0] if number + 1 < len(parts) and angles[number + 1] else part.pieces[-1, -1],
+                chains[number + 1][0, 0]
+                if number + 1 < len(parts) and angles[number + 1]
+                else part.pieces[-1, -1],
             )
     chain = np.concatenate(chains)
     return Path("cubic_chain", np.concatenate([chain[0, :1], chain[:, 1:].reshape(-1, 2)]))
@@ -73,9 +85,16 @@ def _parts(pieces: np.ndarray) -> list[_Part]:
     for piece in pieces:
         part = _part(piece)
         last = parts[-1] if parts else None
-        same = last and part.radius and last.side == part.side and math.dist(last.centre, part.centre) <= _SAME_CENTRE * part.radius
+        same = (
+            last
+            and part.radius
+            and last.side == part.side
+            and math.dist(last.centre, part.centre) <= _SAME_CENTRE * part.radius
+        )
         if last and same:
-            parts[-1] = last._replace(pieces=np.concatenate([last.pieces, part.pieces]), sweep=last.sweep + part.sweep)
+            parts[-1] = last._replace(
+                pieces=np.concatenate([last.pieces, part.pieces]), sweep=last.sweep + part.sweep
+            )
         else:
             parts.append(part)
     return parts
@@ -105,7 +124,9 @@ def _angle(parts: list[_Part], number: int, share: float) -> float:
         if parts[beside].radius:
             return 0.0
         length = math.dist(parts[beside].pieces[0, 0], parts[beside].pieces[-1, -1])
-        room = min(room, 0.5 * length if 0 <= beyond < len(parts) and parts[beyond].radius else length)
+        room = min(
+            room, 0.5 * length if 0 <= beyond < len(parts) and parts[beyond].radius else length
+        )
     angle = share * min(MOST_ANGLE, 0.5 * part.sweep, room / part.radius)
     while angle and _transition(part.radius, angle)[3] > room:
         angle = 0.9 * angle if angle > _LEAST_SHARE * _ON_LINE else 0.0
@@ -113,11 +134,12 @@ def _angle(parts: list[_Part], number: int, share: float) -> float:
 
 
 def _transition(radius: float, angle: float) -> tuple[float, float, float, float]:
-    """Radius of the arc, the second and the third control point's distance along the line, and how far before the foot of the circle's
-    centre it begins.
+    """Radius of the arc, the second and the third control point's distance along the line, and how
+    far before the foot of the circle's centre it begins.
 
-    The third control point lies on the line and on the tangent of the arc, so the curvature is 0 where the transition begins. The second
-    one lies half as far along the line; where the transition ends, the curvature is that of the arc.
+    The third control point lies on the line and on the tangent of the arc, so the curvature is 0
+    where the transition begins. The second one lies half as far along the line; where the
+    transition ends, the curvature is that of the arc.
     """
     inner = radius / (1 + angle**2 / 6)
     height = radius - inner * math.cos(angle)  # of its end above the line
@@ -133,10 +155,14 @@ def _turn(part: _Part, angle: float) -> np.ndarray:
     inner, second, third, before = _transition(part.radius, angle)
     foot, end_foot = part.pieces[0, 0], part.pieces[-1, -1]
     into = _unit(part.pieces[0, 1] - foot)
-    out = _unit(part.pieces[-1, 2] - end_foot)  # both point away from the turn's own middle, backwards at its end
+    out = _unit(
+        part.pieces[-1, 2] - end_foot
+    )  # both point away from the turn's own middle, backwards at its end
     begin, end = foot - before * into, end_foot - before * out
     spoke = (foot - part.centre) / part.radius
-    arc = _arc(part.centre, inner * _turned(spoke, part.side * angle), part.side * (part.sweep - 2 * angle))
+    arc = _arc(
+        part.centre, inner * _turned(spoke, part.side * angle), part.side * (part.sweep - 2 * angle)
+    )
     head = np.array([begin, begin + second * into, begin + third * into, arc[0, 0]])
     tail = np.array([arc[-1, -1], end + third * out, end + second * out, end])
     middle = arc if part.sweep > 2 * angle * (1 + _ON_LINE) else arc[:0]
@@ -144,15 +170,24 @@ def _turn(part: _Part, angle: float) -> np.ndarray:
 
 
 def _arc(centre: np.ndarray, spoke: np.ndarray, turned: float) -> np.ndarray:
-    """Pieces (n, 4, 2) of an arc, from a vector to its beginning, whose curvature at their ends is exactly that of the arc."""
+    """Pieces (n, 4, 2) of an arc, from a vector to its beginning, whose curvature at their ends is
+    exactly that of the arc.
+    """
     parts = max(1, math.ceil(abs(turned) / _PIECE_ANGLE))
     angle = abs(turned) / parts
-    handle = -math.sin(angle) / 3 + math.sqrt(math.sin(angle) ** 2 / 9 + 2 / 3 * (1 - math.cos(angle)))
+    handle = -math.sin(angle) / 3 + math.sqrt(
+        math.sin(angle) ** 2 / 9 + 2 / 3 * (1 - math.cos(angle))
+    )
     pieces = []
     for number in range(parts):
         a, b = (_turned(spoke, turned * (number + each) / parts) for each in (0, 1))
         along = math.copysign(handle, turned)
-        pieces.append(centre + np.array([a, a + along * _turned(a, math.pi / 2), b - along * _turned(b, math.pi / 2), b]))
+        pieces.append(
+            centre
+            + np.array(
+                [a, a + along * _turned(a, math.pi / 2), b - along * _turned(b, math.pi / 2), b]
+            )
+        )
     return np.array(pieces)
 
 
@@ -164,7 +199,9 @@ def _line(begin: np.ndarray, end: np.ndarray) -> np.ndarray:
 
 
 def _enters(pieces: np.ndarray, blocked: Region) -> bool:
-    return first_collision(np.ascontiguousarray(from_origin(pieces, blocked)), blocked)[0] < math.inf
+    return (
+        first_collision(np.ascontiguousarray(from_origin(pieces, blocked)), blocked)[0] < math.inf
+    )
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

@@ -4,16 +4,20 @@ A planner is a module with a function::
 
     plan(problem, rng, *, settings) -> Plan
 
-whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
-`Annotated[int, Range(...), About(...)]`. A planner whose kernels read its settings declares the same annotations as the fields of a named
-tuple and has `with_settings` make the arguments (`parts.settings`). It may also have `workspaces`, the kinds of workspace that it supports;
-`exact = True`, if its own feasibility test is meant to agree with the certified check; `keeps_best = False`, if its result can be worse
-than the best path it found; `deterministic = True`, if it uses no random numbers; `extra`, the names of its extra columns, so that a study
-which asks for another is refused before the first run; `check(settings)`, which raises ValueError for incompatible settings;
-`serves(problem)`, which raises ValueError for a problem that the planner cannot solve; `track(problem, rng, **settings)`, the control
-points (iterations + 1, n, 2) of the best path after each iteration of the run that `plan` makes with the same arguments, for figures that
-show how a run arrived at its path; `resume(problem, rng, last, **settings)`, a `Plan` and what the next call gets as `last`, None at first:
-a plan that starts from an earlier one, for robots whose world changes.
+whose keyword-only arguments are its settings, all without default values: annotated with `bool`,
+`int`, `float`, `Literal[...]`, or `Annotated[int, Range(...), About(...)]`. A planner whose kernels
+read its settings declares the same annotations as the fields of a named tuple and has
+`with_settings` make the arguments (`parts.settings`). It may also have `workspaces`, the kinds of
+workspace that it supports; `exact = True`, if its own feasibility test is meant to agree with the
+certified check; `keeps_best = False`, if its result can be worse than the best path it found;
+`deterministic = True`, if it uses no random numbers; `extra`, the names of its extra columns, so
+that a study which asks for another is refused before the first run; `check(settings)`, which raises
+ValueError for incompatible settings; `serves(problem)`, which raises ValueError for a problem that
+the planner cannot solve; `track(problem, rng, **settings)`, the control points (iterations + 1, n,
+2) of the best path after each iteration of the run that `plan` makes with the same arguments, for
+figures that show how a run arrived at its path; `resume(problem, rng, last, **settings)`, a `Plan`
+and what the next call gets as `last`, None at first: a plan that starts from an earlier one, for
+robots whose world changes.
 """
 
 import importlib
@@ -29,7 +33,18 @@ import numpy as np
 from bezierplan.planners.parts.settings import About, Range, Setting, setting_fault, settings_of
 from bezierplan.workspaces.problem import Path, Problem
 
-__all__ = ["About", "Path", "Plan", "Problem", "Range", "Setting", "known_planners", "planner_module", "planner_settings", "setting_fault"]
+__all__ = [
+    "About",
+    "Path",
+    "Plan",
+    "Problem",
+    "Range",
+    "Setting",
+    "known_planners",
+    "planner_module",
+    "planner_settings",
+    "setting_fault",
+]
 
 
 class Plan(NamedTuple):
@@ -68,8 +83,8 @@ PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 
 @cache
 def planner_module(planner: str) -> ModuleType:
-    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a user's own file, which can import the modules
-    next to it at the top of the file.
+    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a
+    user's own file, which can import the modules next to it at the top of the file.
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
@@ -93,7 +108,9 @@ def planner_module(planner: str) -> ModuleType:
 
 def known_planners() -> list[str]:
     """Names of the planners of this package."""
-    return sorted(file.stem for file in File(__file__).parent.glob("*.py") if file.stem != "__init__")
+    return sorted(
+        file.stem for file in File(__file__).parent.glob("*.py") if file.stem != "__init__"
+    )
 
 
 @cache

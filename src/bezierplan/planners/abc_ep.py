@@ -1,9 +1,11 @@
-"""Artificial bee colony and evolutionary programming (ABC-EP): the colony builds a path point by point, evolution shortens it.
+"""Artificial bee colony and evolutionary programming (ABC-EP): the colony builds a path point by
+point, evolution shortens it.
 
-The baseline of that name in elhoseny2017 and tharwat2018 (Contreras-Cruz, Ayala-Ramirez and Hernandez-Belmonte, 2015). Neither paper gives
-its parameters or operators; these are textbook ones. A colony of bees searches for the next point of the path in a square around the last
-one; points already chosen repel, which leads out of dead ends. The path is complete as soon as the target is in sight. It is then shortened
-by dropping unnecessary points and by mutating a population of copies.
+The baseline of that name in elhoseny2017 and tharwat2018 (Contreras-Cruz, Ayala-Ramirez and
+Hernandez-Belmonte, 2015). Neither paper gives its parameters or operators; these are textbook ones.
+A colony of bees searches for the next point of the path in a square around the last one; points
+already chosen repel, which leads out of dead ends. The path is complete as soon as the target is in
+sight. It is then shortened by dropping unnecessary points and by mutating a population of copies.
 
 A leg is free if it touches no occupied cell. Lengths and points in the kernels are in cells.
 """
@@ -25,35 +27,73 @@ extra = ("first_length", "turns")
 workspaces = ("grid",)
 exact = True
 
-# The cost of a point that cannot be seen from the last one: above all others, and the same for all such points.
+# The cost of a point that cannot be seen from the last one: above all others, and the same for all
+# such points.
 _UNSEEN = 1e9
 
 
 class Settings(NamedTuple):
     """Settings of colony and evolution; the papers give none, these are textbook ones."""
 
-    sources: Annotated[int, Range(2), About("sources of the colony, each with an employed and an onlooker bee")]
+    sources: Annotated[
+        int, Range(2), About("sources of the colony, each with an employed and an onlooker bee")
+    ]
     cycles: Annotated[int, Range(0), About("cycles of the colony for one point")]
     trial_limit: Annotated[int, Range(1), About("failed trials after which a source is redrawn")]
-    reach: Annotated[float, Range(0, 1), About("half the side of the square around the last point, as a share of the smaller side")]
-    step_weight: Annotated[float, Range(0), About("weight of a point's distance from the last one; that to the target has weight 1")]
-    visited_weight: Annotated[float, Range(0), About("weight of cones around the points chosen so far, as high and wide as the reach")]
+    reach: Annotated[
+        float,
+        Range(0, 1),
+        About("half the side of the square around the last point, as a share of the smaller side"),
+    ]
+    step_weight: Annotated[
+        float,
+        Range(0),
+        About("weight of a point's distance from the last one; that to the target has weight 1"),
+    ]
+    visited_weight: Annotated[
+        float,
+        Range(0),
+        About("weight of cones around the points chosen so far, as high and wide as the reach"),
+    ]
     most_points: Annotated[int, Range(0), About("points chosen before the search is abandoned")]
-    population: Annotated[int, Range(1), About("copies of the path that evolve, each with one child a generation")]
+    population: Annotated[
+        int, Range(1), About("copies of the path that evolve, each with one child a generation")
+    ]
     generations: Annotated[int, Range(0), About("generations")]
-    move_share: Annotated[float, Range(0, 1), About("share of children in which an inner point moves by a Gaussian step")]
-    removal_share: Annotated[float, Range(0, 1), About("share of children without one of the inner points; the rest get a leg's midpoint")]
-    spread: Annotated[float, Range(0), About("standard deviation of a move, as a share of the smaller side")]
-    insertion_spread: Annotated[float, Range(0), About("standard deviation of a midpoint, as a share of the spread")]
-    opponents: Annotated[int, Range(1), About("drawn for each of parents and children; those not worse than most of them survive")]
-    blocked_penalty: Annotated[float, Range(0), About("added for each leg that touches an occupied cell", unit=UNITS)]
+    move_share: Annotated[
+        float,
+        Range(0, 1),
+        About("share of children in which an inner point moves by a Gaussian step"),
+    ]
+    removal_share: Annotated[
+        float,
+        Range(0, 1),
+        About("share of children without one of the inner points; the rest get a leg's midpoint"),
+    ]
+    spread: Annotated[
+        float, Range(0), About("standard deviation of a move, as a share of the smaller side")
+    ]
+    insertion_spread: Annotated[
+        float, Range(0), About("standard deviation of a midpoint, as a share of the spread")
+    ]
+    opponents: Annotated[
+        int,
+        Range(1),
+        About("drawn for each of parents and children; those not worse than most of them survive"),
+    ]
+    blocked_penalty: Annotated[
+        float, Range(0), About("added for each leg that touches an occupied cell", unit=UNITS)
+    ]
 
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     shares = settings["move_share"] + settings["removal_share"]
     if shares > 1:
-        raise ValueError(f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts points")
+        raise ValueError(
+            f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts "
+            f"points"
+        )
 
 
 @with_settings(Settings)
@@ -70,48 +110,68 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        Its objective is its length in units, infinite if there is no path. Extra columns: first_length, the length of the path before
-        evolution, in units; turns, the number of inner points of the final path.
+        Its objective is its length in units, infinite if there is no path. Extra columns:
+        first_length, the length of the path before evolution, in units; turns, the number of inner
+        points of the final path.
 
-    References
-    ----------
-    elhoseny2017, Tables 2, 3 and 6; tharwat2018, Figure 22; Contreras-Cruz, Ayala-Ramirez and Hernandez-Belmonte (2015).
+    References ---------- elhoseny2017, Tables 2, 3 and 6; tharwat2018, Figure 22; Contreras-Cruz,
+    Ayala-Ramirez and Hernandez-Belmonte (2015).
     """
     grid = problem.workspace
     start, target = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
-    rules = in_cells(settings, grid.cell)._replace(reach=settings.reach * smaller_side, spread=settings.spread * smaller_side)
+    rules = in_cells(settings, grid.cell)._replace(
+        reach=settings.reach * smaller_side, spread=settings.spread * smaller_side
+    )
     points, history = _search(*rng.spawn(2), grid.occupied, start, target, rules)
     history *= grid.cell
     extra = {"first_length": float(history[0]), "turns": max(0, len(points) - 2)}
     if len(points) == 0:
-        return Plan(None, np.inf, claimed_feasible=False, evaluations=1, history=history, stop="no way", extra=extra)
+        return Plan(
+            None,
+            np.inf,
+            claimed_feasible=False,
+            evaluations=1,
+            history=history,
+            stop="no way",
+            extra=extra,
+        )
     points = grid.in_units(points)
     points[[0, -1]] = problem.start, problem.target
     evaluations = 1 + settings.population * settings.generations
     path = Path("polyline", points)
-    return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history, stop="generations", extra=extra)
+    return Plan(
+        path,
+        history[-1],
+        claimed_feasible=True,
+        evaluations=evaluations,
+        history=history,
+        stop="generations",
+        extra=extra,
+    )
 
 
 @compiled
 def _search(colony_rng, evolution_rng, occupied, start, target, rules):
-    """Points (points, 2) of the path, empty if the colony found none, and the shortest length so far (generations + 1,)."""
+    """Points (points, 2) of the path, empty if the colony found none, and the shortest length so
+    far (generations + 1,).
+    """
     path = _first_path(colony_rng, occupied, start, target, rules)
     if len(path) == 0:
         return path, np.full(1, np.inf)
     return _evolve(evolution_rng, occupied, _cut_short(occupied, path), rules)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # The colony
 
 
 @compiled
 def _first_path(rng, occupied, start, target, rules):
-    """A free path (points, 2), point by point until the target is in sight; empty if no free point is found or most_points do not
-    suffice.
+    """A free path (points, 2), point by point until the target is in sight; empty if no free point
+    is found or most_points do not suffice.
     """
     path = np.empty((rules.most_points + 2, 2))
     path[0, 0], path[0, 1] = start  # an assignment of a whole row takes seconds to compile
@@ -120,14 +180,19 @@ def _first_path(rng, occupied, start, target, rules):
         if is_free_leg(occupied, last[0], last[1], target[0], target[1]):
             path[count, 0], path[count, 1] = target
             return path[: count + 1].copy()
-        if count <= rules.most_points and _next_point(rng, occupied, target, path, count, rules) >= _UNSEEN:
+        if (
+            count <= rules.most_points
+            and _next_point(rng, occupied, target, path, count, rules) >= _UNSEEN
+        ):
             break
     return np.empty((0, 2))
 
 
 @compiled
 def _next_point(rng, occupied, target, path, count, rules):
-    """Append the best point that a colony finds after the first `count` points of a path, in place. Returns its cost."""
+    """Append the best point that a colony finds after the first `count` points of a path, in place.
+    Returns its cost.
+    """
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)
@@ -183,8 +248,8 @@ def _draw(rng, low, high, point):
 
 @allocation_free
 def _cost(occupied, target, path, count, point, rules):
-    """Cost of the next point: the distance to it, the distance from it to the target, and cones over the cells around the points chosen
-    before.
+    """Cost of the next point: the distance to it, the distance from it to the target, and cones
+    over the cells around the points chosen before.
     """
     last = path[count - 1]
     if not is_free_leg(occupied, last[0], last[1], point[0], point[1]):
@@ -213,28 +278,34 @@ def _cut_short(occupied, path):
     while kept[count - 1] < len(path) - 1:
         here = kept[count - 1]
         seen = len(path) - 1
-        while seen > here + 1 and not is_free_leg(occupied, path[here, 0], path[here, 1], path[seen, 0], path[seen, 1]):
+        while seen > here + 1 and not is_free_leg(
+            occupied, path[here, 0], path[here, 1], path[seen, 0], path[seen, 1]
+        ):
             seen -= 1
         kept[count] = seen
         count += 1
     return path[kept[:count]]
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Evolution
 
 
 @compiled
 def _evolve(rng, occupied, path, rules):
-    """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations + 1,).
+    """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations
+    + 1,).
 
-    Every path keeps the lengths of its legs, plus the penalty where they are blocked: a mutation changes at most two of them.
+    Every path keeps the lengths of its legs, plus the penalty where they are blocked: a mutation
+    changes at most two of them.
     """
     population, generations = rules.population, rules.generations
     room = len(path) + generations
     points, legs = np.empty((2 * population, room, 2)), np.empty((2 * population, room))
     counts, cost = np.full(2 * population, len(path)), np.empty(2 * population)
-    slots = np.arange(2 * population)  # parents first, starting with the cheapest; the other slots are for children
+    slots = np.arange(
+        2 * population
+    )  # parents first, starting with the cheapest; the other slots are for children
     for i in range(population):
         for p in range(len(path)):
             points[i, p, 0], points[i, p, 1] = path[p, 0], path[p, 1]
@@ -247,7 +318,16 @@ def _evolve(rng, occupied, path, rules):
     for generation in range(generations):
         for i in range(population):
             parent, child = slots[i], slots[population + i]
-            counts[child] = _mutated(rng, occupied, points[parent], legs[parent], counts[parent], points[child], legs[child], rules)
+            counts[child] = _mutated(
+                rng,
+                occupied,
+                points[parent],
+                legs[parent],
+                counts[parent],
+                points[child],
+                legs[child],
+                rules,
+            )
             cost[child] = legs[child, : counts[child] - 1].sum()
         _rank(slots, _wins(rng, cost, rules.opponents), cost)
         history[generation + 1] = cost[slots[0]]
@@ -256,12 +336,14 @@ def _evolve(rng, occupied, path, rules):
 
 @allocation_free
 def _mutated(rng, occupied, points, legs, count, child, child_legs, rules):
-    """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is inserted. Returns the child's number of
-    points.
+    """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is
+    inserted. Returns the child's number of points.
     """
     kind = rng.random()
     if count == 2 or kind >= rules.move_share + rules.removal_share:
-        changed = integer(rng, 1, count)  # the child's new point; the parent's points after it move up by one
+        changed = integer(
+            rng, 1, count
+        )  # the child's new point; the parent's points after it move up by one
         kept = changed
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
@@ -291,7 +373,9 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, rules):
 
 @allocation_free
 def _shift(rng, occupied, point, spread):
-    """Move a point by a Gaussian step in both coordinates, in place; it stays within the centres of the outermost cells."""
+    """Move a point by a Gaussian step in both coordinates, in place; it stays within the centres of
+    the outermost cells.
+    """
     for k in range(2):
         side = occupied.shape[1 - k]
         point[k] = min(max(point[k] + spread * rng.standard_normal(), 0.5), side - 0.5)
@@ -320,7 +404,9 @@ def _wins(rng, cost, opponents):
 
 @compiled
 def _rank(slots, wins, cost):
-    """Sort slots in place, stably: most wins first, ties by lowest cost. The cheapest of all loses to none, so it comes first."""
+    """Sort slots in place, stably: most wins first, ties by lowest cost. The cheapest of all loses
+    to none, so it comes first.
+    """
     cheapest_first = slots[ascending(cost[slots])]
     order = ascending(-wins[cheapest_first])
     for k in range(len(slots)):

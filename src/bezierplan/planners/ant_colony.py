@@ -1,8 +1,10 @@
-"""Ant colony optimisation over the cells of a grid (ACO), a rival in ma2020 (Section 4.1; its reference 28, no parameters given).
+"""Ant colony optimisation over the cells of a grid (ACO), a rival in ma2020 (Section 4.1; its
+reference 28, no parameters given).
 
-Ants walk from cell to cell, attracted by the trails of earlier ants and by the closeness of the target. With the trail update `ant_system`
-all ants of an iteration lay trails (Dorigo, Maniezzo and Colorni 1996). With `ant_colony_system` only the best path so far receives one;
-ants may also erode trails and take the most attractive step outright (Dorigo and Gambardella 1997).
+Ants walk from cell to cell, attracted by the trails of earlier ants and by the closeness of the
+target. With the trail update `ant_system` all ants of an iteration lay trails (Dorigo, Maniezzo and
+Colorni 1996). With `ant_colony_system` only the best path so far receives one; ants may also erode
+trails and take the most attractive step outright (Dorigo and Gambardella 1997).
 """
 
 from enum import IntEnum
@@ -26,29 +28,54 @@ TrailUpdate = IntEnum("TrailUpdate", "ant_system ant_colony_system", start=0)
 
 
 class Settings(NamedTuple):
-    """Settings of a colony; ma2020 names the method and gives none (Dorigo, Maniezzo and Colorni 1996; Dorigo and Gambardella 1997)."""
+    """Settings of a colony; ma2020 names the method and gives none (Dorigo, Maniezzo and Colorni
+    1996; Dorigo and Gambardella 1997).
+    """
 
-    corners: Annotated[Corners, About("how many of the two cells beside a diagonal step may be occupied")]
+    corners: Annotated[
+        Corners, About("how many of the two cells beside a diagonal step may be occupied")
+    ]
     ants: Annotated[int, Range(1), About("ants of an iteration")]
     iterations: Annotated[int, Range(1), About("iterations")]
-    trail_weight: Annotated[float, Range(0), About("exponent of the trail in the attraction of a step")]
-    heuristic_weight: Annotated[float, Range(0), About("exponent of the heuristic, 1 over the distance to the target in cells")]
+    trail_weight: Annotated[
+        float, Range(0), About("exponent of the trail in the attraction of a step")
+    ]
+    heuristic_weight: Annotated[
+        float,
+        Range(0),
+        About("exponent of the heuristic, 1 over the distance to the target in cells"),
+    ]
     target_heuristic: Annotated[float, Range(0), About("heuristic of the target itself")]
     initial_trail: Annotated[float, Range(0), About("trail on every step at first")]
     evaporation: Annotated[float, Range(0, 1), About("share of a trail lost per iteration")]
-    deposit: Annotated[float, Range(0), About("added, divided by a path's length in cells, to each of its steps, both ways")]
-    trail_update: Annotated[
-        TrailUpdate, About("all ants lay trails, or only steps of the best path so far evaporate and receive deposit times evaporation")
+    deposit: Annotated[
+        float,
+        Range(0),
+        About("added, divided by a path's length in cells, to each of its steps, both ways"),
     ]
-    exploitation: Annotated[float, Range(0, 1), About("probability q0 of taking the most attractive step")]
-    local_evaporation: Annotated[float, Range(0, 1), About("share by which an ant moves the trail of its step back to the initial one")]
+    trail_update: Annotated[
+        TrailUpdate,
+        About(
+            "all ants lay trails, or only steps of the best path so far evaporate and receive "
+            "deposit times evaporation"
+        ),
+    ]
+    exploitation: Annotated[
+        float, Range(0, 1), About("probability q0 of taking the most attractive step")
+    ]
+    local_evaporation: Annotated[
+        float,
+        Range(0, 1),
+        About("share by which an ant moves the trail of its step back to the initial one"),
+    ]
 
 
 class Colony(NamedTuple):
     """What a colony found.
 
-    best: (n,) cells of the shortest path, empty if no ant arrived. history: (iterations,) the shortest length so far, in cells. paths:
-    (ants, cells) those of the last iteration's ants; sizes: (ants,), 0 for an ant that died.
+    best: (n,) cells of the shortest path, empty if no ant arrived. history: (iterations,) the
+    shortest length so far, in cells. paths: (ants, cells) those of the last iteration's ants;
+    sizes: (ants,), 0 for an ant that died.
     """
 
     best: np.ndarray
@@ -61,8 +88,8 @@ class Colony(NamedTuple):
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
     """Shortest path over the 8-connected lattice of a grid.
 
-    An ant draws its next cell from the unvisited neighbours, in proportion to trail**trail_weight * heuristic**heuristic_weight. An ant
-    with no neighbour left dies.
+    An ant draws its next cell from the unvisited neighbours, in proportion to trail**trail_weight *
+    heuristic**heuristic_weight. An ant with no neighbour left dies.
 
     Parameters
     ----------
@@ -90,7 +117,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     colony = search(lattice(grid, problem.start, problem.target, corners), rng, settings)
     solved = len(colony.best) > 0
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, colony.best)) if solved else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, colony.best))
+        if solved
+        else None,
         objective=colony.history[-1] * grid.cell,
         claimed_feasible=solved,
         evaluations=settings.ants * len(colony.history),
@@ -102,7 +131,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 def search(places: Lattice, rng: np.random.Generator, rules: Settings) -> Colony:
     """The search behind `plan`. One iteration if start and target lie in the same cell."""
-    distance = np.hypot(places.row - places.row[places.target], places.column - places.column[places.target])
+    distance = np.hypot(
+        places.row - places.row[places.target], places.column - places.column[places.target]
+    )
     distance[places.target] = 1.0
     heuristic = 1.0 / distance
     heuristic[places.target] = rules.target_heuristic
@@ -113,17 +144,31 @@ def search(places: Lattice, rng: np.random.Generator, rules: Settings) -> Colony
 
 @compiled
 def _colony(rng, lattice, heuristic, rules):
-    """Best path, history, and the last iteration's paths with their sizes, as in `Colony`. heuristic: (cells,), with its weight applied."""
+    """Best path, history, and the last iteration's paths with their sizes, as in `Colony`.
+    heuristic: (cells,), with its weight applied.
+    """
     cells = len(lattice.row)
     trail = np.full((cells, 8), rules.initial_trail)
     visits = np.full(cells, -1)
-    paths, sizes = np.empty((rules.ants, cells), dtype=np.int64), np.empty(rules.ants, dtype=np.int64)
+    paths, sizes = (
+        np.empty((rules.ants, cells), dtype=np.int64),
+        np.empty(rules.ants, dtype=np.int64),
+    )
     best, best_size, best_length = np.empty(cells, dtype=np.int64), 0, np.inf
     history = np.empty(rules.iterations)
 
     for iteration in range(rules.iterations):
         for ant in range(rules.ants):
-            sizes[ant] = _walk(rng, lattice, trail, heuristic, rules, paths[ant], visits, iteration * rules.ants + ant)
+            sizes[ant] = _walk(
+                rng,
+                lattice,
+                trail,
+                heuristic,
+                rules,
+                paths[ant],
+                visits,
+                iteration * rules.ants + ant,
+            )
             if sizes[ant]:
                 walked = length(paths[ant, : sizes[ant]], lattice)
                 if walked < best_length:
@@ -134,7 +179,14 @@ def _colony(rng, lattice, heuristic, rules):
 
         if rules.trail_update == TrailUpdate.ant_colony_system:
             for k in range(1, best_size):
-                _lay(lattice, trail, best[k - 1], best[k], 1.0 - rules.evaporation, rules.evaporation * rules.deposit / best_length)
+                _lay(
+                    lattice,
+                    trail,
+                    best[k - 1],
+                    best[k],
+                    1.0 - rules.evaporation,
+                    rules.evaporation * rules.deposit / best_length,
+                )
         else:
             for cell in range(cells):
                 for step in range(8):
@@ -149,8 +201,8 @@ def _colony(rng, lattice, heuristic, rules):
 
 @compiled
 def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
-    """Let an ant walk. Writes its path and returns the size, or 0 if the ant dies. visits: (cells,) the number of the last ant that visited
-    each cell.
+    """Let an ant walk. Writes its path and returns the size, or 0 if the ant dies. visits: (cells,)
+    the number of the last ant that visited each cell.
     """
     steps, attraction = np.empty(8, dtype=np.int64), np.empty(8)
     cell = lattice.start
@@ -171,9 +223,18 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
                 open_steps += 1
         if open_steps == 0:
             return 0
-        neighbour = lattice.neighbours[cell, steps[_choose(rng, attraction[:open_steps], rules.exploitation)]]
+        neighbour = lattice.neighbours[
+            cell, steps[_choose(rng, attraction[:open_steps], rules.exploitation)]
+        ]
         if rules.local_evaporation > 0:
-            _lay(lattice, trail, cell, neighbour, 1.0 - rules.local_evaporation, rules.local_evaporation * rules.initial_trail)
+            _lay(
+                lattice,
+                trail,
+                cell,
+                neighbour,
+                1.0 - rules.local_evaporation,
+                rules.local_evaporation * rules.initial_trail,
+            )
         cell = neighbour
         path[size] = cell
         visits[cell] = ant
@@ -183,8 +244,8 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
 
 @allocation_free
 def _choose(rng, attraction, exploitation):
-    """A random index of an array (n,), in proportion to its values, or uniform if all are 0; with the probability `exploitation`, that of
-    the largest.
+    """A random index of an array (n,), in proportion to its values, or uniform if all are 0; with
+    the probability `exploitation`, that of the largest.
     """
     if exploitation > 0 and rng.random() < exploitation:
         return np.argmax(attraction)

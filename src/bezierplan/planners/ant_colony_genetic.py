@@ -1,7 +1,9 @@
-"""Ant colony optimisation followed by a genetic algorithm over the cells of a grid (ACO-GA), one of ma2020's rivals (Section 4.1).
+"""Ant colony optimisation followed by a genetic algorithm over the cells of a grid (ACO-GA), one of
+ma2020's rivals (Section 4.1).
 
-Its reference 30 (SmartPATH) gives the scheme: ants find the first paths, and a genetic algorithm with its own crossover improves them. If
-two parents share a cell, the first child gets the shorter head and the shorter tail; the second child is the second parent.
+Its reference 30 (SmartPATH) gives the scheme: ants find the first paths, and a genetic algorithm
+with its own crossover improves them. If two parents share a cell, the first child gets the shorter
+head and the shorter tail; the second child is the second parent.
 """
 
 from enum import IntEnum
@@ -31,7 +33,11 @@ class Settings(NamedTuple):
     crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
     mutation_probability: Annotated[float, Range(0, 1), About("of a child")]
     mutation: Annotated[
-        Mutation, About("an inner cell becomes another one next to the same two, or a section is reconnected through a random cell")
+        Mutation,
+        About(
+            "an inner cell becomes another one next to the same two, or a section is reconnected "
+            "through a random cell"
+        ),
     ]
     longest_join: Annotated[int, Range(2), About("most cells of a reconnected section")]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
@@ -43,11 +49,13 @@ def check(settings: dict) -> None:
 
 
 @with_settings(ant_colony.Settings, Settings)
-def plan(problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, settings: Settings) -> Plan:
+def plan(
+    problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, settings: Settings
+) -> Plan:
     """Shortest path over the 8-connected lattice of a grid.
 
-    The first population consists of the best path of all ants and the paths of the last iteration's ants, repeated in turn. Children lose
-    their loops.
+    The first population consists of the best path of all ants and the paths of the last iteration's
+    ants, repeated in turn. Children lose their loops.
 
     Parameters
     ----------
@@ -59,8 +67,8 @@ def plan(problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, 
     Returns
     -------
     Plan
-        Its objective is its length in units, infinite if there is no path. The history covers the iterations of the ants, then the
-        generations.
+        Its objective is its length in units, infinite if there is no path. The history covers the
+        iterations of the ants, then the generations.
 
     Raises
     ------
@@ -88,13 +96,22 @@ def plan(problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, 
             True,
             settings.elitism,
         )
-        best, later = cell_paths.evolve(moves, places, *_first_population(colony, settings.population), settings.generations, rules)
+        best, later = cell_paths.evolve(
+            moves,
+            places,
+            *_first_population(colony, settings.population),
+            settings.generations,
+            rules,
+        )
         history = np.concatenate([history, later[1:]])
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best)) if solved else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, best))
+        if solved
+        else None,
         objective=history[-1] * grid.cell,
         claimed_feasible=solved,
-        evaluations=ants.ants * len(colony.history) + settings.population * (len(history) - len(colony.history)),
+        evaluations=ants.ants * len(colony.history)
+        + settings.population * (len(history) - len(colony.history)),
         history=history * grid.cell,
         stop="generations" if solved else "no path",
         extra={},
@@ -103,7 +120,10 @@ def plan(problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, 
 
 def _first_population(colony: ant_colony.Colony, population: int) -> tuple[np.ndarray, np.ndarray]:
     """Paths (population, cells) and their sizes (population,)."""
-    paths, sizes = np.empty((population, colony.paths.shape[1]), dtype=np.int64), np.full(population, len(colony.best))
+    paths, sizes = (
+        np.empty((population, colony.paths.shape[1]), dtype=np.int64),
+        np.full(population, len(colony.best)),
+    )
     paths[:, : len(colony.best)] = colony.best
     arrived = np.flatnonzero(colony.sizes)
     if len(arrived):

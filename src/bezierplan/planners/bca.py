@@ -1,10 +1,12 @@
-"""Genetic algorithm for the control points of one Bezier curve on a grid: the shortest curve (BCA), or one that also keeps a safety
-distance from the obstacles (BCA-Q) (ma2020, Section 3).
+"""Genetic algorithm for the control points of one Bezier curve on a grid: the shortest curve (BCA),
+or one that also keeps a safety distance from the obstacles (BCA-Q) (ma2020, Section 3).
 
-A chromosome is the sequence of the free control points, each gene the binary number of a free cell; cells are numbered row by row from the
-top left (ma2020, eqs. 10 and 11, whose signs as printed lead outside the map). Lengths in the kernels are in cells.
+A chromosome is the sequence of the free control points, each gene the binary number of a free cell;
+cells are numbered row by row from the top left (ma2020, eqs. 10 and 11, whose signs as printed lead
+outside the map). Lengths in the kernels are in cells.
 
-Every form of the fitness is expressed as a cost, its reciprocal: the roulette uses 1 / cost, and the lowest cost is the best.
+Every form of the fitness is expressed as a cost, its reciprocal: the roulette uses 1 / cost, and
+the lowest cost is the best.
 """
 
 import math
@@ -17,7 +19,13 @@ import numpy as np
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.genetic import check_pairs, complement_bit, redraw_gene, roulette, swap_tails
+from bezierplan.planners.parts.genetic import (
+    check_pairs,
+    complement_bit,
+    redraw_gene,
+    roulette,
+    swap_tails,
+)
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid
@@ -30,25 +38,27 @@ PAPER = "ma2020"
 
 CurveKind = IntEnum("CurveKind", "bezier piecewise_quadratic", start=0)
 Initial = IntEnum("Initial", "uniform sorted feasible", start=0)
-Fitness = IntEnum("Fitness", "length repaired literal_weights hard_safety reciprocal_literal as_printed", start=0)
+Fitness = IntEnum(
+    "Fitness", "length repaired literal_weights hard_safety reciprocal_literal as_printed", start=0
+)
 FitnessFeasible = IntEnum("FitnessFeasible", "collision_free clearance", start=0)
 Mutation = IntEnum("Mutation", "bit_flip cell per_gene", start=0)
 
-# Maximum number of draws of a bit until the flipped gene is a free cell (after that, the gene stays as it is), and of a chromosome until
-# its curve is free.
+# Maximum number of draws of a bit until the flipped gene is a free cell (after that, the gene stays
+# as it is), and of a chromosome until its curve is free.
 _FLIP_TRIES = 50
 _FEASIBLE_TRIES = 200
-# If a chord crosses two grid lines at parameters that differ by less than this, it crosses them at their common corner.
+# If a chord crosses two grid lines at parameters that differ by less than this, it crosses them at
+# their common corner.
 _AT_CORNER = 1e-12
 
 
 class Settings(NamedTuple):
     """Settings of the search (ma2020, Sections 3 and 4).
 
-    Notes
-    -----
-    With the length L, c of n samples in collision, G = L (1 + collision_factor c / n) + collision_surcharge [c > 0], the weights w1 =
-    length_weight and w2 = safety_weight, the straight distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
+    Notes ----- With the length L, c of n samples in collision, G = L (1 + collision_factor c / n) +
+    collision_surcharge [c > 0], the weights w1 = length_weight and w2 = safety_weight, the straight
+    distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
 
         length              G (BCA)
         repaired            w1 G / D + w2 F (BCA-Q)
@@ -58,32 +68,73 @@ class Settings(NamedTuple):
         as_printed          1 / L of a feasible path, w1 L + w2 F of the others (eq. 12)
     """
 
-    curve: Annotated[CurveKind, About("one Bezier curve, or a chain of quadratic pieces", PAPER + ", eqs. 1, 6")]
-    control_points: Annotated[int, Range(0, 60), About("free control points, beside start and target")]
-    samples: Annotated[int, Range(2), About("points of the curve tested and measured, uniform in the parameter, both ends included")]
+    curve: Annotated[
+        CurveKind, About("one Bezier curve, or a chain of quadratic pieces", PAPER + ", eqs. 1, 6")
+    ]
+    control_points: Annotated[
+        int, Range(0, 60), About("free control points, beside start and target")
+    ]
+    samples: Annotated[
+        int,
+        Range(2),
+        About(
+            "points of the curve tested and measured, uniform in the parameter, both ends included"
+        ),
+    ]
     initial: Annotated[
         Initial,
-        About("genes are free cells drawn uniformly; also sorted by x + y; or redrawn until the curve is free"),
+        About(
+            "genes are free cells drawn uniformly; also sorted by x + y; or redrawn until the "
+            "curve is free"
+        ),
     ]
-    population: Annotated[int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4")]
-    generations: Annotated[int, Range(0), About("generations after the first", PAPER + ", Section 4")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents, cut between two genes", PAPER + ", Section 4")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, or (per_gene) of each gene", PAPER + ", Section 4")]
+    population: Annotated[
+        int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4")
+    ]
+    generations: Annotated[
+        int, Range(0), About("generations after the first", PAPER + ", Section 4")
+    ]
+    crossover_probability: Annotated[
+        float,
+        Range(0, 1),
+        About("of a pair of parents, cut between two genes", PAPER + ", Section 4"),
+    ]
+    mutation_probability: Annotated[
+        float,
+        Range(0, 1),
+        About("of a chromosome, or (per_gene) of each gene", PAPER + ", Section 4"),
+    ]
     mutation: Annotated[
         Mutation,
-        About("a gene's bit is flipped such that it stays a free cell, it becomes a random free cell, or a bit of each is flipped"),
+        About(
+            "a gene's bit is flipped such that it stays a free cell, it becomes a random free "
+            "cell, or a bit of each is flipped"
+        ),
     ]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
-    fitness: Annotated[Fitness, About("form of the cost, whose reciprocal is the fitness", PAPER + ", eqs. 12 to 14")]
+    fitness: Annotated[
+        Fitness,
+        About("form of the cost, whose reciprocal is the fitness", PAPER + ", eqs. 12 to 14"),
+    ]
     fitness_feasible: Annotated[
         FitnessFeasible,
-        About("feasible in the last two forms: free of collisions, or also clear by safety_distance"),
+        About(
+            "feasible in the last two forms: free of collisions, or also clear by safety_distance"
+        ),
     ]
     length_weight: Annotated[float, Range(0), About("w1", PAPER + ", eq. 12")]
     safety_weight: Annotated[float, Range(0), About("w2", PAPER + ", eq. 12")]
-    safety_distance: Annotated[float, Range(0), About("distance to keep from obstacles", PAPER + ", eq. 14", UNITS)]
-    collision_factor: Annotated[float, Range(0), About("length added for samples in collision, as a multiple of their share")]
-    collision_surcharge: Annotated[float, Range(0), About("added to a path with a collision", unit=UNITS)]
+    safety_distance: Annotated[
+        float, Range(0), About("distance to keep from obstacles", PAPER + ", eq. 14", UNITS)
+    ]
+    collision_factor: Annotated[
+        float,
+        Range(0),
+        About("length added for samples in collision, as a multiple of their share"),
+    ]
+    collision_surcharge: Annotated[
+        float, Range(0), About("added to a path with a collision", unit=UNITS)
+    ]
 
 
 def check(settings: dict) -> None:
@@ -91,12 +142,21 @@ def check(settings: dict) -> None:
     check_pairs(settings["population"])
     least = curves.least_points(settings["curve"]) - 2
     if settings["control_points"] < least:
-        raise ValueError(f"control_points: {settings['control_points']}; a curve of kind {settings['curve']} needs at least {least}")
+        raise ValueError(
+            f"control_points: {settings['control_points']}; a curve of kind {settings['curve']} "
+            f"needs at least {least}"
+        )
     pieces = len(curves.piece_matrix(settings["curve"], settings["control_points"] + 2))
     if settings["samples"] < pieces + 1:
-        raise ValueError(f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least {pieces + 1}")
+        raise ValueError(
+            f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least "
+            f"{pieces + 1}"
+        )
     if settings["length_weight"] == 0:
-        raise ValueError("length_weight: 0; a path without any cost has no fitness, so a number above 0 is needed")
+        raise ValueError(
+            "length_weight: 0; a path without any cost has no fitness, so a number above 0 is "
+            "needed"
+        )
 
 
 @with_settings(Settings)
@@ -113,7 +173,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        `claimed_feasible`: no sample collides. Extra columns: bad_samples, the number of colliding samples; safety_term, the path's F.
+        `claimed_feasible`: no sample collides. Extra columns: bad_samples, the number of colliding
+        samples; safety_term, the path's F.
 
     Raises
     ------
@@ -128,7 +189,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if problem.start == problem.target:
         # Start and target coincide: there is no length to minimise and no distance to divide by.
         point = Path("bezier", np.array([problem.start, problem.target]))
-        return Plan(point, 0.0, True, 1, np.zeros(1), "generations", {"bad_samples": 0, "safety_term": 0.0})
+        return Plan(
+            point, 0.0, True, 1, np.zeros(1), "generations", {"bad_samples": 0, "safety_term": 0.0}
+        )
     if settings.control_points == 0:
         # No search needed: one chromosome, the straight line.
         settings = settings._replace(population=1, generations=0)
@@ -137,7 +200,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     cells = _cells(grid, math.ceil(rules.safety_distance))
     sampled = _sampled(problem, curve, settings.control_points, settings.samples)
     starts, moves = rng.spawn(2)
-    codes = cells.free[starts.integers(0, len(cells.free), size=(settings.population, settings.control_points))]
+    codes = cells.free[
+        starts.integers(0, len(cells.free), size=(settings.population, settings.control_points))
+    ]
     if settings.initial == Initial.sorted:
         along = cells.centres[codes].sum(axis=2)
         codes = np.take_along_axis(codes, along.argsort(axis=1, kind="stable"), axis=1)
@@ -154,16 +219,20 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         evaluations=settings.population * (settings.generations + 1),
         history=history,
         stop="generations",
-        extra={"bad_samples": int(bad), "safety_term": _safety_term(bad, clearance, rules.safety_distance)},
+        extra={
+            "bad_samples": int(bad),
+            "safety_term": _safety_term(bad, clearance, rules.safety_distance),
+        },
     )
 
 
 class _Cells(NamedTuple):
     """The grid for the kernels, x along columns and y along rows, in cells.
 
-    occupied: bool (rows, columns), bottom row first. centres: (cells, 2), by code. legal: bool (2**bits,), whether a code stands for a free
-    cell. free: the codes of the free cells. near: (n, 2), column and row of occupied cells; those that may lie within the safety distance
-    of a point in the cell (row, column) are near[first[i] : first[i + 1]] with i = columns row + column.
+    occupied: bool (rows, columns), bottom row first. centres: (cells, 2), by code. legal: bool
+    (2**bits,), whether a code stands for a free cell. free: the codes of the free cells. near: (n,
+    2), column and row of occupied cells; those that may lie within the safety distance of a point
+    in the cell (row, column) are near[first[i] : first[i + 1]] with i = columns row + column.
     """
 
     occupied: np.ndarray
@@ -175,8 +244,9 @@ class _Cells(NamedTuple):
 
 
 class _Curve(NamedTuple):
-    """ends: (2, samples), x and y contributions of start and target to the samples, in cells. free: (control points, samples), the weights
-    of the free control points. straight: distance from start to target, in cells. cell: side of a cell, in units.
+    """ends: (2, samples), x and y contributions of start and target to the samples, in cells. free:
+    (control points, samples), the weights of the free control points. straight: distance from start
+    to target, in cells. cell: side of a cell, in units.
     """
 
     ends: np.ndarray
@@ -186,15 +256,17 @@ class _Curve(NamedTuple):
 
 
 def code_centres(rows: int, columns: int) -> np.ndarray:
-    """Centres (cells, 2) of the cells by code, in cells: numbered row by row from the top left, from 0 (ma2020, eqs. 10 and 11, which
-    number from 1).
+    """Centres (cells, 2) of the cells by code, in cells: numbered row by row from the top left,
+    from 0 (ma2020, eqs. 10 and 11, which number from 1).
     """
     down, along = np.indices((rows, columns)).reshape(2, -1)
     return np.column_stack([along + 0.5, rows - down - 0.5])
 
 
 def _cells(grid: Grid, reach: int) -> _Cells:
-    """The grid for the kernels; near holds the occupied cells at most `reach` columns and rows away."""
+    """The grid for the kernels; near holds the occupied cells at most `reach` columns and rows
+    away.
+    """
     rows, columns = grid.occupied.shape
     legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
     legal[: rows * columns] = ~grid.occupied[::-1].ravel()
@@ -202,38 +274,56 @@ def _cells(grid: Grid, reach: int) -> _Cells:
     if not len(free):
         raise ValueError("all cells are occupied; expected a free cell for the control points")
     reach = min(reach, max(rows, columns))
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(grid.occupied, reach), (2 * reach + 1, 2 * reach + 1))
+    around = np.lib.stride_tricks.sliding_window_view(
+        np.pad(grid.occupied, reach), (2 * reach + 1, 2 * reach + 1)
+    )
     row, column, up, right = np.nonzero(around)
     near = np.column_stack([column + right - reach, row + up - reach])
     at = columns * row + column
-    return _Cells(grid.occupied, code_centres(rows, columns), legal, free, near, np.searchsorted(at, np.arange(rows * columns + 1)))
+    return _Cells(
+        grid.occupied,
+        code_centres(rows, columns),
+        legal,
+        free,
+        near,
+        np.searchsorted(at, np.arange(rows * columns + 1)),
+    )
 
 
 def _sampled(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
     ends, free = _basis(curve, control_points, samples)
     grid = problem.workspace
     straight = math.dist(problem.start, problem.target) / grid.cell
-    return _Curve(grid.in_cells(np.array([problem.start, problem.target])).T @ ends, free, straight, grid.cell)
+    return _Curve(
+        grid.in_cells(np.array([problem.start, problem.target])).T @ ends, free, straight, grid.cell
+    )
 
 
 @cache
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) at the samples of a curve."""
+    """Weights of start and target (2, samples) and of the free control points (n, samples) at the
+    samples of a curve.
+    """
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
-    # A copy even where nothing is left, since numba would compile all kernels once more for an array that is read-only.
+    # A copy even where nothing is left, since numba would compile all kernels once more for an
+    # array that is read-only.
     return basis[[0, -1]], basis[1:-1].copy()
 
 
 @compiled
 def _search(rng, codes, cells, curve, rules):
-    """Genes (control points,) of the best chromosome, and the lowest cost so far (generations + 1,).
+    """Genes (control points,) of the best chromosome, and the lowest cost so far (generations +
+    1,).
 
     codes: (population, control points), the first generation; overwritten.
     """
     population, genes = codes.shape
     bits = int(np.log2(len(cells.legal)) + 0.5)
     cost, parent_cost = np.empty(population), np.empty(population)
-    parents, drawn = np.full_like(codes, -1), np.zeros(population, dtype=np.int64)  # the first generation inherits nothing
+    parents, drawn = (
+        np.full_like(codes, -1),
+        np.zeros(population, dtype=np.int64),
+    )  # the first generation inherits nothing
     best, best_cost = codes[0].copy(), np.inf
     history = np.empty(rules.generations + 1)
     scratch = np.empty((3, curve.ends.shape[1]))
@@ -311,7 +401,9 @@ def _flip(rng, genes, gene, bits, legal):
 def _cost(genes, cells, curve, rules, scratch):
     """Cost of a chromosome, the reciprocal of its fitness (`plan` lists the forms)."""
     length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != Fitness.length)
-    priced = length * (1.0 + rules.collision_factor * bad / curve.ends.shape[1]) + rules.collision_surcharge * (bad > 0)
+    priced = length * (
+        1.0 + rules.collision_factor * bad / curve.ends.shape[1]
+    ) + rules.collision_surcharge * (bad > 0)
     if rules.fitness == Fitness.length:
         return priced * curve.cell
     safety = _safety_term(bad, clearance, rules.safety_distance)
@@ -321,14 +413,22 @@ def _cost(genes, cells, curve, rules, scratch):
         return rules.length_weight * priced * curve.cell + rules.safety_weight * safety
     if rules.fitness == Fitness.hard_safety:
         return (priced + rules.collision_surcharge * safety) * curve.cell
-    if bad > 0 or (rules.fitness_feasible == FitnessFeasible.clearance and clearance < rules.safety_distance):
+    if bad > 0 or (
+        rules.fitness_feasible == FitnessFeasible.clearance and clearance < rules.safety_distance
+    ):
         return rules.length_weight * length * curve.cell + rules.safety_weight * safety
-    return length * curve.cell if rules.fitness == Fitness.reciprocal_literal else 1.0 / (length * curve.cell)
+    return (
+        length * curve.cell
+        if rules.fitness == Fitness.reciprocal_literal
+        else 1.0 / (length * curve.cell)
+    )
 
 
 @allocation_free
 def _safety_term(bad, clearance, safety_distance):
-    """How far the path undercuts the safety distance, from 0 to 1 (ma2020, eq. 14; 1 for a path that collides)."""
+    """How far the path undercuts the safety distance, from 0 to 1 (ma2020, eq. 14; 1 for a path
+    that collides).
+    """
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
         return 0.0
     return 1.0 if bad > 0 else (1.0 - clearance / safety_distance) ** 2
@@ -336,8 +436,9 @@ def _safety_term(bad, clearance, safety_distance):
 
 @allocation_free
 def _measure(genes, cells, curve, scratch, with_clearance):
-    """Length in cells of the polyline through a curve's samples, the number of colliding samples, and the minimum distance of the samples
-    to the occupied cells nearby: infinite if there are none, 0 for a path that collides or if it is not requested.
+    """Length in cells of the polyline through a curve's samples, the number of colliding samples,
+    and the minimum distance of the samples to the occupied cells nearby: infinite if there are
+    none, 0 for a path that collides or if it is not requested.
 
     scratch: (3, samples).
     """
@@ -350,7 +451,8 @@ def _measure(genes, cells, curve, scratch, with_clearance):
         for s in range(samples):
             x[s] += column * curve.free[k, s]
             y[s] += row * curve.free[k, s]
-    # Square roots and their sum are computed in two loops, so that the first can use vector instructions.
+    # Square roots and their sum are computed in two loops, so that the first can use vector
+    # instructions.
     for s in range(samples - 1):
         dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
         chords[s] = np.sqrt(dx * dx + dy * dy)
@@ -363,7 +465,9 @@ def _measure(genes, cells, curve, scratch, with_clearance):
 
 @allocation_free
 def _collisions(x, y, occupied):
-    """Number of samples that lie inside an occupied cell or end a chord that passes through one between its ends. Touching is allowed."""
+    """Number of samples that lie inside an occupied cell or end a chord that passes through one
+    between its ends. Touching is allowed.
+    """
     rows, columns = occupied.shape
     bad = 0
     column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
@@ -379,7 +483,9 @@ def _collisions(x, y, occupied):
 
 @allocation_free
 def _inside(value, cell):
-    """Whether a coordinate lies between the two grid lines of its column or row; rounding alone must not decide."""
+    """Whether a coordinate lies between the two grid lines of its column or row; rounding alone
+    must not decide.
+    """
     return cell + ON_LINE < value < cell + 1 - ON_LINE
 
 
@@ -387,8 +493,8 @@ def _inside(value, cell):
 def _cuts(x, y, x_end, y_end, occupied):
     """Whether a chord passes through an occupied cell between the cells of its ends.
 
-    The chord is divided so that no part crosses two grid lines of the same kind; a part that crosses one of each kind passes through one
-    more cell.
+    The chord is divided so that no part crosses two grid lines of the same kind; a part that
+    crosses one of each kind passes through one more cell.
     """
     rows, columns = occupied.shape
     parts = int(max(abs(x_end - x), abs(y_end - y))) + 1
@@ -397,7 +503,12 @@ def _cuts(x, y, x_end, y_end, occupied):
     for part in range(1, parts + 1):
         next_x, next_y = x + step_x, y + step_y
         next_column, next_row = min(int(next_x), columns - 1), min(int(next_y), rows - 1)
-        if part < parts and occupied[next_row, next_column] and _inside(next_x, next_column) and _inside(next_y, next_row):
+        if (
+            part < parts
+            and occupied[next_row, next_column]
+            and _inside(next_x, next_column)
+            and _inside(next_y, next_row)
+        ):
             return True
         if column != next_column and row != next_row:
             to_line_x = (max(column, next_column) - x) / step_x
@@ -412,7 +523,9 @@ def _cuts(x, y, x_end, y_end, occupied):
 
 @allocation_free
 def _clearance(x, y, cells):
-    """Minimum distance in cells of the samples to the occupied cells listed as near to theirs; infinite if there are none."""
+    """Minimum distance in cells of the samples to the occupied cells listed as near to theirs;
+    infinite if there are none.
+    """
     rows, columns = cells.occupied.shape
     least = np.inf
     for s in range(len(x)):

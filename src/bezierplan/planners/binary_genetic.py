@@ -1,11 +1,14 @@
-"""Genetic algorithm over the cells of a grid, each control point a binary cell number (song2016, Section III).
+"""Genetic algorithm over the cells of a grid, each control point a binary cell number (song2016,
+Section III).
 
-A chromosome is the sequence of the free control points between start and target. Every control point is the centre of a cell, free or
-occupied; only the samples of the curve are tested. Cells are numbered so that every bit string is a cell (`grid.embed`); no operator can
-leave the workspace. Lengths in the kernels are in cells.
+A chromosome is the sequence of the free control points between start and target. Every control
+point is the centre of a cell, free or occupied; only the samples of the curve are tested. Cells are
+numbered so that every bit string is a cell (`grid.embed`); no operator can leave the workspace.
+Lengths in the kernels are in cells.
 
-The objective is a sum over stretches of the curve: runs of samples that depend on the same few control points (three of eight for quadratic
-pieces). A stretch that a child inherits whole from a parent keeps the parent's length, which changes no result.
+The objective is a sum over stretches of the curve: runs of samples that depend on the same few
+control points (three of eight for quadratic pieces). A stretch that a child inherits whole from a
+parent keeps the parent's length, which changes no result.
 """
 
 from enum import IntEnum
@@ -38,26 +41,57 @@ class Settings(NamedTuple):
     """Settings of the search (song2016, Sections III and IV)."""
 
     curve: Annotated[Curve, About("kind of curve", PAPER + ", Section III")]
-    genes: Annotated[int, Range(0, 60), About("free control points, beside start and target", PAPER + ", Section IV")]
-    samples: Annotated[int, Range(2), About("points of the curve tested and measured, both ends included")]
-    spacing: Annotated[Spacing, About("samples are uniform in the parameter, or (polylines) along the path")]
-    population: Annotated[int, Range(2), About("chromosomes of a generation", PAPER + ", Section IV")]
-    generations: Annotated[int, Range(0), About("generations after the first", PAPER + ", Section IV")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", PAPER + ", Section IV")]
+    genes: Annotated[
+        int,
+        Range(0, 60),
+        About("free control points, beside start and target", PAPER + ", Section IV"),
+    ]
+    samples: Annotated[
+        int, Range(2), About("points of the curve tested and measured, both ends included")
+    ]
+    spacing: Annotated[
+        Spacing, About("samples are uniform in the parameter, or (polylines) along the path")
+    ]
+    population: Annotated[
+        int, Range(2), About("chromosomes of a generation", PAPER + ", Section IV")
+    ]
+    generations: Annotated[
+        int, Range(0), About("generations after the first", PAPER + ", Section IV")
+    ]
+    crossover_probability: Annotated[
+        float, Range(0, 1), About("of a pair of parents", PAPER + ", Section IV")
+    ]
     cut: Annotated[Cut, About("the crossover point lies before any bit, or only between genes")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, a gene or a bit", PAPER + ", Section IV")]
-    mutation: Annotated[Mutation, About("a bit of a chromosome is complemented, one of each gene, or each", PAPER + ", Section III-E")]
+    mutation_probability: Annotated[
+        float, Range(0, 1), About("of a chromosome, a gene or a bit", PAPER + ", Section IV")
+    ]
+    mutation: Annotated[
+        Mutation,
+        About(
+            "a bit of a chromosome is complemented, one of each gene, or each",
+            PAPER + ", Section III-E",
+        ),
+    ]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
-    penalty: Annotated[float, Range(0), About("added for occupied samples", PAPER + ", Section IV", UNITS)]
-    penalty_for: Annotated[PenaltyFor, About("each sample in an occupied cell, or once a path with any")]
-    occupied_point_penalty: Annotated[float, Range(0), About("added for each control point in an occupied cell", unit=UNITS)]
+    penalty: Annotated[
+        float, Range(0), About("added for occupied samples", PAPER + ", Section IV", UNITS)
+    ]
+    penalty_for: Annotated[
+        PenaltyFor, About("each sample in an occupied cell, or once a path with any")
+    ]
+    occupied_point_penalty: Annotated[
+        float, Range(0), About("added for each control point in an occupied cell", unit=UNITS)
+    ]
 
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     least = curves.least_points(settings["curve"]) - 2
     if settings["genes"] < least:
-        raise ValueError(f"genes: {settings['genes']}; a curve of kind {settings['curve']} needs at least {least}")
+        raise ValueError(
+            f"genes: {settings['genes']}; a curve of kind {settings['curve']} needs at least "
+            f"{least}"
+        )
     check_pairs(settings["population"])
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
         raise ValueError("spacing: arc_length; only a polyline has it, other curves need parameter")
@@ -65,7 +99,10 @@ def check(settings: dict) -> None:
         raise ValueError("cut: gene; a single gene can only be cut at a bit")
     pieces = len(curves.piece_matrix(settings["curve"], settings["genes"] + 2))
     if settings["samples"] < pieces + 1:
-        raise ValueError(f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least {pieces + 1}")
+        raise ValueError(
+            f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least "
+            f"{pieces + 1}"
+        )
 
 
 @with_settings(Settings)
@@ -82,7 +119,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        `claimed_feasible`: no sample in an occupied cell. Extra column: bad_samples, the number of samples in occupied cells.
+        `claimed_feasible`: no sample in an occupied cell. Extra column: bad_samples, the number of
+        samples in occupied cells.
 
     References
     ----------
@@ -90,9 +128,15 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     """
     grid = problem.workspace
     occupied = embed(grid.occupied)
-    # Start and target need not be centres of cells: they are two additional cells with their own numbers.
+    # Start and target need not be centres of cells: they are two additional cells with their own
+    # numbers.
     row, column = np.indices(occupied.shape).reshape(2, -1)
-    places = np.vstack([np.column_stack([column, row]) + 0.5, grid.in_cells(np.array([problem.start, problem.target]))])
+    places = np.vstack(
+        [
+            np.column_stack([column, row]) + 0.5,
+            grid.in_cells(np.array([problem.start, problem.target])),
+        ]
+    )
     ends = [occupied.size, occupied.size + 1]
     starts, moves = rng.spawn(2)
     if settings.genes == 0 or problem.start == problem.target:
@@ -101,7 +145,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         cells = np.full((1, settings.genes + 2), ends[0])
     else:
         cells = np.empty((settings.population, settings.genes + 2), dtype=np.int64)
-        cells[:, 1:-1] = starts.integers(0, occupied.size, size=(settings.population, settings.genes))
+        cells[:, 1:-1] = starts.integers(
+            0, occupied.size, size=(settings.population, settings.genes)
+        )
     cells[:, 0], cells[:, -1] = ends
 
     curve = Curve(settings.curve).name
@@ -109,10 +155,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     by_arc_length = settings.spacing == Spacing.arc_length
     measured = _Curve(
         basis=np.ascontiguousarray(basis.T),
-        stretches=np.array([[0, settings.genes + 1, 0, settings.samples - 1]]) if by_arc_length else stretches(basis),
+        stretches=np.array([[0, settings.genes + 1, 0, settings.samples - 1]])
+        if by_arc_length
+        else stretches(basis),
         by_arc_length=by_arc_length,
     )
-    best, best_bad, history = _search(moves, cells, occupied, places, measured, in_cells(settings, grid.cell))
+    best, best_bad, history = _search(
+        moves, cells, occupied, places, measured, in_cells(settings, grid.cell)
+    )
     points = grid.in_units(places[best])
     points[[0, -1]] = problem.start, problem.target
     return Plan(
@@ -129,7 +179,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 def stretches(basis: np.ndarray) -> np.ndarray:
     """Runs of chords between samples whose two ends depend on the same control points.
 
-    basis: (samples, control points), the curve's linear map. Returns (stretches, 4): first and last control point, first and last sample.
+    basis: (samples, control points), the curve's linear map. Returns (stretches, 4): first and last
+    control point, first and last sample.
     """
     first = (basis != 0).argmax(axis=1)
     last = basis.shape[1] - 1 - (basis != 0)[:, ::-1].argmax(axis=1)
@@ -140,7 +191,9 @@ def stretches(basis: np.ndarray) -> np.ndarray:
 
 
 class _Curve(NamedTuple):
-    """How chromosomes are measured. basis: (control points, samples), the curve's linear map; stretches: those of `stretches`."""
+    """How chromosomes are measured. basis: (control points, samples), the curve's linear map;
+    stretches: those of `stretches`.
+    """
 
     basis: np.ndarray
     stretches: np.ndarray
@@ -149,23 +202,35 @@ class _Curve(NamedTuple):
 
 @compiled
 def _search(rng, cells, occupied, places, curve, rules):
-    """Cells (control points,) of the best chromosome, the number of its samples in occupied cells, and the best objective so far
-    (generations + 1,).
+    """Cells (control points,) of the best chromosome, the number of its samples in occupied cells,
+    and the best objective so far (generations + 1,).
 
-    cells: (population, control points) numbers of cells. places: (cells + 2, 2) the cells' centres, then start and target, in cells.
+    cells: (population, control points) numbers of cells. places: (cells + 2, 2) the cells' centres,
+    then start and target, in cells.
     """
     population, points = cells.shape
     genes = points - 2
     basis, stretches = curve.basis, curve.stretches
     bits = int(np.log2(occupied.size) + 0.5)
-    lengths, bad = np.empty((population, len(stretches))), np.empty((population, len(stretches)), dtype=np.int64)
+    lengths, bad = (
+        np.empty((population, len(stretches))),
+        np.empty((population, len(stretches)), dtype=np.int64),
+    )
     parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
-    parents, drawn = np.full_like(cells, -1), np.zeros(population, dtype=np.int64)  # the first generation inherits nothing
+    parents, drawn = (
+        np.full_like(cells, -1),
+        np.zeros(population, dtype=np.int64),
+    )  # the first generation inherits nothing
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
     history = np.empty(rules.generations + 1)
     by_number, columns, samples = occupied.ravel(), occupied.shape[1], basis.shape[1]
-    scratch = np.empty(samples), np.empty(samples), np.empty(samples), np.empty(samples, dtype=np.int32)
+    scratch = (
+        np.empty(samples),
+        np.empty(samples),
+        np.empty(samples),
+        np.empty(samples, dtype=np.int32),
+    )
 
     for generation in range(rules.generations + 1):
         for i in range(population):
@@ -178,12 +243,18 @@ def _search(rng, cells, occupied, places, curve, rules):
                 elif _same(cells[i], parents[father], first, last):
                     lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
                 elif curve.by_arc_length:
-                    lengths[i, k], bad[i, k] = _measure_by_arc_length(cells[i], occupied, places, samples)
+                    lengths[i, k], bad[i, k] = _measure_by_arc_length(
+                        cells[i], occupied, places, samples
+                    )
                 else:
-                    lengths[i, k], bad[i, k] = _measure(cells[i], by_number, columns, places, basis, stretches[k], scratch)
+                    lengths[i, k], bad[i, k] = _measure(
+                        cells[i], by_number, columns, places, basis, stretches[k], scratch
+                    )
                 length += lengths[i, k]
                 count += bad[i, k]
-                objective[i] = length + rules.penalty * (count if rules.penalty_for == PenaltyFor.each_sample else min(count, 1))
+                objective[i] = length + rules.penalty * (
+                    count if rules.penalty_for == PenaltyFor.each_sample else min(count, 1)
+                )
                 # No other stretch makes it smaller, and only parents need to be measured in full.
                 if generation == rules.generations and objective[i] >= best_objective:
                     break
@@ -205,7 +276,11 @@ def _search(rng, cells, occupied, places, curve, rules):
             _copy(parents[drawn[i]], cells[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
-                cut = bits * integer(rng, 1, genes) if rules.cut == Cut.gene else integer(rng, 1, bits * genes)
+                cut = (
+                    bits * integer(rng, 1, genes)
+                    if rules.cut == Cut.gene
+                    else integer(rng, 1, bits * genes)
+                )
                 swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], cut, bits)
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
@@ -232,7 +307,9 @@ def _same(cells, others, first, last):
 
 @allocation_free
 def _mutate(rng, genes, bits, probability, mutation):
-    """Complement random bits of a chromosome in place (song2016, Section III-E describes `one_bit`)."""
+    """Complement random bits of a chromosome in place (song2016, Section III-E describes
+    `one_bit`).
+    """
     if mutation == Mutation.one_bit:
         if rng.random() < probability:
             complement_bit(genes, integer(rng, 0, bits * len(genes)), bits)
@@ -248,10 +325,12 @@ def _mutate(rng, genes, bits, probability, mutation):
 
 @allocation_free
 def _measure(cells, occupied, columns, places, basis, stretch, scratch):
-    """Length in cells of one stretch of a curve and the number of its samples in occupied cells, not counting the first.
+    """Length in cells of one stretch of a curve and the number of its samples in occupied cells,
+    not counting the first.
 
-    occupied: (cells,), of a grid with so many columns. basis: (control points, samples). scratch: three arrays (samples,) of numbers and
-    one of whole numbers. Start and target lie in free cells, so no sample is missed.
+    occupied: (cells,), of a grid with so many columns. basis: (control points, samples). scratch:
+    three arrays (samples,) of numbers and one of whole numbers. Start and target lie in free cells,
+    so no sample is missed.
     """
     first_point, last_point, first, last = stretch
     x, y, chords, numbers = scratch
@@ -267,14 +346,22 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch):
             x[s] += weights[s] * column
             y[s] += weights[s] * row
     for p in range(first_point + fewer, last_point + 1, 3):
-        a, b, c = basis[p, first : last + 1], basis[p + 1, first : last + 1], basis[p + 2, first : last + 1]
-        column_a, column_b, column_c = places[cells[p], 0], places[cells[p + 1], 0], places[cells[p + 2], 0]
+        a, b, c = (
+            basis[p, first : last + 1],
+            basis[p + 1, first : last + 1],
+            basis[p + 2, first : last + 1],
+        )
+        column_a, column_b, column_c = (
+            places[cells[p], 0],
+            places[cells[p + 1], 0],
+            places[cells[p + 2], 0],
+        )
         row_a, row_b, row_c = places[cells[p], 1], places[cells[p + 1], 1], places[cells[p + 2], 1]
         for s in range(samples):
             x[s] = x[s] + a[s] * column_a + b[s] * column_b + c[s] * column_c
             y[s] = y[s] + a[s] * row_a + b[s] * row_b + c[s] * row_c
-    # What vector instructions can do comes first: they make whole numbers of 32 bits only. Then the sum, in its order, which waits so long
-    # for each addition that cells are looked up meanwhile.
+    # What vector instructions can do comes first: they make whole numbers of 32 bits only. Then the
+    # sum, in its order, which waits so long for each addition that cells are looked up meanwhile.
     for s in range(samples):
         numbers[s] = np.int32(y[s] + ON_LINE) * columns + np.int32(x[s] + ON_LINE)
     for s in range(samples - 1):
@@ -288,7 +375,9 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch):
 
 @compiled
 def _measure_by_arc_length(cells, occupied, places, samples):
-    """Length in cells of a polyline and the number of samples, equally spaced along it, that lie in occupied cells."""
+    """Length in cells of a polyline and the number of samples, equally spaced along it, that lie in
+    occupied cells.
+    """
     points = len(cells)
     x, y, passed = np.empty(points), np.empty(points), np.zeros(points)
     for p in range(points):

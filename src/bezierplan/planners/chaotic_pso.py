@@ -1,12 +1,14 @@
-"""Particle swarm optimisation of a path's control points, plain (PSO) or with a chaotic sequence instead of one of its two random numbers:
-that of the cognitive term (CPSO-I) or of the social term (CPSO-II) (tharwat2018, Sections 3.2 and 4).
+"""Particle swarm optimisation of a path's control points, plain (PSO) or with a chaotic sequence
+instead of one of its two random numbers: that of the cognitive term (CPSO-I) or of the social term
+(CPSO-II) (tharwat2018, Sections 3.2 and 4).
 
-A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one curve; among spheres, z_1, ..., z_n follow
-(Section 6). The curve is linear in them, so to the kernels every curve kind is a constant matrix. Obstacles are tested at samples of the
-curve.
+A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one
+curve; among spheres, z_1, ..., z_n follow (Section 6). The curve is linear in them, so to the
+kernels every curve kind is a constant matrix. Obstacles are tested at samples of the curve.
 
-All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from three generators; positions are drawn
-particle by particle, and for each move r1 before r2; the number that the chaotic sequence replaces is drawn and discarded.
+All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from
+three generators; positions are drawn particle by particle, and for each move r1 before r2; the
+number that the chaotic sequence replaces is drawn and discarded.
 """
 
 import logging
@@ -50,7 +52,8 @@ Update = IntEnum("Update", "asynchronous synchronous", start=0)
 StartRule = IntEnum("StartRule", "random fixed", start=0)
 ZetaFor = IntEnum("ZetaFor", "iteration particle dimension", start=0)
 
-# This share of the particles starts around a given path, at a distance of about this share of the field's side per coordinate.
+# This share of the particles starts around a given path, at a distance of about this share of the
+# field's side per coordinate.
 _AROUND = 0.5
 _SPREAD = 0.05
 
@@ -58,11 +61,13 @@ _SPREAD = 0.05
 class Swarm(NamedTuple):
     """Result of a swarm after `done` iterations.
 
-    positions: (done + 1, d n) in d dimensions, and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: that
-    of the last of them. infeasible: number of evaluated paths that collide; colliding_samples: colliding samples of all evaluated paths,
-    summed over obstacles. best_colliding_samples: those of the best path, summed over the iterations. best_infeasible: number of
-    iterations, including the initial one, after which the best path collides. zeta_clipped: number of clipped values of the chaotic
-    sequence. zeta_collapsed_at: the iteration at which the sequence collapsed, or 0.
+    positions: (done + 1, d n) in d dimensions, and fitness: (done + 1,) of its best path after
+    iteration 0, 1, ..., done. violation: that of the last of them. infeasible: number of evaluated
+    paths that collide; colliding_samples: colliding samples of all evaluated paths, summed over
+    obstacles. best_colliding_samples: those of the best path, summed over the iterations.
+    best_infeasible: number of iterations, including the initial one, after which the best path
+    collides. zeta_clipped: number of clipped values of the chaotic sequence. zeta_collapsed_at: the
+    iteration at which the sequence collapsed, or 0.
     """
 
     positions: np.ndarray
@@ -80,66 +85,135 @@ class Settings(NamedTuple):
     """Settings of a swarm (tharwat2018, Table 2 and Sections 3 to 5)."""
 
     curve: Annotated[
-        Curve, About("kind of curve; a ferguson curve's control points alternate between tangents and points", PAPER + ", eqs. 1, 2")
+        Curve,
+        About(
+            "kind of curve; a ferguson curve's control points alternate between tangents and points",
+            PAPER + ", eqs. 1, 2",
+        ),
     ]
-    control_points: Annotated[int, Range(0, 60), About("free control points, beside start and target", PAPER + ", Section 5.1")]
-    samples: Annotated[int, Range(2), About("points of the curve tested and measured, uniform in the parameter, both ends included")]
+    control_points: Annotated[
+        int,
+        Range(0, 60),
+        About("free control points, beside start and target", PAPER + ", Section 5.1"),
+    ]
+    samples: Annotated[
+        int,
+        Range(2),
+        About(
+            "points of the curve tested and measured, uniform in the parameter, both ends included"
+        ),
+    ]
     penalty: Annotated[
         Penalty,
         About(
-            "fitness of length L and violation V: L (1 + beta V), L + beta V, or (death) beta if V > 0",
+            "fitness of length L and violation V: L (1 + beta V), L + beta V, or (death) beta if "
+            "V > 0",
             PAPER + ", eq. 22, which leaves it open",
         ),
     ]
     beta: Annotated[float, Range(0), About("weight of the violation, or fitness of a dead path")]
-    d_min: Annotated[float, Range(0), About("added to every radius", PAPER + ", eq. 21", unit=UNITS)]
+    d_min: Annotated[
+        float, Range(0), About("added to every radius", PAPER + ", eq. 21", unit=UNITS)
+    ]
     particles: Annotated[int, Range(1), About("particles of the swarm", PAPER + ", Table 2")]
     iterations: Annotated[int, Range(0), About("most iterations", PAPER + ", Table 2")]
     stall_limit: Annotated[
-        int, Range(0), About("iterations without improvement that end the search, 0 for none", PAPER + ", Section 4.2.1")
+        int,
+        Range(0),
+        About(
+            "iterations without improvement that end the search, 0 for none",
+            PAPER + ", Section 4.2.1",
+        ),
     ]
-    straight_line_particle: Annotated[bool, About("whether the first particle starts as the straight line", PAPER + ", Section 3.2")]
+    straight_line_particle: Annotated[
+        bool,
+        About("whether the first particle starts as the straight line", PAPER + ", Section 3.2"),
+    ]
     c1: Annotated[float, Range(0), About("C1, the cognition learning factor", PAPER + ", Table 2")]
     c2: Annotated[float, Range(0), About("C2, the social learning factor", PAPER + ", Table 2")]
     inertia: Annotated[float, Range(0), About("w of the first iteration")]
-    inertia_damping: Annotated[float, Range(0, 1), About("factor of w from one iteration to the next")]
-    velocity_limit: Annotated[float, Range(0, math.inf), About("largest step, as a share of the field's side; infinite for no limit")]
+    inertia_damping: Annotated[
+        float, Range(0, 1), About("factor of w from one iteration to the next")
+    ]
+    velocity_limit: Annotated[
+        float,
+        Range(0, math.inf),
+        About("largest step, as a share of the field's side; infinite for no limit"),
+    ]
     bound_rule: Annotated[
-        BoundRule, About("outside the field: moved to its border, the velocity mirrored, kept (clamp) or zero (stop); or left there (none)")
+        BoundRule,
+        About(
+            "outside the field: moved to its border, the velocity mirrored, kept (clamp) or zero "
+            "(stop); or left there (none)"
+        ),
     ]
     random_numbers: Annotated[RandomNumbers, About("what gets its own r1 and r2")]
     update: Annotated[
-        Update, About("the swarm's best path is replaced as soon as a better one is found, or once all have moved", PAPER + ", Algorithm 1")
+        Update,
+        About(
+            "the swarm's best path is replaced as soon as a better one is found, or once all have "
+            "moved",
+            PAPER + ", Algorithm 1",
+        ),
     ]
-    chaotic_term: Annotated[ChaoticTerm, About("term whose random number the chaotic sequence replaces", PAPER + ", eqs. 17, 18")]
-    chaotic_map: Annotated[chaotic_maps.Map, About("map of the chaotic sequence", PAPER + ", eqs. 9 to 16")]
-    chaotic_start_rule: Annotated[StartRule, About("how the chaotic sequence starts", PAPER + ", Figure 3")]
-    chaotic_start: Annotated[float, Range(0, 1), About("first number under the rule fixed; of the map constant every number")]
-    zeta_for: Annotated[ZetaFor, About("what gets its own number of the sequence", PAPER + ", eqs. 17, 18")]
+    chaotic_term: Annotated[
+        ChaoticTerm,
+        About("term whose random number the chaotic sequence replaces", PAPER + ", eqs. 17, 18"),
+    ]
+    chaotic_map: Annotated[
+        chaotic_maps.Map, About("map of the chaotic sequence", PAPER + ", eqs. 9 to 16")
+    ]
+    chaotic_start_rule: Annotated[
+        StartRule, About("how the chaotic sequence starts", PAPER + ", Figure 3")
+    ]
+    chaotic_start: Annotated[
+        float,
+        Range(0, 1),
+        About("first number under the rule fixed; of the map constant every number"),
+    ]
+    zeta_for: Annotated[
+        ZetaFor, About("what gets its own number of the sequence", PAPER + ", eqs. 17, 18")
+    ]
     singer_mu: Annotated[float, Range(0.9, 1.08), About("mu", PAPER + ", eq. 10")]
-    singer_x4: Annotated[float, Range(13, 14), About("coefficient of x^4, usually 13.302875", PAPER + ", eq. 10")]
+    singer_x4: Annotated[
+        float, Range(13, 14), About("coefficient of x^4, usually 13.302875", PAPER + ", eq. 10")
+    ]
     sine_a: Annotated[float, Range(0, 4), About("a", PAPER + ", eq. 14")]
     piecewise_p: Annotated[float, Range(0.01, 0.49), About("P", PAPER + ", eq. 15")]
     sinusoidal_a: Annotated[float, Range(0, 4), About("a", PAPER + ", eq. 16")]
     count_collisions: Annotated[
-        bool, About("if false, paths too long to be an improvement are not tested: no result changes, but collisions_a, _b and _f are nan")
+        bool,
+        About(
+            "if false, paths too long to be an improvement are not tested: no result changes, but "
+            "collisions_a, _b and _f are nan"
+        ),
     ]
 
 
 def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected; warns if the swarm cannot move."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected;
+    warns if the swarm cannot move.
+    """
     try:
         curves.piece_matrix(settings["curve"], settings["control_points"] + 2)
     except ValueError as error:
-        raise ValueError(f"control_points: {settings['control_points']}, beside start and target; {error}") from None
+        raise ValueError(
+            f"control_points: {settings['control_points']}, beside start and target; {error}"
+        ) from None
     if settings["chaotic_map"] == "constant" and settings["chaotic_start_rule"] == "random":
-        raise ValueError("chaotic_start_rule: random; a constant map needs fixed, its value is chaotic_start")
+        raise ValueError(
+            "chaotic_start_rule: random; a constant map needs fixed, its value is chaotic_start"
+        )
     if settings["particles"] == 1:
-        logger.warning("particles: 1; the only particle is its own best and the swarm's, so it never moves")
+        logger.warning(
+            "particles: 1; the only particle is its own best and the swarm's, so it never moves"
+        )
 
 
 @with_settings(Settings)
-def plan(problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None) -> Plan:
+def plan(
+    problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None
+) -> Plan:
     """Shortest penalised curve from start to target with free control points.
 
     Parameters
@@ -149,15 +223,17 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, start: 
     rng : numpy.random.Generator
         The only source of random numbers.
     start : ndarray, (n, d), optional
-        Free control points, in units, at which the first particle starts and half of all particles around it; else all start anywhere.
+        Free control points, in units, at which the first particle starts and half of all particles
+        around it; else all start anywhere.
 
     Returns
     -------
     Plan
-        `claimed_feasible`: V at most `FEASIBLE`. Extra columns: violation, the path's V; zeta_collapsed_at and zeta_clipped as in `Swarm`;
-        and six interpretations of the paper's undefined number of collisions: particles per iteration (a), samples per evaluated path (b),
-        samples of the best path, summed over the iterations (c), iterations whose best path collides (d), final paths, 0 or 1 (e),
-        evaluated paths in the run (f).
+        `claimed_feasible`: V at most `FEASIBLE`. Extra columns: violation, the path's V;
+        zeta_collapsed_at and zeta_clipped as in `Swarm`; and six interpretations of the paper's
+        undefined number of collisions: particles per iteration (a), samples per evaluated path (b),
+        samples of the best path, summed over the iterations (c), iterations whose best path
+        collides (d), final paths, 0 or 1 (e), evaluated paths in the run (f).
 
     References
     ----------
@@ -174,11 +250,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, start: 
         claimed_feasible=feasible,
         evaluations=evaluations,
         history=swarm.fitness,
-        stop="iterations" if done == settings.iterations or settings.control_points == 0 else "stall",
+        stop="iterations"
+        if done == settings.iterations or settings.control_points == 0
+        else "stall",
         extra={
             "violation": swarm.violation,
             "collisions_a": infeasible / evaluations * settings.particles,
-            "collisions_b": (swarm.colliding_samples if settings.count_collisions else math.nan) / evaluations,
+            "collisions_b": (swarm.colliding_samples if settings.count_collisions else math.nan)
+            / evaluations,
             "collisions_c": swarm.best_colliding_samples,
             "collisions_d": swarm.best_infeasible,
             "collisions_e": int(not feasible),
@@ -190,31 +269,49 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, start: 
 
 
 def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
-    """Control points (iterations done + 1, control points, d) of the best path after every iteration of the run that `plan` makes with the
-    same generator and settings, in units (tharwat2018, Figure 12)."""
+    """Control points (iterations done + 1, control points, d) of the best path after every
+    iteration of the run that `plan` makes with the same generator and settings, in units
+    (tharwat2018, Figure 12).
+    """
     positions = search(problem, rng, filled(Settings, settings)).positions
     return np.array([_points(position, settings["curve"], problem) for position in positions])
 
 
-def search(problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None) -> Swarm:
+def search(
+    problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None
+) -> Swarm:
     """The search behind `plan` and `track`."""
     initial, moves, chaos = rng.spawn(3)
-    particles, iterations, dimensions = settings.particles, settings.iterations, len(problem.start) * settings.control_points
+    particles, iterations, dimensions = (
+        settings.particles,
+        settings.iterations,
+        len(problem.start) * settings.control_points,
+    )
     if dimensions == 0:
         particles, iterations = 1, 0
     objective = _objective(problem, settings)
-    low, high = np.repeat(np.reshape(problem.workspace.bounds, (-1, 2)).T, settings.control_points, axis=1)
+    low, high = np.repeat(
+        np.reshape(problem.workspace.bounds, (-1, 2)).T, settings.control_points, axis=1
+    )
     shares = initial.random((particles, dimensions))
     if start is not None:
         around = int(_AROUND * particles)
         known = (start.T.ravel() - low) / (high - low)
-        shares[:around] = np.clip(known + _SPREAD * initial.standard_normal((around, dimensions)), 0.0, 1.0)
+        shares[:around] = np.clip(
+            known + _SPREAD * initial.standard_normal((around, dimensions)), 0.0, 1.0
+        )
         shares[0] = known
     x = low + (high - low) * shares
     if settings.straight_line_particle:
         x[0] = _straight_line(problem, Curve(settings.curve).name, settings.control_points)
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
-    return Swarm(*_swarm(moves, x, zeta, low, high, settings.velocity_limit * (high - low), objective, settings), clipped, collapsed_at)
+    return Swarm(
+        *_swarm(
+            moves, x, zeta, low, high, settings.velocity_limit * (high - low), objective, settings
+        ),
+        clipped,
+        collapsed_at,
+    )
 
 
 def _objective(problem: Problem, settings: Settings) -> Objective:
@@ -231,9 +328,13 @@ def _objective(problem: Problem, settings: Settings) -> Objective:
 
 @cache
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) at the samples of a curve."""
+    """Weights of start and target (2, samples) and of the free control points (n, samples) at the
+    samples of a curve.
+    """
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
-    return basis[list(curves.ends(curve))], np.ascontiguousarray(basis[_free(curve, control_points)])
+    return basis[list(curves.ends(curve))], np.ascontiguousarray(
+        basis[_free(curve, control_points)]
+    )
 
 
 @cache
@@ -264,13 +365,19 @@ def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndar
     return points[_free(curve, control_points)].T.ravel()
 
 
-def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings) -> chaotic_maps.Sequence:
-    """The chaotic sequence: its values (iterations, particles or 1, dimensions or 1) and the iteration at which it collapsed."""
+def _zeta(
+    chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings
+) -> chaotic_maps.Sequence:
+    """The chaotic sequence: its values (iterations, particles or 1, dimensions or 1) and the
+    iteration at which it collapsed.
+    """
     shape = size[: settings.zeta_for + 1]
     shape += (1,) * (3 - len(shape))
     if settings.chaotic_term == ChaoticTerm.none:
         return chaotic_maps.Sequence(np.zeros(shape), 0, 0)
-    parameters = chaotic_maps.Parameters(*(getattr(settings, name) for name in chaotic_maps.Parameters._fields))
+    parameters = chaotic_maps.Parameters(
+        *(getattr(settings, name) for name in chaotic_maps.Parameters._fields)
+    )
     name = chaotic_maps.Map(settings.chaotic_map).name
     start = settings.chaotic_start
     if settings.chaotic_start_rule == StartRule.random:
@@ -284,8 +391,8 @@ def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: Sett
 def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     """Algorithm 1 of tharwat2018; returns the first fields of a `Swarm`.
 
-    x: (particles, dimensions), the initial positions; moved in place. zeta: (iterations, particles or 1, dimensions or 1). low, high,
-    limit: (dimensions,), the field and the largest velocity.
+    x: (particles, dimensions), the initial positions; moved in place. zeta: (iterations, particles
+    or 1, dimensions or 1). low, high, limit: (dimensions,), the field and the largest velocity.
     """
     iterations = len(zeta)
     particles, dimensions = x.shape
@@ -307,12 +414,28 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
         attractor = g[before] if rules.update == Update.synchronous else g[t]
         for i in range(particles):
             if t > 0:
-                if rules.random_numbers == RandomNumbers.particle or (rules.random_numbers == RandomNumbers.iteration and i == 0):
+                if rules.random_numbers == RandomNumbers.particle or (
+                    rules.random_numbers == RandomNumbers.iteration and i == 0
+                ):
                     _draw(rng, r)
-                _move(rng, r, x[i], v[i], p[i], attractor, zeta[before, min(i, zeta.shape[1] - 1)], w, limit, rules)
+                _move(
+                    rng,
+                    r,
+                    x[i],
+                    v[i],
+                    p[i],
+                    attractor,
+                    zeta[before, min(i, zeta.shape[1] - 1)],
+                    w,
+                    limit,
+                    rules,
+                )
                 _hold(x[i], v[i], low, high, rules.bound_rule)
             length = penalised.length(x[i], objective, curve, scratch)
-            if not rules.count_collisions and penalised.least_fitness(length, objective) >= p_fitness[i]:
+            if (
+                not rules.count_collisions
+                and penalised.least_fitness(length, objective) >= p_fitness[i]
+            ):
                 continue
             violation, colliding = penalised.violation(curve, objective, scratch)
             infeasible += violation > FEASIBLE
@@ -332,7 +455,15 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
             w *= rules.inertia_damping
         if t - improved_at == rules.stall_limit > 0:
             break
-    return g[: t + 1], g_fitness[: t + 1], g_violation, infeasible, colliding_samples, best_colliding_samples, best_infeasible
+    return (
+        g[: t + 1],
+        g_fitness[: t + 1],
+        g_violation,
+        infeasible,
+        colliding_samples,
+        best_colliding_samples,
+        best_infeasible,
+    )
 
 
 @allocation_free
@@ -349,7 +480,8 @@ def _draw(rng, r):
 
 @allocation_free
 def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
-    """Velocity and position of one particle, in place (tharwat2018, eqs. 8 and 7; CPSO-I: eq. 17, CPSO-II: eq. 18).
+    """Velocity and position of one particle, in place (tharwat2018, eqs. 8 and 7; CPSO-I: eq. 17,
+    CPSO-II: eq. 18).
 
     zeta: (dimensions or 1,), this particle's number(s) of the chaotic sequence.
     """

@@ -1,14 +1,17 @@
-"""A baseline for robots that cannot turn on the spot: a path of arcs and straight lines that turns no tighter than a radius anywhere, from
-one heading to another where they are given (Dubins 1957).
+"""A baseline for robots that cannot turn on the spot: a path of arcs and straight lines that turns
+no tighter than a radius anywhere, from one heading to another where they are given (Dubins 1957).
 
-If the shortest such path without obstacles is free, it is the answer, and exact. Otherwise hybrid A* finds one (Dolgov et al. 2008): from
-the start it drives short arcs to the left, straight lines and short arcs to the right; of all places reached in about the same heading in
-the same cell the nearest is driven on from; the distance ahead is estimated by that around obstacles over a lattice, and by the Dubins path
-without them. Now and then the Dubins path from there to the target is tried; if it is free, a path is found. It is then pulled tight: parts
-of it are replaced by Dubins paths between its own places, and these places are moved as long as it becomes shorter.
+If the shortest such path without obstacles is free, it is the answer, and exact. Otherwise hybrid
+A* finds one (Dolgov et al. 2008): from the start it drives short arcs to the left, straight lines
+and short arcs to the right; of all places reached in about the same heading in the same cell the
+nearest is driven on from; the distance ahead is estimated by that around obstacles over a lattice,
+and by the Dubins path without them. Now and then the Dubins path from there to the target is tried;
+if it is free, a path is found. It is then pulled tight: parts of it are replaced by Dubins paths
+between its own places, and these places are moved as long as it becomes shorter.
 
-Every arc and line is tested by the certified checker's own search, as the cubic pieces that are the answer. A search that finds nothing is
-repeated with finer steps; that it finds nothing is no proof that there is no such path.
+Every arc and line is tested by the certified checker's own search, as the cubic pieces that are the
+answer. A search that finds nothing is repeated with finer steps; that it finds nothing is no proof
+that there is no such path.
 """
 
 import heapq
@@ -31,13 +34,15 @@ extra = ("expanded",)
 exact = True
 deterministic = True
 
-# A step turns by at most this angle, in radians, and is at most this share of the map's longer side. Searches follow each other with steps
-# shorter by a factor, and drive on from at most so many places.
+# A step turns by at most this angle, in radians, and is at most this share of the map's longer
+# side. Searches follow each other with steps shorter by a factor, and drive on from at most so many
+# places.
 _STEP_ANGLE = math.pi / 8
 _STEP_SHARE = 1 / 60
 _SEARCHES = ((1.0, 6_000), (0.5, 9_000), (0.25, 12_000))
 
-# The length ahead counts so much more than that driven: what is found first need not be shortest, since it is pulled tight.
+# The length ahead counts so much more than that driven: what is found first need not be shortest,
+# since it is pulled tight.
 _HASTE = 2.0
 
 # Side of a cell of places, in steps: no step ends in the cell in which it begins.
@@ -46,7 +51,8 @@ _CELL = 1 / 1.6
 # Most headings that are told apart.
 _MOST_HEADINGS = 256
 
-# The Dubins path to the target is tried from places that are nearer to it than all before, and from one in so many others.
+# The Dubins path to the target is tried from places that are nearer to it than all before, and from
+# one in so many others.
 _TRIED = 16
 
 # Nodes of the lattice over which distances around obstacles are counted, about.
@@ -55,7 +61,8 @@ _NODES = 40_000
 # Where the lattice knows no way, the distance ahead is this many times the straight line.
 _DETOUR = 2.0
 
-# Places of a path between which it is pulled tight, at most; how often that is done; and the gain that ends it, as a share of the length.
+# Places of a path between which it is pulled tight, at most; how often that is done; and the gain
+# that ends it, as a share of the length.
 _MOST_PLACES = 100
 _ROUNDS = 3
 _LEAST_GAIN = 1e-3
@@ -63,24 +70,39 @@ _LEAST_GAIN = 1e-3
 # From a place, those before it are looked at until so many in a row cannot be joined with it.
 _OUT_OF_SIGHT = 6
 
-# Places are moved by this share of the turning radius, and turned by this angle in radians; then so often by half of that.
+# Places are moved by this share of the turning radius, and turned by this angle in radians; then so
+# often by half of that.
 _MOVED = 0.5
 _TURNED = 0.4
 _HALVINGS = 8
 
 
 class Settings(NamedTuple):
-    """What the robot can do, and how it stands at both ends; without a heading there, any is right."""
+    """What the robot can do, and how it stands at both ends; without a heading there, any is
+    right.
+    """
 
-    turning_radius: Annotated[float, Range(SMALLEST_FEATURE, LARGEST), About("the smallest radius in which the robot turns", unit=UNITS)]
-    start_heading: Annotated[
-        float | None, Range(-math.tau, math.tau), About("heading at the start, counterclockwise from the x-axis; null for any", unit="rad")
+    turning_radius: Annotated[
+        float,
+        Range(SMALLEST_FEATURE, LARGEST),
+        About("the smallest radius in which the robot turns", unit=UNITS),
     ]
-    target_heading: Annotated[float | None, Range(-math.tau, math.tau), About("heading at the target; null for any", unit="rad")]
+    start_heading: Annotated[
+        float | None,
+        Range(-math.tau, math.tau),
+        About("heading at the start, counterclockwise from the x-axis; null for any", unit="rad"),
+    ]
+    target_heading: Annotated[
+        float | None,
+        Range(-math.tau, math.tau),
+        About("heading at the target; null for any", unit="rad"),
+    ]
 
 
 class Lattice(NamedTuple):
-    """Distances to the target around obstacles. low: (2,) its lower left node. side: distance of nodes. ahead: (rows, columns)."""
+    """Distances to the target around obstacles. low: (2,) its lower left node. side: distance of
+    nodes. ahead: (rows, columns).
+    """
 
     low: np.ndarray
     side: float
@@ -101,20 +123,25 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        Its objective is its length, in units, or infinite if there is no path. Extra column: expanded, the number of places from which the
-        search drove on, 0 if the Dubins path itself is free.
+        Its objective is its length, in units, or infinite if there is no path. Extra column:
+        expanded, the number of places from which the search drove on, 0 if the Dubins path itself
+        is free.
 
-    References
-    ----------
-    L. E. Dubins, On curves of minimal length with a constraint on average curvature, and with prescribed initial and terminal positions and
-    tangents, American Journal of Mathematics 79 (1957); D. Dolgov, S. Thrun, M. Montemerlo, J. Diebel, Practical search techniques in path
-    planning for autonomous driving, AAAI Workshop on Search in AI and Robotics (2008).
+    References ---------- L. E. Dubins, On curves of minimal length with a constraint on average
+    curvature, and with prescribed initial and terminal positions and tangents, American Journal of
+    Mathematics 79 (1957); D. Dolgov, S. Thrun, M. Montemerlo, J. Diebel, Practical search
+    techniques in path planning for autonomous driving, AAAI Workshop on Search in AI and Robotics
+    (2008).
     """
     blocked = region(problem.workspace)
-    return searched(problem, settings, shortest_paths.shortest_path(problem, blocked=blocked), blocked)
+    return searched(
+        problem, settings, shortest_paths.shortest_path(problem, blocked=blocked), blocked
+    )
 
 
-def searched(problem: Problem, settings: Settings, bound: shortest_paths.Bound, blocked: Region) -> Plan:
+def searched(
+    problem: Problem, settings: Settings, bound: shortest_paths.Bound, blocked: Region
+) -> Plan:
     """The same, where the exact shortest path and the region of the map are known."""
     if math.isinf(bound.length):
         return _answer(problem, None, 0, "no way", blocked)
@@ -127,15 +154,23 @@ def searched(problem: Problem, settings: Settings, bound: shortest_paths.Bound, 
     lattice = _lattice(problem, bound, blocked)
     expanded = 0
     for factor, most in _SEARCHES:
-        poses, count = _search(ends, radius, factor * _step(problem, radius), lattice, most, blocked)
+        poses, count = _search(
+            ends, radius, factor * _step(problem, radius), lattice, most, blocked
+        )
         expanded += count
         if len(poses):
-            return _answer(problem, _pulled_tight(poses, radius, blocked), expanded, "search", blocked)
+            return _answer(
+                problem, _pulled_tight(poses, radius, blocked), expanded, "search", blocked
+            )
     return _answer(problem, None, expanded, "none found", blocked)
 
 
-def _answer(problem: Problem, pieces: np.ndarray | None, expanded: int, stop: str, blocked: Region) -> Plan:
-    """The answer with a path of pieces (n, 4, 2), relative to the region's origin, or without one."""
+def _answer(
+    problem: Problem, pieces: np.ndarray | None, expanded: int, stop: str, blocked: Region
+) -> Plan:
+    """The answer with a path of pieces (n, 4, 2), relative to the region's origin, or without
+    one.
+    """
     told = {"evaluations": 1 + expanded, "stop": stop, "extra": {"expanded": expanded}}
     if pieces is None:
         return Plan(None, math.inf, claimed_feasible=False, history=np.array([math.inf]), **told)
@@ -174,7 +209,9 @@ def _lattice(problem: Problem, bound: shortest_paths.Bound, blocked: Region) -> 
 
 @compiled
 def _distances(low, side, shape, known, blocked):
-    """Distances ahead (rows, columns) over the lattice's free links to the 8 neighbours, from known ones (n, 3): x, y, distance."""
+    """Distances ahead (rows, columns) over the lattice's free links to the 8 neighbours, from known
+    ones (n, 3): x, y, distance.
+    """
     rows, columns = shape
     ahead = np.full((rows, columns), np.inf)
     settled = np.zeros((rows, columns), dtype=np.bool_)
@@ -193,13 +230,19 @@ def _distances(low, side, shape, known, blocked):
         for up in range(-1, 2):
             for right in range(-1, 2):
                 other_row, other_column = row + up, column + right
-                if not (0 <= other_row < rows and 0 <= other_column < columns) or settled[other_row, other_column]:
+                if (
+                    not (0 <= other_row < rows and 0 <= other_column < columns)
+                    or settled[other_row, other_column]
+                ):
                     continue
                 so_far = length + side * math.hypot(up, right)
                 if so_far >= ahead[other_row, other_column]:
                     continue
                 link[0, 0, 0], link[0, 0, 1] = low[0] + side * column, low[1] + side * row
-                link[0, 1, 0], link[0, 1, 1] = low[0] + side * other_column, low[1] + side * other_row
+                link[0, 1, 0], link[0, 1, 1] = (
+                    low[0] + side * other_column,
+                    low[1] + side * other_row,
+                )
                 if first_collision(link, blocked)[0] == np.inf:
                     ahead[other_row, other_column] = so_far
                     heapq.heappush(heap, (so_far, other_row, other_column))
@@ -225,7 +268,9 @@ def _ahead(pose, target, radius, lattice, words):
 
 @compiled
 def _free_word(a, b, radius, most, blocked, words, pieces):
-    """The shortest free one of the `most` shortest words between two poses: its number, -1 without one, and of how many pieces it is."""
+    """The shortest free one of the `most` shortest words between two poses: its number, -1 without
+    one, and of how many pieces it is.
+    """
     words_between(a, b, radius, words)
     for _ in range(most):
         best = 0
@@ -248,7 +293,9 @@ def _free_word(a, b, radius, most, blocked, words, pieces):
 
 @compiled
 def _chain(poses, radius, most, blocked):
-    """The pieces (n, 4, 2) of free words from pose to pose; none if there is not one between two of them."""
+    """The pieces (n, 4, 2) of free words from pose to pose; none if there is not one between two of
+    them.
+    """
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
     chain = np.empty(((len(poses) - 1) * MOST_PIECES, 4, 2))
     total = 0
@@ -263,16 +310,17 @@ def _chain(poses, radius, most, blocked):
     return chain[:total]
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Hybrid A*
 
 
 @compiled
 def _search(ends, radius, step, lattice, most, blocked):
-    """Poses (n, 3) from start to target, each reached from the one before by a step or a word, and the number of places driven on from.
+    """Poses (n, 3) from start to target, each reached from the one before by a step or a word, and
+    the number of places driven on from.
 
-    A place is known by the cell and the heading in which it lies, its exact pose is kept. None are found if the queue is empty or `most`
-    places were driven on from.
+    A place is known by the cell and the heading in which it lies, its exact pose is kept. None are
+    found if the queue is empty or `most` places were driven on from.
     """
     start, target = ends[0], ends[1]
     headings = min(max(round(math.tau * radius / step), 8), _MOST_HEADINGS)
@@ -319,7 +367,9 @@ def _search(ends, radius, step, lattice, most, blocked):
                 continue
             came_from[count], length[count] = node, so_far
             nodes[key] = count
-            heapq.heappush(heap, (so_far + _HASTE * _ahead(pose, target, radius, lattice, words), count))
+            heapq.heappush(
+                heap, (so_far + _HASTE * _ahead(pose, target, radius, lattice, words), count)
+            )
             count += 1
     return poses[:0], expanded
 
@@ -329,7 +379,10 @@ def _drive(pose, turn, step, radius, reached):
     """The pose that is reached from another by an arc or a straight line."""
     heading = pose[2] + turn * step / radius
     if turn == 0.0:
-        reached[0], reached[1] = pose[0] + step * math.cos(heading), pose[1] + step * math.sin(heading)
+        reached[0], reached[1] = (
+            pose[0] + step * math.cos(heading),
+            pose[1] + step * math.sin(heading),
+        )
     else:
         reached[0] = pose[0] + turn * radius * (math.sin(heading) - math.sin(pose[2]))
         reached[1] = pose[1] - turn * radius * (math.cos(heading) - math.cos(pose[2]))
@@ -338,7 +391,9 @@ def _drive(pose, turn, step, radius, reached):
 
 @allocation_free
 def _key(pose, step, headings):
-    """The number of a pose's cell and heading; cells are told apart up to a million steps from the origin."""
+    """The number of a pose's cell and heading; cells are told apart up to a million steps from the
+    origin.
+    """
     side = _CELL * step
     column, row = math.floor(pose[0] / side), math.floor(pose[1] / side)
     heading = round(pose[2] / math.tau * headings) % headings
@@ -347,7 +402,9 @@ def _key(pose, step, headings):
 
 @compiled
 def _way(poses, came_from, last, ends):
-    """The poses (n, 3) from start to a node, and the target; the ends are those that were asked for."""
+    """The poses (n, 3) from start to a node, and the target; the ends are those that were asked
+    for.
+    """
     count = 0
     node = last
     while node >= 0:
@@ -363,7 +420,7 @@ def _way(poses, came_from, last, ends):
     return way
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Pulling tight
 
 
@@ -392,7 +449,9 @@ def _length(pieces: np.ndarray) -> float:
 
 
 def _places(pieces: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Poses (n, 3) along the pieces of a path, between its ends: the joints, and between them as many on each as there is room for."""
+    """Poses (n, 3) along the pieces of a path, between its ends: the joints, and between them as
+    many on each as there is room for.
+    """
     parts = max(1, _MOST_PLACES // len(pieces))
     t = np.arange(parts) / parts
     basis, slope = curves.bernstein(3, t), curves.bernstein(2, t)
@@ -404,7 +463,9 @@ def _places(pieces: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 @compiled
 def _shortcut(poses, radius, blocked):
-    """Those of some poses (n, 3) along a path over which a chain of free words is shortest; none if there is no such chain."""
+    """Those of some poses (n, 3) along a path over which a chain of free words is shortest; none if
+    there is no such chain.
+    """
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
     count = len(poses)
     length, came_from = np.full(count, np.inf), np.full(count, -1)
@@ -413,7 +474,9 @@ def _shortcut(poses, radius, blocked):
         unseen = 0
         for i in range(j - 1, -1, -1):
             if length[i] < length[j]:
-                word = _free_word(poses[i], poses[j], radius, WORDS if i == j - 1 else 1, blocked, words, pieces)[0]
+                word = _free_word(
+                    poses[i], poses[j], radius, WORDS if i == j - 1 else 1, blocked, words, pieces
+                )[0]
                 unseen = unseen + 1 if word < 0 else 0
                 if word >= 0 and length[i] + words[word, 7] < length[j]:
                     length[j], came_from[j] = length[i] + words[word, 7], i
@@ -435,7 +498,9 @@ def _shortcut(poses, radius, blocked):
 
 @compiled
 def _move(poses, radius, blocked):
-    """Move and turn each pose (n, 3) between the ends as long as the words to it and from it become shorter and are free."""
+    """Move and turn each pose (n, 3) between the ends as long as the words to it and from it become
+    shorter and are free.
+    """
     words, pieces, before = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2)), np.empty(3)
     share = 1.0
     for _ in range(_HALVINGS):
@@ -457,7 +522,9 @@ def _move(poses, radius, blocked):
 
 @compiled
 def _through(poses, i, radius, blocked, words, pieces, limit):
-    """Length of the shortest free words to a pose and from it; infinite if they are not below a limit."""
+    """Length of the shortest free words to a pose and from it; infinite if they are not below a
+    limit.
+    """
     total = 0.0
     for k in range(i - 1, i + 1):
         words_between(poses[k], poses[k + 1], radius, words)
@@ -469,7 +536,9 @@ def _through(poses, i, radius, blocked, words, pieces, limit):
         return np.inf
     total = 0.0
     for k in range(i - 1, i + 1):
-        word = _free_word(poses[k], poses[k + 1], radius, 1 if limit < np.inf else WORDS, blocked, words, pieces)[0]
+        word = _free_word(
+            poses[k], poses[k + 1], radius, 1 if limit < np.inf else WORDS, blocked, words, pieces
+        )[0]
         if word < 0:
             return np.inf
         total += words[word, 7]

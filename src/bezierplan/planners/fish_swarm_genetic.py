@@ -1,7 +1,9 @@
-"""Artificial fish swarm followed by a genetic algorithm over the cells of a grid (ASFA-GA), one of ma2020's rivals (Section 4.1).
+"""Artificial fish swarm followed by a genetic algorithm over the cells of a grid (ASFA-GA), one of
+ma2020's rivals (Section 4.1).
 
-Of its reference 31 only the title is known. Fish forage from cell to cell and occasionally follow one that is closer to the target; the
-paths of those that arrive form the first population of a genetic algorithm, which mutates a path by foraging a section of it again.
+Of its reference 31 only the title is known. Fish forage from cell to cell and occasionally follow
+one that is closer to the target; the paths of those that arrive form the first population of a
+genetic algorithm, which mutates a path by foraging a section of it again.
 """
 
 from typing import Annotated, NamedTuple
@@ -23,11 +25,19 @@ exact = True
 class Settings(NamedTuple):
     """Settings of the swarm and the genetic algorithm; ma2020 gives none."""
 
-    corners: Annotated[Corners, About("how many of the two cells beside a diagonal step may be occupied")]
+    corners: Annotated[
+        Corners, About("how many of the two cells beside a diagonal step may be occupied")
+    ]
     fish: Annotated[int, Range(1), About("fish of a swarm")]
-    tries: Annotated[int, Range(0), About("random neighbours examined for one closer to the target before any is taken")]
+    tries: Annotated[
+        int,
+        Range(0),
+        About("random neighbours examined for one closer to the target before any is taken"),
+    ]
     sight: Annotated[float, Range(0), About("how far a fish sees others", unit="cells")]
-    crowding: Annotated[float, Range(0), About("share of the fish in sight from which on nobody is followed")]
+    crowding: Annotated[
+        float, Range(0), About("share of the fish in sight from which on nobody is followed")
+    ]
     follow_every: Annotated[int, Range(1), About("steps after which a fish looks for others")]
     releases: Annotated[int, Range(1), About("most swarms released")]
     longest_path: Annotated[int, Range(1), About("cells behind it with which a fish dies")]
@@ -35,7 +45,9 @@ class Settings(NamedTuple):
     population: Annotated[int, Range(2), About("paths of a generation")]
     generations: Annotated[int, Range(0), About("generations after the first")]
     crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a child, a section of whose path is foraged again")]
+    mutation_probability: Annotated[
+        float, Range(0, 1), About("of a child, a section of whose path is foraged again")
+    ]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
 
 
@@ -48,10 +60,12 @@ def check(settings: dict) -> None:
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
     """Shortest path over the 8-connected lattice of a grid.
 
-    Swarms of fish are released at the start until there are enough paths for the population. A fish enters no cell twice. Every
-    follow_every steps it looks for others within sight, including those that have arrived: if there are fewer than crowding times fish of
-    them and the one nearest to the target is nearer than itself, it moves to the neighbour nearest to that one. A fish with no neighbour
-    left dies. If there are fewer paths than the population, they are repeated in turn. Children lose their loops.
+    Swarms of fish are released at the start until there are enough paths for the population. A fish
+    enters no cell twice. Every follow_every steps it looks for others within sight, including those
+    that have arrived: if there are fewer than crowding times fish of them and the one nearest to
+    the target is nearer than itself, it moves to the neighbour nearest to that one. A fish with no
+    neighbour left dies. If there are fewer paths than the population, they are repeated in turn.
+    Children lose their loops.
 
     Parameters
     ----------
@@ -97,9 +111,13 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             settings.elitism,
         )
         turns = np.resize(np.arange(len(sizes)), settings.population)
-        best, history = cell_paths.evolve(moves, places, paths[turns], sizes[turns], settings.generations, rules)
+        best, history = cell_paths.evolve(
+            moves, places, paths[turns], sizes[turns], settings.generations, rules
+        )
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best)) if solved else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, best))
+        if solved
+        else None,
         objective=history[-1] * grid.cell,
         claimed_feasible=solved,
         evaluations=settings.fish * released + settings.population * (len(history) - 1),
@@ -114,10 +132,18 @@ _SWIMMING, _ARRIVED, _DEAD = range(3)
 
 @compiled
 def _release(rng, lattice, swarm):
-    """The first paths (n, longest path) of fish that arrive, at most a population, their sizes (n,), and the number of releases."""
+    """The first paths (n, longest path) of fish that arrive, at most a population, their sizes
+    (n,), and the number of releases.
+    """
     wanted = swarm.population
-    arrivals, arrival_sizes = np.empty((wanted, swarm.longest_path), dtype=np.int64), np.empty(wanted, dtype=np.int64)
-    paths, sizes = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
+    arrivals, arrival_sizes = (
+        np.empty((wanted, swarm.longest_path), dtype=np.int64),
+        np.empty(wanted, dtype=np.int64),
+    )
+    paths, sizes = (
+        np.empty((swarm.fish, swarm.longest_path), dtype=np.int64),
+        np.empty(swarm.fish, dtype=np.int64),
+    )
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
     cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     arrived = released = 0
@@ -138,7 +164,9 @@ def _release(rng, lattice, swarm):
                 if step % swarm.follow_every == 0:
                     cell = _follow(lattice, i, cells, states, visited[i], swarm)
                 if cell < 0:
-                    cell = cell_paths.forage(rng, lattice, cells[i], lattice.target, swarm.tries, visited[i])
+                    cell = cell_paths.forage(
+                        rng, lattice, cells[i], lattice.target, swarm.tries, visited[i]
+                    )
                 if cell < 0 or sizes[i] == swarm.longest_path:
                     states[i] = _DEAD
                     continue
@@ -148,20 +176,28 @@ def _release(rng, lattice, swarm):
                 if cell == lattice.target:
                     states[i] = _ARRIVED
                     if arrived < wanted:
-                        arrival_sizes[arrived] = cell_paths.put(paths[i, : sizes[i]], arrivals[arrived], 0)
+                        arrival_sizes[arrived] = cell_paths.put(
+                            paths[i, : sizes[i]], arrivals[arrived], 0
+                        )
                         arrived += 1
     return arrivals[:arrived], arrival_sizes[:arrived], released
 
 
 @allocation_free
 def _follow(lattice, i, cells, states, visited, swarm):
-    """The unvisited neighbour of a fish's cell that is nearest to its leader, the fish in sight nearest to the target; -1 if there is none.
+    """The unvisited neighbour of a fish's cell that is nearest to its leader, the fish in sight
+    nearest to the target; -1 if there is none.
 
-    There is also none if the leader is no nearer to the target than the fish itself, or if too many fish are in sight.
+    There is also none if the leader is no nearer to the target than the fish itself, or if too many
+    fish are in sight.
     """
     in_sight, leader, near = 0, -1, cell_paths.distance_square(lattice, cells[i], lattice.target)
     for j in range(swarm.fish):
-        if j != i and states[j] != _DEAD and cell_paths.distance_square(lattice, cells[i], cells[j]) <= swarm.sight**2:
+        if (
+            j != i
+            and states[j] != _DEAD
+            and cell_paths.distance_square(lattice, cells[i], cells[j]) <= swarm.sight**2
+        ):
             in_sight += 1
             distance = cell_paths.distance_square(lattice, cells[j], lattice.target)
             if distance < near:

@@ -1,11 +1,14 @@
-"""Genetic algorithm over paths of cells: a chromosome is a path of neighbouring free cells (the rival GA of elhoseny2017).
+"""Genetic algorithm over paths of cells: a chromosome is a path of neighbouring free cells (the
+rival GA of elhoseny2017).
 
-The baseline called GA in Tables 2, 3 and 6 of elhoseny2017 (Alajlan et al., 2013), which gives no parameters or operators; these are common
-ones. First paths are greedy walks through random cells. A crossover joins the head of one path and the tail of another at a shared cell; a
-mutation makes a new walk between two cells of a path. Loops are removed from every path.
+The baseline called GA in Tables 2, 3 and 6 of elhoseny2017 (Alajlan et al., 2013), which gives no
+parameters or operators; these are common ones. First paths are greedy walks through random cells. A
+crossover joins the head of one path and the tail of another at a shared cell; a mutation makes a
+new walk between two cells of a path. Loops are removed from every path.
 
-A cell has eight neighbours; a diagonal step may pass between two occupied cells. In the kernels a cell is its index in the grid with a
-frame of occupied cells around it, so that no step leaves the grid. Costs in the kernels are in cells.
+A cell has eight neighbours; a diagonal step may pass between two occupied cells. In the kernels a
+cell is its index in the grid with a frame of occupied cells around it, so that no step leaves the
+grid. Costs in the kernels are in cells.
 """
 
 from typing import Annotated, NamedTuple
@@ -36,12 +39,34 @@ class Settings(NamedTuple):
     generations: Annotated[int, Range(0), About("generations after the first")]
     crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
     mutation_probability: Annotated[float, Range(0, 1), About("of a child")]
-    diagonal_cost: Annotated[float, Range(1, 2), About("of a diagonal step; a straight one costs 1", "elhoseny2017, Section 4.6", "cells")]
-    attempts: Annotated[int, Range(1), About("first walks tried for each chromosome; missing ones are copies of those found")]
-    longest_walk: Annotated[float, Range(1), About("steps after which a walk is abandoned, as a multiple of rows + columns")]
-    least_detour: Annotated[int, Range(1), About("fewest random steps where no free neighbour is nearer to the goal")]
-    detour_share: Annotated[float, Range(0), About("most such steps more than that, minus one, as a share of the columns")]
-    straight_on: Annotated[float, Range(0, 1), About("probability that a random step keeps the direction, if that cell is free")]
+    diagonal_cost: Annotated[
+        float,
+        Range(1, 2),
+        About("of a diagonal step; a straight one costs 1", "elhoseny2017, Section 4.6", "cells"),
+    ]
+    attempts: Annotated[
+        int,
+        Range(1),
+        About("first walks tried for each chromosome; missing ones are copies of those found"),
+    ]
+    longest_walk: Annotated[
+        float,
+        Range(1),
+        About("steps after which a walk is abandoned, as a multiple of rows + columns"),
+    ]
+    least_detour: Annotated[
+        int, Range(1), About("fewest random steps where no free neighbour is nearer to the goal")
+    ]
+    detour_share: Annotated[
+        float,
+        Range(0),
+        About("most such steps more than that, minus one, as a share of the columns"),
+    ]
+    straight_on: Annotated[
+        float,
+        Range(0, 1),
+        About("probability that a random step keeps the direction, if that cell is free"),
+    ]
 
 
 @with_settings(Settings)
@@ -60,7 +85,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        Its objective is its cost in units, infinite if there is no path. Extra column: first_walks, the number of first paths found.
+        Its objective is its cost in units, infinite if there is no path. Extra column: first_walks,
+        the number of first paths found.
 
     References
     ----------
@@ -69,24 +95,39 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     walled = np.pad(grid.occupied, 1, constant_values=True)
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
-    (start_column, target_column), (start_row, target_row) = np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
+    (start_column, target_column), (start_row, target_row) = (
+        np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
+    )
     rows, columns = grid.occupied.shape
     walker = _Walker(
         walled=walled.ravel(),
         columns=walled.shape[1],
         longest_walk=int(settings.longest_walk * (rows + columns)),
         least_detour=settings.least_detour,
-        most_detour=max(settings.least_detour, settings.least_detour - 1 + int(settings.detour_share * columns)),
+        most_detour=max(
+            settings.least_detour, settings.least_detour - 1 + int(settings.detour_share * columns)
+        ),
         straight_on=settings.straight_on,
     )
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
-    start, target = start_row * walled.shape[1] + start_column, target_row * walled.shape[1] + target_column
+    start, target = (
+        start_row * walled.shape[1] + start_column,
+        target_row * walled.shape[1] + target_column,
+    )
     cells, found, history = _search(*rng.spawn(2), walker, start, target, settings)
     history *= grid.cell
     extra = {"first_walks": int(found)}
     if found == 0:
-        return Plan(None, np.inf, claimed_feasible=False, evaluations=1, history=history, stop="no way", extra=extra)
+        return Plan(
+            None,
+            np.inf,
+            claimed_feasible=False,
+            evaluations=1,
+            history=history,
+            stop="no way",
+            extra=extra,
+        )
     row, column = np.divmod(cells, walled.shape[1])
     centres = grid.in_units(np.column_stack([column, row]) - 0.5)
     return Plan(
@@ -101,17 +142,24 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def _turns(column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Whether (n,) a cell of a path is its first, its last, or one at which the direction changes."""
+    """Whether (n,) a cell of a path is its first, its last, or one at which the direction
+    changes.
+    """
     steps = np.column_stack([np.diff(column), np.diff(row)])
     inner = (steps[1:] != steps[:-1]).any(axis=1)
     return np.concatenate([[True], inner, [True]])[-len(column) :]
 
 
 def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
-    """Points from start to target through centres of cells; start and target lie in the first and last of these cells."""
+    """Points from start to target through centres of cells; start and target lie in the first and
+    last of these cells.
+    """
     points = [problem.start, *centres.tolist(), problem.target]
     # An end that coincides with a centre, up to rounding, replaces it.
-    first, last = (np.allclose(points[i], points[j], rtol=0, atol=1e-9 * problem.workspace.cell) for i, j in ((0, 1), (-1, -2)))
+    first, last = (
+        np.allclose(points[i], points[j], rtol=0, atol=1e-9 * problem.workspace.cell)
+        for i, j in ((0, 1), (-1, -2))
+    )
     del points[1 : 1 + first]
     if last and len(points) > 2:
         del points[-2]
@@ -119,8 +167,9 @@ def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
 
 
 class _Walker(NamedTuple):
-    """What a walk depends on, including settings of `plan`. walled: bool (cells,), the framed grid row by row; columns: of the framed grid.
-    longest_walk: in steps; least_detour, most_detour: steps of a detour, both inclusive.
+    """What a walk depends on, including settings of `plan`. walled: bool (cells,), the framed grid
+    row by row; columns: of the framed grid. longest_walk: in steps; least_detour, most_detour:
+    steps of a detour, both inclusive.
     """
 
     walled: np.ndarray
@@ -133,10 +182,16 @@ class _Walker(NamedTuple):
 
 @compiled
 def _search(walks_rng, moves_rng, walker, start, target, rules):
-    """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far (generations + 1,)."""
+    """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far
+    (generations + 1,).
+    """
     size, columns, population = len(walker.walled), walker.columns, rules.population
-    # A path visits a cell once; before its loops are removed, a child consists of at most two paths and a walk.
-    walk, last_visit = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64), np.empty(size, dtype=np.int64)
+    # A path visits a cell once; before its loops are removed, a child consists of at most two paths
+    # and a walk.
+    walk, last_visit = (
+        np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64),
+        np.empty(size, dtype=np.int64),
+    )
     index, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
     paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk, last_visit)
@@ -171,8 +226,8 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
 
 @compiled
 def _best(paths, costs, population):
-    """The cheapest paths in ascending order of cost, ties in their original order; and their costs (2 population,), with room for
-    children.
+    """The cheapest paths in ascending order of cost, ties in their original order; and their costs
+    (2 population,), with room for children.
     """
     order = ascending(costs[: len(paths)])
     best = np.empty(2 * population)
@@ -183,7 +238,9 @@ def _best(paths, costs, population):
 
 @compiled
 def _first_walks(rng, walker, start, target, rules, walk, last_visit):
-    """Up to `population` paths, and their costs (2 population,): the first one directly to the target, the others through a free cell."""
+    """Up to `population` paths, and their costs (2 population,): the first one directly to the
+    target, the others through a free cell.
+    """
     paths = [walk[:0]]
     paths.clear()
     costs = np.empty(2 * rules.population)
@@ -208,8 +265,8 @@ def _first_walks(rng, walker, start, target, rules, walk, last_visit):
 
 @allocation_free
 def _extend(rng, walker, walk, count, goal):
-    """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, or 0 if the walk becomes too long or cannot
-    move.
+    """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, or 0
+    if the walk becomes too long or cannot move.
     """
     walled, columns = walker.walled, walker.columns
     end = count + walker.longest_walk
@@ -225,8 +282,13 @@ def _extend(rng, walker, walk, count, goal):
             nearest = (goal_row - row) ** 2 + (goal_column - column) ** 2
             nearer = -1
             for k in range(8):
-                distance = (goal_row - row - _ROW_STEPS[k]) ** 2 + (goal_column - column - _COLUMN_STEPS[k]) ** 2
-                if distance < nearest and not walled[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]:
+                distance = (goal_row - row - _ROW_STEPS[k]) ** 2 + (
+                    goal_column - column - _COLUMN_STEPS[k]
+                ) ** 2
+                if (
+                    distance < nearest
+                    and not walled[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
+                ):
                     nearest = distance
                     nearer = k
             if nearer < 0:
@@ -266,8 +328,8 @@ def _random_step(rng, walled, columns, cell):
 
 @allocation_free
 def _cut_loops(walk, count, last_visit):
-    """Remove the loops of a walk, in place: after each cell it continues as after its last visit there. Returns the remaining number of
-    cells.
+    """Remove the loops of a walk, in place: after each cell it continues as after its last visit
+    there. Returns the remaining number of cells.
     """
     for k in range(count):
         last_visit[walk[k]] = k
@@ -282,8 +344,8 @@ def _cut_loops(walk, count, last_visit):
 
 @allocation_free
 def _join(rng, head, tail, index, common, walk):
-    """Write the head of one path and the tail of another, joined at a random inner cell of both. Returns its length, or 0 if there is no
-    such cell.
+    """Write the head of one path and the tail of another, joined at a random inner cell of both.
+    Returns its length, or 0 if there is no such cell.
 
     index: (cells,) scratch, all -1 before and after.
     """
@@ -306,12 +368,15 @@ def _join(rng, head, tail, index, common, walk):
 
 @allocation_free
 def _walk_anew(rng, walker, path, count, last_visit):
-    """Replace the section between two random cells of a path by a new walk, in place; a failed walk changes nothing."""
+    """Replace the section between two random cells of a path by a new walk, in place; a failed walk
+    changes nothing.
+    """
     one = integer(rng, 0, count)
     other = integer(rng, 0, count - 1)
     other += other >= one
     first, last = min(one, other), max(one, other)
-    # The new walk is written after the path, followed by the path's tail; then both are moved forward.
+    # The new walk is written after the path, followed by the path's tail; then both are moved
+    # forward.
     path[count] = path[first]
     end = _extend(rng, walker, path, count + 1, path[last])
     if end == 0:
@@ -322,7 +387,9 @@ def _walk_anew(rng, walker, path, count, last_visit):
 
 @allocation_free
 def _copy(source, first, last, target, place):
-    """Copy the cells first .. last - 1 of one path to a place in another. Returns the place after them."""
+    """Copy the cells first .. last - 1 of one path to a place in another. Returns the place after
+    them.
+    """
     for k in range(first, last):
         target[place + k - first] = source[k]
     return place + last - first

@@ -1,7 +1,9 @@
-"""Genetic algorithm for paths over the cells of a grid (GA), a rival in ma2020 (Section 4.1; its reference 29, no parameters given).
+"""Genetic algorithm for paths over the cells of a grid (GA), a rival in ma2020 (Section 4.1; its
+reference 29, no parameters given).
 
-With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted midpoints: the algorithm of BCA without
-the Bezier curve. With `rows` a chromosome is itself a path, initially one through a random free cell of each row.
+With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted
+midpoints: the algorithm of BCA without the Bezier curve. With `rows` a chromosome is itself a path,
+initially one through a random free cell of each row.
 """
 
 from enum import IntEnum
@@ -30,18 +32,30 @@ Initial = IntEnum("Initial", "uniform sorted", start=0)
 
 
 class Settings(NamedTuple):
-    """Settings of the search; ma2020 gives none. The coding rows does not use genes, initial and undecodable_length."""
+    """Settings of the search; ma2020 gives none. The coding rows does not use genes, initial and
+    undecodable_length.
+    """
 
-    corners: Annotated[Corners, About("how many of the two cells beside a diagonal step may be occupied")]
-    coding: Annotated[Coding, About("a chromosome is a sequence of free cells to be joined, or a path")]
+    corners: Annotated[
+        Corners, About("how many of the two cells beside a diagonal step may be occupied")
+    ]
+    coding: Annotated[
+        Coding, About("a chromosome is a sequence of free cells to be joined, or a path")
+    ]
     genes: Annotated[int, Range(0, 60), About("free cells of a chromosome")]
     initial: Annotated[Initial, About("genes are drawn uniformly, or also sorted by column + row")]
     longest_join: Annotated[int, Range(2), About("most cells of a path, repeated ones included")]
-    undecodable_length: Annotated[float, Range(1), About("length of a chromosome whose cells cannot be joined", unit=UNITS)]
+    undecodable_length: Annotated[
+        float, Range(1), About("length of a chromosome whose cells cannot be joined", unit=UNITS)
+    ]
     population: Annotated[int, Range(2), About("chromosomes of a generation")]
     generations: Annotated[int, Range(0), About("generations after the first")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents, cut between two genes or at a shared cell")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome: a gene or a section gets a random free cell")]
+    crossover_probability: Annotated[
+        float, Range(0, 1), About("of a pair of parents, cut between two genes or at a shared cell")
+    ]
+    mutation_probability: Annotated[
+        float, Range(0, 1), About("of a chromosome: a gene or a section gets a random free cell")
+    ]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
 
 
@@ -92,7 +106,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
         best, history = _search(moves, places, free, cells, in_cells(settings, grid.cell))
     else:
-        paths, sizes = _first_paths(starts, places, _rows_between(places), population, settings.longest_join)
+        paths, sizes = _first_paths(
+            starts, places, _rows_between(places), population, settings.longest_join
+        )
         best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
         if sizes.all():
             rules = cell_paths.Rules(
@@ -105,10 +121,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
                 False,
                 settings.elitism,
             )
-            best, history = cell_paths.evolve(moves, places, paths, sizes, settings.generations, rules)
+            best, history = cell_paths.evolve(
+                moves, places, paths, sizes, settings.generations, rules
+            )
     solved = len(best) > 0
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best)) if solved else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, best))
+        if solved
+        else None,
         objective=history[-1] * grid.cell,
         claimed_feasible=solved,
         evaluations=population * len(history),
@@ -120,14 +140,18 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 @compiled
 def _search(rng, lattice, free, cells, rules):
-    """Path (n,) of the best chromosome, empty if none can be decoded, and the shortest length so far (generations + 1,).
+    """Path (n,) of the best chromosome, empty if none can be decoded, and the shortest length so
+    far (generations + 1,).
 
     cells: (population, genes + 2), including start and target. free: (n,) cells.
     """
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
     parents = np.empty_like(cells)
-    path, marks = np.empty(rules.longest_join, dtype=np.int64), np.zeros(len(lattice.row), dtype=np.int64)
+    path, marks = (
+        np.empty(rules.longest_join, dtype=np.int64),
+        np.zeros(len(lattice.row), dtype=np.int64),
+    )
     lengths = np.empty(population)
     best, best_path, best_length = cells[0].copy(), path[:0].copy(), np.inf
     history = np.empty(rules.generations + 1)
@@ -135,7 +159,9 @@ def _search(rng, lattice, free, cells, rules):
     for generation in range(rules.generations + 1):
         for i in range(population):
             size = cell_paths.join(lattice, cells[i], path, marks)
-            lengths[i] = cell_paths.length(path[:size], lattice) if size else rules.undecodable_length
+            lengths[i] = (
+                cell_paths.length(path[:size], lattice) if size else rules.undecodable_length
+            )
             if size and lengths[i] < best_length:
                 cell_paths.put(cells[i], best, 0)
                 best_path, best_length = path[:size].copy(), lengths[i]
@@ -162,19 +188,34 @@ def _rows_between(places: Lattice) -> list[np.ndarray]:
     """The free cells of each row between those of start and target, from start to target."""
     first, last = places.row[places.start], places.row[places.target]
     step = 1 if first < last else -1
-    return [np.flatnonzero((places.row == row) & ~places.occupied) for row in range(first + step, last, step)]
+    return [
+        np.flatnonzero((places.row == row) & ~places.occupied)
+        for row in range(first + step, last, step)
+    ]
 
 
 def _first_paths(
     rng: np.random.Generator, places: Lattice, rows: list[np.ndarray], population: int, longest: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Paths (population, longest) from start to target through a random cell of each row, and their sizes (population,); 0 for none."""
-    paths, sizes = np.zeros((population, longest), dtype=np.int64), np.zeros(population, dtype=np.int64)
+    """Paths (population, longest) from start to target through a random cell of each row, and their
+    sizes (population,); 0 for none.
+    """
+    paths, sizes = (
+        np.zeros((population, longest), dtype=np.int64),
+        np.zeros(population, dtype=np.int64),
+    )
     if all(map(len, rows)):
         choices = np.zeros((len(rows), len(places.row)), dtype=np.int64)
         for row, free in enumerate(rows):
             choices[row, : len(free)] = free
-        _fill(rng, places, choices, np.array([len(free) for free in rows], dtype=np.int64), paths, sizes)
+        _fill(
+            rng,
+            places,
+            choices,
+            np.array([len(free) for free in rows], dtype=np.int64),
+            paths,
+            sizes,
+        )
     return paths, sizes
 
 

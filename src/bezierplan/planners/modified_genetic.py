@@ -1,13 +1,16 @@
-"""Modified genetic algorithm (MGA): selects the points of a field that are control points of a Bezier curve (elhoseny2017, Section 3).
+"""Modified genetic algorithm (MGA): selects the points of a field that are control points of a
+Bezier curve (elhoseny2017, Section 3).
 
-A chromosome has one gene for each point of a lattice of cells: 1 makes the point a control point, 0 leaves it out, and -1 marks an occupied
-cell, which is never set. It is stored as the ascending list of the genes that are 1. A chromosome whose points are too close to each other
-or whose curve touches an occupied cell is deleted and replaced by a random one (Section 3.2.2). On top of the plain algorithm the paper
-monitors the Q statistic of the pool (Section 3.3). In the kernels coordinates and lengths are in cells.
+A chromosome has one gene for each point of a lattice of cells: 1 makes the point a control point, 0
+leaves it out, and -1 marks an occupied cell, which is never set. It is stored as the ascending list
+of the genes that are 1. A chromosome whose points are too close to each other or whose curve
+touches an occupied cell is deleted and replaced by a random one (Section 3.2.2). On top of the
+plain algorithm the paper monitors the Q statistic of the pool (Section 3.3). In the kernels
+coordinates and lengths are in cells.
 
-In a maze the algorithm as printed finds no path. To make that possible, the first population can come from small roadmaps, control points
-can be joined in the order in which a walk from the start reaches them, and a mutation can shift a control point; none of this is in the
-paper.
+In a maze the algorithm as printed finds no path. To make that possible, the first population can
+come from small roadmaps, control points can be joined in the order in which a walk from the start
+reaches them, and a mutation can shift a control point; none of this is in the paper.
 """
 
 import math
@@ -19,7 +22,15 @@ import numpy as np
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import gene_lists
-from bezierplan.planners.parts.gene_curves import MOST_POINTS, CurveKind, FitnessLength, Invalid, Scratch, scratch_for, validate
+from bezierplan.planners.parts.gene_curves import (
+    MOST_POINTS,
+    CurveKind,
+    FitnessLength,
+    Invalid,
+    Scratch,
+    scratch_for,
+    validate,
+)
 from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.random_integers import integer
@@ -56,69 +67,126 @@ _SHIFT_REACH = 0.1
 class Settings(NamedTuple):
     """Settings of the search (elhoseny2017, Sections 3 and 4)."""
 
-    population: Annotated[int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4.2.2")]
+    population: Annotated[
+        int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4.2.2")
+    ]
     iterations: Annotated[int, Range(1), About("iterations", PAPER + ", Section 4.2.2")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4.2")]
+    crossover_probability: Annotated[
+        float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4.2")
+    ]
     mutation: Annotated[
         Mutation,
         About(
-            "each gene changes, one of a chromosome, or always one (one_flip); or it loses, gains or has shifted a control point (shift)"
+            "each gene changes, one of a chromosome, or always one (one_flip); or it loses, gains "
+            "or has shifted a control point (shift)"
         ),
     ]
-    mutation_rate: Annotated[float, Range(0, 1), About("probability that a gene or chromosome mutates", PAPER + ", Section 4.2")]
+    mutation_rate: Annotated[
+        float,
+        Range(0, 1),
+        About("probability that a gene or chromosome mutates", PAPER + ", Section 4.2"),
+    ]
     diversity: Annotated[
         Diversity,
         About(
-            "none; more offspring while the mean Q of the pool exceeds eta; only children whose mean Q is at most 1 - eta (relaxing); "
+            "none; more offspring while the mean Q of the pool exceeds eta; only children whose "
+            "mean Q is at most 1 - eta (relaxing); "
             "or none equal to another chromosome (unique)",
             PAPER + ", Section 3.3, Algorithm 2",
         ),
     ]
-    eta: Annotated[float, Range(-1, 1), About("limit of the Q statistic", PAPER + ", Section 4.2.2")]
-    eta_decay: Annotated[float, Range(0, 1), About("factor of eta from one iteration to the next", PAPER + ", Section 3.3")]
+    eta: Annotated[
+        float, Range(-1, 1), About("limit of the Q statistic", PAPER + ", Section 4.2.2")
+    ]
+    eta_decay: Annotated[
+        float,
+        Range(0, 1),
+        About("factor of eta from one iteration to the next", PAPER + ", Section 3.3"),
+    ]
     most_batches: Annotated[int, Range(0), About("most extra batches of offspring in an iteration")]
     gene_lattice: Annotated[GeneLattice, About("genes are 21 x 21 points, or every cell")]
-    gene_order: Annotated[GeneOrder, About("genes are numbered column by column from the left, or row by row from the bottom")]
+    gene_order: Annotated[
+        GeneOrder,
+        About("genes are numbered column by column from the left, or row by row from the bottom"),
+    ]
     point_order: Annotated[
         PointOrder,
-        About("control points are joined by their projection on the line from start to target, by gene, or by distance over free cells"),
+        About(
+            "control points are joined by their projection on the line from start to target, by "
+            "gene, or by distance over free cells"
+        ),
     ]
     first_population: Annotated[
         FirstPopulation,
-        About("random chromosomes, or before them the inner nodes of paths through roadmaps", PAPER + ", Section 3.2.1, the random one"),
+        About(
+            "random chromosomes, or before them the inner nodes of paths through roadmaps",
+            PAPER + ", Section 3.2.1, the random one",
+        ),
     ]
     most_roadmaps: Annotated[int, Range(0), About("most roadmaps for the first population")]
     roadmap_nodes: Annotated[int, Range(1, 2000), About("random nodes of a roadmap")]
-    roadmap_neighbours: Annotated[int, Range(1), About("nearest nodes that a node of a roadmap may be linked with")]
+    roadmap_neighbours: Annotated[
+        int, Range(1), About("nearest nodes that a node of a roadmap may be linked with")
+    ]
     first_points: Annotated[int, Range(1), About("most control points of a random chromosome")]
     first_draws: Annotated[int, Range(1), About("draws for each member of the first population")]
-    replacements: Annotated[int, Range(0), About("draws for an invalid child", PAPER + ", Section 3.2.2")]
-    least_distance: Annotated[float, Range(0), About("least distance of two control points", PAPER + ", Figure 4", unit="cells")]
+    replacements: Annotated[
+        int, Range(0), About("draws for an invalid child", PAPER + ", Section 3.2.2")
+    ]
+    least_distance: Annotated[
+        float,
+        Range(0),
+        About("least distance of two control points", PAPER + ", Figure 4", unit="cells"),
+    ]
     curve: Annotated[
-        CurveKind, About("one Bezier curve, or quadratic pieces that meet half-way between the control points", PAPER + ", eq. 2")
+        CurveKind,
+        About(
+            "one Bezier curve, or quadratic pieces that meet half-way between the control points",
+            PAPER + ", eq. 2",
+        ),
     ]
     fitness_length: Annotated[
         FitnessLength,
-        About("length whose reciprocal is the fitness: sampled, or counted over cells (`cell_length`)", PAPER + ", eqs. 8, 9"),
+        About(
+            "length whose reciprocal is the fitness: sampled, or counted over cells (`cell_length`)",
+            PAPER + ", eqs. 8, 9",
+        ),
     ]
     invalid: Annotated[
-        Invalid, About("a curve that touches occupied cells is deleted, or lengthened for each of them", PAPER + ", Section 3.2.2")
+        Invalid,
+        About(
+            "a curve that touches occupied cells is deleted, or lengthened for each of them",
+            PAPER + ", Section 3.2.2",
+        ),
     ]
     penalty: Annotated[float, Range(0), About("length added for each occupied cell", unit="cells")]
     survival: Annotated[
-        Survival, About("the best of parents and offspring survive, or the best of the offspring alone", PAPER + ", Algorithm 2, line 15")
+        Survival,
+        About(
+            "the best of parents and offspring survive, or the best of the offspring alone",
+            PAPER + ", Algorithm 2, line 15",
+        ),
     ]
-    offspring: Annotated[Offspring, About("children and their mutants join the pool, or mutants alone", PAPER + ", Algorithm 2")]
-    children_per_parent: Annotated[int, Range(1, 2), About("children in a batch for each chromosome of the population")]
+    offspring: Annotated[
+        Offspring,
+        About(
+            "children and their mutants join the pool, or mutants alone", PAPER + ", Algorithm 2"
+        ),
+    ]
+    children_per_parent: Annotated[
+        int, Range(1, 2), About("children in a batch for each chromosome of the population")
+    ]
 
 
 class Found(NamedTuple):
-    """Result of a search. ones: those of the best chromosome, empty if there is none. cost: its length.
+    """Result of a search. ones: those of the best chromosome, empty if there is none. cost: its
+    length.
 
-    history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct chromosomes in the population. q:
-    (iterations,) mean Q of the pool at the end of an iteration, where requested. population_q: (iterations,) mean Q of the chromosomes that
-    survive it. batches: number of extra batches of offspring.
-    evaluations: number of chromosomes validated. valid_share: share of valid children.
+    history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct
+    chromosomes in the population. q: (iterations,) mean Q of the pool at the end of an iteration,
+    where requested. population_q: (iterations,) mean Q of the chromosomes that survive it. batches:
+    number of extra batches of offspring. evaluations: number of chromosomes validated. valid_share:
+    share of valid children.
     """
 
     ones: np.ndarray
@@ -136,13 +204,21 @@ def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
     if settings["first_points"] > MOST_POINTS:
-        raise ValueError(f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control points between its ends")
+        raise ValueError(
+            f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control "
+            f"points between its ends"
+        )
     if settings["first_population"] == "roadmaps" and settings["gene_lattice"] != "cell":
-        raise ValueError(f"gene_lattice: {settings['gene_lattice']}; a first population from roadmaps needs cell: their nodes lie anywhere")
+        raise ValueError(
+            f"gene_lattice: {settings['gene_lattice']}; a first population from roadmaps needs "
+            f"cell: their nodes lie anywhere"
+        )
 
 
 @with_settings(Settings)
-def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: np.ndarray | None = None) -> Plan:
+def plan(
+    problem: Problem, rng: np.random.Generator, settings: Settings, last: np.ndarray | None = None
+) -> Plan:
     """Shortest curve through control points on a lattice of cells.
 
     Parameters
@@ -152,13 +228,15 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: n
     rng : numpy.random.Generator
         The only source of random numbers.
     last : ndarray, (n, 2), optional
-        Control points of an earlier path, in units, with whose genes the first population begins; else it is as the settings say.
+        Control points of an earlier path, in units, with whose genes the first population begins;
+        else it is as the settings say.
 
     Returns
     -------
     Plan
-        `claimed_feasible`: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
-        mean_q of the pool and population_q of the survivors, averaged over the iterations; extra_batches of offspring; valid_share of the
+        `claimed_feasible`: no cell that the sampled curve touches is occupied. Extra columns:
+        distinct_chromosomes in the population and mean_q of the pool and population_q of the
+        survivors, averaged over the iterations; extra_batches of offspring; valid_share of the
         children.
 
     References
@@ -168,17 +246,38 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: n
     grid = problem.workspace
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     if problem.start == problem.target:
-        nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "population_q": math.nan, "extra_batches": 0, "valid_share": math.nan}
-        return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 1, np.zeros(1), "start is target", nothing)
+        nothing = {
+            "distinct_chromosomes": 0.0,
+            "mean_q": math.nan,
+            "population_q": math.nan,
+            "extra_batches": 0,
+            "valid_share": math.nan,
+        }
+        return Plan(
+            Path("polyline", grid.in_units(ends)),
+            0.0,
+            True,
+            1,
+            np.zeros(1),
+            "start is target",
+            nothing,
+        )
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
-    orders = GeneLattice(settings.gene_lattice), GeneOrder(settings.gene_order), PointOrder(settings.point_order)
+    orders = (
+        GeneLattice(settings.gene_lattice),
+        GeneOrder(settings.gene_order),
+        PointOrder(settings.point_order),
+    )
     field = field_of(grid, ends, *(each.name for each in orders))
     first, counts = _from_roadmaps(problem, rng, field, settings)
     if last is not None:
         known = genes_at(grid.in_cells(last), field)
         row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
-        first, counts = np.vstack([row, first])[: settings.population], np.append(len(known), counts)[: settings.population]
+        first, counts = (
+            np.vstack([row, first])[: settings.population],
+            np.append(len(known), counts)[: settings.population],
+        )
     result = search(rng, field, settings, first, counts, scratch_for(field))
     solved = len(result.ones) > 0
     points = grid.in_units(polygon(result.ones, field))
@@ -200,20 +299,28 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: n
     )
 
 
-def resume(problem: Problem, rng: np.random.Generator, last: np.ndarray | None, **settings: Any) -> tuple[Plan, np.ndarray | None]:
-    """A plan whose first population holds the path that the last call returned second, by its control points (n, 2); None for the first
-    plan, which is that of `plan`. Points that are no free genes now are left out.
+def resume(
+    problem: Problem, rng: np.random.Generator, last: np.ndarray | None, **settings: Any
+) -> tuple[Plan, np.ndarray | None]:
+    """A plan whose first population holds the path that the last call returned second, by its
+    control points (n, 2); None for the first plan, which is that of `plan`. Points that are no free
+    genes now are left out.
     """
     found = plan(problem, rng, last, **settings)
     return found, found.path.points[1:-1] if found.claimed_feasible else last
 
 
-def _from_roadmaps(problem: Problem, rng: np.random.Generator, field: Field, settings: Settings) -> tuple[np.ndarray, np.ndarray]:
-    """Chromosomes made of the inner nodes of paths through roadmaps, at most a population, and their numbers of ones; straight paths and
-    those with too many nodes are left out. Every cell is a gene.
+def _from_roadmaps(
+    problem: Problem, rng: np.random.Generator, field: Field, settings: Settings
+) -> tuple[np.ndarray, np.ndarray]:
+    """Chromosomes made of the inner nodes of paths through roadmaps, at most a population, and
+    their numbers of ones; straight paths and those with too many nodes are left out. Every cell is
+    a gene.
     """
     ones, counts = np.zeros((settings.population, _ROOM), dtype=np.int64), []
-    for _ in range(settings.most_roadmaps if settings.first_population == FirstPopulation.roadmaps else 0):
+    for _ in range(
+        settings.most_roadmaps if settings.first_population == FirstPopulation.roadmaps else 0
+    ):
         if len(counts) == settings.population:
             break
         _, way, _ = roadmap(problem, rng, settings.roadmap_nodes, settings.roadmap_neighbours)
@@ -228,16 +335,30 @@ def _from_roadmaps(problem: Problem, rng: np.random.Generator, field: Field, set
 
 
 @compiled
-def search(rng: np.random.Generator, field: Field, rules: Settings, first: np.ndarray, counts: np.ndarray, scratch: Scratch) -> Found:
+def search(
+    rng: np.random.Generator,
+    field: Field,
+    rules: Settings,
+    first: np.ndarray,
+    counts: np.ndarray,
+    scratch: Scratch,
+) -> Found:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
-    first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their numbers of ones. scratch: `scratch_for` the
-    field.
+    first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their
+    numbers of ones. scratch: `scratch_for` the field.
     """
     batches = 1 + (rules.most_batches if rules.diversity == Diversity.more_offspring else 0)
     size = rules.population
-    children = 2 * (size * rules.children_per_parent // 2) * (2 if rules.offspring == Offspring.both else 1)
-    pool, spare = gene_lists.empty_pool(size + batches * children, _ROOM), gene_lists.empty_pool(size, _ROOM)
+    children = (
+        2
+        * (size * rules.children_per_parent // 2)
+        * (2 if rules.offspring == Offspring.both else 1)
+    )
+    pool, spare = (
+        gene_lists.empty_pool(size + batches * children, _ROOM),
+        gene_lists.empty_pool(size, _ROOM),
+    )
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations)
@@ -272,40 +393,60 @@ def search(rng: np.random.Generator, field: Field, rules: Settings, first: np.nd
         filled, pairs = size, 0.0
         for batch in range(batches):
             before = filled
-            filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, limit, child, memory, field, rules, scratch)
+            filled, tried, invalid = _add_offspring(
+                rng, pool, before, wheel, eta, limit, child, memory, field, rules, scratch
+            )
             evaluations += tried
             bred += children
             lost += invalid
             further += batch > 0
             if rules.diversity == Diversity.more_offspring:
-                pairs += gene_lists.sum_of_q(pool, before if batch > 0 else 0, filled, len(field.points))
+                pairs += gene_lists.sum_of_q(
+                    pool, before if batch > 0 else 0, filled, len(field.points)
+                )
                 q[iteration] = pairs / (filled * (filled - 1) / 2)
                 if q[iteration] <= eta:
                     break
-        # Where a diversity rule rejects so many children that places remain free, the last parents keep them.
-        gene_lists.select(pool, min(size, filled - size) if rules.survival == Survival.generational else 0, filled, spare)
-        population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (size * (size - 1) / 2)
+        # Where a diversity rule rejects so many children that places remain free, the last parents
+        # keep them.
+        gene_lists.select(
+            pool,
+            min(size, filled - size) if rules.survival == Survival.generational else 0,
+            filled,
+            spare,
+        )
+        population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (
+            size * (size - 1) / 2
+        )
         eta *= rules.eta_decay
-    return Found(best, best_cost, history, distinct, q, population_q, further, evaluations, 1.0 - lost / bred)
+    return Found(
+        best, best_cost, history, distinct, q, population_q, further, evaluations, 1.0 - lost / bred
+    )
 
 
 @allocation_free
 def _highest_cost_that_counts(pool, rules):
-    """A child that costs more than any parent does not survive, so nobody needs to know by how much; unless no parent survives, or equal
-    chromosomes are told by their costs.
+    """A child that costs more than any parent does not survive, so nobody needs to know by how
+    much; unless no parent survives, or equal chromosomes are told by their costs.
     """
     highest = 0.0
     for place in range(rules.population):
         highest = max(highest, pool.cost[place])
-    return np.inf if rules.survival == Survival.generational or rules.diversity == Diversity.unique else highest
+    return (
+        np.inf
+        if rules.survival == Survival.generational or rules.diversity == Diversity.unique
+        else highest
+    )
 
 
 @allocation_free
 def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, rules, scratch):
-    """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after those already in it.
+    """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after
+    those already in it.
 
-    wheel: (population,) running sum of the parents' fitness. limit: of `validate`. memory: of validated chromosomes, changed in place.
-    Returns the number of chromosomes now in the pool, of chromosomes validated, and of invalid children.
+    wheel: (population,) running sum of the parents' fitness. limit: of `validate`. memory: of
+    validated chromosomes, changed in place. Returns the number of chromosomes now in the pool, of
+    chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
     for _ in range(rules.population * rules.children_per_parent // 2):
@@ -341,8 +482,8 @@ def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, r
 
 @allocation_free
 def _validated(ones, memory, field, rules, limit, scratch):
-    """`validate`, without the work for a chromosome that has been there before, as most children have once the population is alike; limits
-    never rise.
+    """`validate`, without the work for a chromosome that has been there before, as most children
+    have once the population is alike; limits never rise.
     """
     place, known = gene_lists.entry(ones, memory)
     if not known:
@@ -353,7 +494,9 @@ def _validated(ones, memory, field, rules, limit, scratch):
 
 @allocation_free
 def _parents(rng, wheel):
-    """Two different parents in proportion to fitness (Algorithm 1, line 9). The second is drawn from the wheel without the first one."""
+    """Two different parents in proportion to fitness (Algorithm 1, line 9). The second is drawn
+    from the wheel without the first one.
+    """
     first = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
     first = min(first, len(wheel) - 1)
     begin = wheel[first - 1] if first > 0 else 0.0
@@ -372,7 +515,8 @@ def _mutate(rng, child, count, field, rules):
     """Change random genes, except those that must not be set; returns how many are 1."""
     genes = len(field.points)
     if rules.mutation == Mutation.gene:
-        # From one gene that changes to the next: the gaps of independent trials of equal probability.
+        # From one gene that changes to the next: the gaps of independent trials of equal
+        # probability.
         unchanged = math.log1p(-rules.mutation_rate) if rules.mutation_rate < 1.0 else -np.inf
         gene = gene_lists.gap(rng, unchanged)
         while gene < genes:
@@ -391,13 +535,17 @@ def _mutate(rng, child, count, field, rules):
 
 @allocation_free
 def _change_point(rng, child, count, field):
-    """Remove a control point (unless it is the only one), add one, or shift one, each with equal probability; returns how many there
-    are.
+    """Remove a control point (unless it is the only one), add one, or shift one, each with equal
+    probability; returns how many there are.
     """
     change = integer(rng, 0, 3)
     if change == 1:
         gene = field.choices[integer(rng, 0, len(field.choices))]
-        return gene_lists.flip(child, count, gene) if gene_lists.position(child, count, gene) == count else count
+        return (
+            gene_lists.flip(child, count, gene)
+            if gene_lists.position(child, count, gene) == count
+            else count
+        )
     if count == 0:
         return count
     gene = child[integer(rng, 0, count)]

@@ -1,6 +1,7 @@
 """Genetic algorithm over cell sequences of any length, with five mutation operators (meledje).
 
-A chromosome is a path: the numbers of its cells from start to target, joined by straight edges between their centres (`workspaces.ground`).
+A chromosome is a path: the numbers of its cells from start to target, joined by straight edges
+between their centres (`workspaces.ground`).
 
 Lengths, heights and energies in the kernels are in cells.
 """
@@ -14,15 +15,37 @@ import numpy as np
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, roulette
-from bezierplan.planners.parts.node_mutation import Direction, Mutation, ObstacleNode, Ref21Test, WithoutObstacle, mutate
+from bezierplan.planners.parts.node_mutation import (
+    Direction,
+    Mutation,
+    ObstacleNode,
+    Ref21Test,
+    WithoutObstacle,
+    mutate,
+)
 from bezierplan.planners.parts.random_integers import below
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.ground import centres, edge_energy, ground_of, least_energy, obstacles_met, path_met
+from bezierplan.workspaces.ground import (
+    centres,
+    edge_energy,
+    ground_of,
+    least_energy,
+    obstacles_met,
+    path_met,
+)
 from bezierplan.workspaces.problem import Path, Problem
 
-extra = ("optimum", "optimal", "near_optimal", "infeasible", "feasible_last", "made_infeasible", "node_diversity")
+extra = (
+    "optimum",
+    "optimal",
+    "near_optimal",
+    "infeasible",
+    "feasible_last",
+    "made_infeasible",
+    "node_diversity",
+)
 workspaces = ("grid",)
 exact = True
 keeps_best = False
@@ -37,7 +60,8 @@ RandomNode = IntEnum("RandomNode", "free any", start=0)
 Result = IntEnum("Result", "last_generation best_so_far", start=0)
 Corners = IntEnum("Corners", "open closed", start=0)
 
-# Walks, or random paths, tried for one path of the first population before it counts as unreachable.
+# Walks, or random paths, tried for one path of the first population before it counts as
+# unreachable.
 _MOST_TRIES = 1_000_000
 # Smaller differences between the energy of a path and the best so far are rounding errors.
 _IMPROVEMENT = 1e-9
@@ -53,39 +77,82 @@ class Settings(NamedTuple):
     initial: Annotated[
         Initial,
         About(
-            "first paths: walks from cell to visible cell, random paths of which feasible ones are kept, or any", PAPER + ", Section 2.3"
+            "first paths: walks from cell to visible cell, random paths of which feasible ones "
+            "are kept, or any",
+            PAPER + ", Section 2.3",
         ),
     ]
     most_nodes: Annotated[int, Range(1), About("most inner nodes of a first path")]
-    selection: Annotated[Selection, About("how parents are drawn; roulette in proportion to the reciprocal of the objective")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4")]
+    selection: Annotated[
+        Selection,
+        About("how parents are drawn; roulette in proportion to the reciprocal of the objective"),
+    ]
+    crossover_probability: Annotated[
+        float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4")
+    ]
     cut: Annotated[Cut, About("parents are cut after the same number of nodes, or independently")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a path, or of each inner node", PAPER + ", Section 4")]
-    mutation_for: Annotated[MutationFor, About("what mutates with that probability: a path, or each inner node")]
+    mutation_probability: Annotated[
+        float, Range(0, 1), About("of a path, or of each inner node", PAPER + ", Section 4")
+    ]
+    mutation_for: Annotated[
+        MutationFor, About("what mutates with that probability: a path, or each inner node")
+    ]
     without_obstacle: Annotated[
-        WithoutObstacle, About("what `proposed` changes of a path that meets no obstacle: any node as in ref12, or none")
+        WithoutObstacle,
+        About(
+            "what `proposed` changes of a path that meets no obstacle: any node as in ref12, or "
+            "none"
+        ),
     ]
     obstacle_node: Annotated[
-        ObstacleNode, About("a node encounters an obstacle if its edge to the next node meets one, or in a cell next to an occupied one")
+        ObstacleNode,
+        About(
+            "a node encounters an obstacle if its edge to the next node meets one, or in a cell "
+            "next to an occupied one"
+        ),
     ]
     keep_better: Annotated[
-        bool, About("whether ref12 and proposed keep a node better than all its neighbours", PAPER + ", Table 1, step 4")
+        bool,
+        About(
+            "whether ref12 and proposed keep a node better than all its neighbours",
+            PAPER + ", Table 1, step 4",
+        ),
     ]
-    direction: Annotated[Direction, About("steps that ref21 accepts: within a right angle of the line to the target, or with its signs")]
-    ref21_test: Annotated[Ref21Test, About("what ref21 tests: the two edges of the new node, or the whole path")]
+    direction: Annotated[
+        Direction,
+        About(
+            "steps that ref21 accepts: within a right angle of the line to the target, or with "
+            "its signs"
+        ),
+    ]
+    ref21_test: Annotated[
+        Ref21Test, About("what ref21 tests: the two edges of the new node, or the whole path")
+    ]
     random_node: Annotated[RandomNode, About("cells that `random` draws from")]
-    penalty: Annotated[float, Range(0), About("added for each occupied cell that an edge meets", unit=UNITS)]
+    penalty: Annotated[
+        float, Range(0), About("added for each occupied cell that an edge meets", unit=UNITS)
+    ]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a path")]
     result: Annotated[Result, About("best path of the last generation, or of the run")]
-    optimal_within: Annotated[float, Range(0), About("share of the optimum by which an optimal path may exceed it")]
-    friction: Annotated[float, Range(0), About("climbs are divided by it", PAPER + ", Section 2.1, without a number")]
-    corners: Annotated[Corners, About("whether an edge through a corner of occupied cells meets them (closed)")]
+    optimal_within: Annotated[
+        float, Range(0), About("share of the optimum by which an optimal path may exceed it")
+    ]
+    friction: Annotated[
+        float,
+        Range(0),
+        About("climbs are divided by it", PAPER + ", Section 2.1, without a number"),
+    ]
+    corners: Annotated[
+        Corners, About("whether an edge through a corner of occupied cells meets them (closed)")
+    ]
 
 
 class _Found(NamedTuple):
-    """path: the cells of the result, empty if there was no first population. objective: its energy plus penalty. met: number of occupied
-    cells it meets. history: lowest objective so far, by generation. feasible_last: share of feasible paths in the last population.
-    made_infeasible: share of mutated feasible paths that the mutation made infeasible. diversity: mean of `node_diversity`.
+    """path: the cells of the result, empty if there was no first population. objective: its energy
+    plus penalty. met: number of occupied cells it meets. history: lowest objective so far, by
+    generation. feasible_last: share of feasible paths in the last population. made_infeasible:
+    share of mutated feasible paths that the mutation made infeasible. diversity: mean of
+    `node_diversity`.
     """
 
     path: np.ndarray
@@ -103,12 +170,15 @@ def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
     if settings["friction"] == 0:
-        raise ValueError("friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed")
+        raise ValueError(
+            "friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed"
+        )
 
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """Path of minimum energy from cell to cell: its length, plus its climbs divided by the friction.
+    """Path of minimum energy from cell to cell: its length, plus its climbs divided by the
+    friction.
 
     Parameters
     ----------
@@ -120,10 +190,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        `claimed_feasible`: no edge meets an occupied cell. Extra columns: optimum, the minimum energy of all feasible paths from cell to
-        cell; optimal, near_optimal, infeasible, exactly one of which is true; feasible_last, the share of feasible paths in the last
-        population; made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity, the mean over generations
-        of the probability that an inner node of one path is not a node of another.
+        `claimed_feasible`: no edge meets an occupied cell. Extra columns: optimum, the minimum
+        energy of all feasible paths from cell to cell; optimal, near_optimal, infeasible, exactly
+        one of which is true; feasible_last, the share of feasible paths in the last population;
+        made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity,
+        the mean over generations of the probability that an inner node of one path is not a node of
+        another.
 
     Raises
     ------
@@ -141,16 +213,34 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     optimum = least_energy(grid, friction, closed, start, target)
     starts, moves = rng.spawn(2)
     if obstacles_met(ground, start, target) == 0:
-        # No search needed: a walk sees its target immediately, and paths without inner nodes cannot change.
+        # No search needed: a walk sees its target immediately, and paths without inner nodes cannot
+        # change.
         energy = edge_energy(ground, start, target)
-        result = _Found(np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0)
+        result = _Found(
+            np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0
+        )
         stop = "direct"
     elif math.isinf(optimum):
         result, stop = _NOTHING, "no path"
     else:
         drawn = _inner(~grid.occupied | (settings.random_node == RandomNode.any), start, target)
-        result = _search(starts, moves, ground, start, target, _inner(~grid.occupied, start, target), drawn, in_cells(settings, grid.cell))
-        stop = "no first population" if not len(result.path) else "stall" if result.stalled else "generations"
+        result = _search(
+            starts,
+            moves,
+            ground,
+            start,
+            target,
+            _inner(~grid.occupied, start, target),
+            drawn,
+            in_cells(settings, grid.cell),
+        )
+        stop = (
+            "no first population"
+            if not len(result.path)
+            else "stall"
+            if result.stalled
+            else "generations"
+        )
     feasible = len(result.path) > 0 and result.met == 0
     optimal = feasible and result.objective <= optimum * (1 + settings.optimal_within)
     return Plan(
@@ -172,7 +262,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
 
 
-_NOTHING = _Found(np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0)
+_NOTHING = _Found(
+    np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0
+)
 
 
 def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
@@ -182,7 +274,9 @@ def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
 
 
 def serves(problem: Problem) -> None:
-    """Raise ValueError, naming the end and what is expected, unless start and target are centres of cells."""
+    """Raise ValueError, naming the end and what is expected, unless start and target are centres of
+    cells.
+    """
     for end in ("start", "target"):
         _cell_at(problem.workspace, end, getattr(problem, end))
 
@@ -191,24 +285,42 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
     row, column = grid.cell_of(*point)
     number = int(row * grid.occupied.shape[1] + column)
     if point != grid.centre(number):
-        raise ValueError(f"{end}: {point}; paths go from cell to cell, so the centre of a cell is needed, such as {grid.centre(number)}")
+        raise ValueError(
+            f"{end}: {point}; paths go from cell to cell, so the centre of a cell is needed, such "
+            f"as {grid.centre(number)}"
+        )
     return number
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # The search
 
 
 @compiled
 def _search(starts, moves, ground, start, target, free, drawn, rules):
-    """The genetic algorithm. free: the free cells without start and target; drawn: the cells from which random mutation draws."""
+    """The genetic algorithm. free: the free cells without start and target; drawn: the cells from
+    which random mutation draws.
+    """
     population = rules.population
-    paths, lengths = np.empty((population, rules.most_nodes + 2), dtype=np.int64), np.empty(population, dtype=np.int64)
+    paths, lengths = (
+        np.empty((population, rules.most_nodes + 2), dtype=np.int64),
+        np.empty(population, dtype=np.int64),
+    )
     for i in range(population):
         paths[i, 0] = start
         lengths[i] = _first_path(starts, paths[i], target, free, ground, rules)
         if lengths[i] == 0:
-            return _Found(np.empty(0, dtype=np.int64), np.inf, 0, np.full(1, np.inf), 1, False, 0.0, np.nan, 0.0)
+            return _Found(
+                np.empty(0, dtype=np.int64),
+                np.inf,
+                0,
+                np.full(1, np.inf),
+                1,
+                False,
+                0.0,
+                np.nan,
+                0.0,
+            )
     children, child_lengths = paths.copy(), lengths.copy()
     objective, met = np.empty(population), np.empty(population, dtype=np.int64)
     ranks, neighbours = np.arange(population, 0, -1).astype(np.float64), np.empty(8, dtype=np.int64)
@@ -246,11 +358,18 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             if moves.random() < rules.crossover_probability:
                 cut = other_cut = 1 + below(moves, min(lengths[mother], lengths[father]) - 1)
                 if rules.cut == Cut.independent:
-                    cut, other_cut = 1 + below(moves, lengths[mother] - 1), 1 + below(moves, lengths[father] - 1)
+                    cut, other_cut = (
+                        1 + below(moves, lengths[mother] - 1),
+                        1 + below(moves, lengths[father] - 1),
+                    )
             else:
                 cut, other_cut = lengths[mother], lengths[father]
-            child_lengths[i] = join(paths[mother], cut, paths[father], other_cut, lengths[father], children[i])
-            child_lengths[i + 1] = join(paths[father], other_cut, paths[mother], cut, lengths[mother], children[i + 1])
+            child_lengths[i] = join(
+                paths[mother], cut, paths[father], other_cut, lengths[father], children[i]
+            )
+            child_lengths[i + 1] = join(
+                paths[father], other_cut, paths[mother], cut, lengths[mother], children[i + 1]
+            )
         if children.shape[1] > paths.shape[1]:
             paths = np.empty_like(children)
         paths, children = children, paths
@@ -268,7 +387,12 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             lengths[0] = best_length
 
     if rules.result == Result.last_generation:
-        best, best_length, best_objective, best_met = paths[first], lengths[first], objective[first], met[first]
+        best, best_length, best_objective, best_met = (
+            paths[first],
+            lengths[first],
+            objective[first],
+            met[first],
+        )
     return _Found(
         best[:best_length].copy(),
         best_objective,
@@ -289,8 +413,11 @@ def _copy(source, target, length):
 
 
 @allocation_free
-def join(head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_length: int, child: np.ndarray) -> int:
-    """Write to a child the first `cut` nodes of one path and those after the first `tail_cut` of another (meledje, Section 2.6).
+def join(
+    head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_length: int, child: np.ndarray
+) -> int:
+    """Write to a child the first `cut` nodes of one path and those after the first `tail_cut` of
+    another (meledje, Section 2.6).
 
     Returns its length. Cuts after the last node leave the head unchanged.
     """
@@ -303,7 +430,9 @@ def join(head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_lengt
 
 @allocation_free
 def _evaluate(path, ground, penalty):
-    """Energy of a path plus its penalty, and the number of occupied cells that its edges meet (meledje, eqs. 1 to 3)."""
+    """Energy of a path plus its penalty, and the number of occupied cells that its edges meet
+    (meledje, eqs. 1 to 3).
+    """
     energy = 0.0
     for k in range(len(path) - 1):
         energy += edge_energy(ground, path[k], path[k + 1])
@@ -313,7 +442,9 @@ def _evaluate(path, ground, penalty):
 
 @compiled
 def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
-    """Probability that an inner node of one path (n, ...) is not a node of another; 0 without inner nodes. cells: number of cells."""
+    """Probability that an inner node of one path (n, ...) is not a node of another; 0 without inner
+    nodes. cells: number of cells.
+    """
     having, last = np.zeros(cells, dtype=np.int64), np.full(cells, -1)
     for i in range(len(paths)):
         for k in range(1, lengths[i] - 1):
@@ -332,9 +463,15 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 
 @allocation_free
 def _first_path(rng, path, target, free, ground, rules):
-    """A random path, written after its start; returns its number of nodes, or 0 if none was found."""
+    """A random path, written after its start; returns its number of nodes, or 0 if none was
+    found.
+    """
     for _ in range(_MOST_TRIES):
-        length = _walk(rng, path, target, free, ground) if rules.initial == Initial.feasible else _random_path(rng, path, target, free)
+        length = (
+            _walk(rng, path, target, free, ground)
+            if rules.initial == Initial.feasible
+            else _random_path(rng, path, target, free)
+        )
         if length and (rules.initial != Initial.rejection or path_met(path[:length], ground) == 0):
             return length
     return 0
@@ -342,8 +479,8 @@ def _first_path(rng, path, target, free, ground, rules):
 
 @allocation_free
 def _walk(rng, path, target, free, ground):
-    """A walk from cell to visible cell, none visited twice, until the target is visible; returns 0 if it becomes too long or sees no new
-    cell.
+    """A walk from cell to visible cell, none visited twice, until the target is visible; returns 0
+    if it becomes too long or sees no new cell.
     """
     length = 1
     while obstacles_met(ground, path[length - 1], target) > 0:
@@ -366,8 +503,8 @@ def _walk(rng, path, target, free, ground):
 
 @allocation_free
 def _one_of_few(rng, path, length, free, ground):
-    """A uniformly drawn cell that is visible from the last cell of a path and not yet part of it, found by checking all cells; -1 if there
-    is none.
+    """A uniformly drawn cell that is visible from the last cell of a path and not yet part of it,
+    found by checking all cells; -1 if there is none.
     """
     count = 0
     for cell in free:
@@ -412,7 +549,9 @@ def _random_path(rng, path, target, free):
 
 @compiled
 def _select(rng, order, ranks, selection):
-    """As many parents as there are paths, drawn with replacement. order: paths, best first; ranks: their weights for a linear ranking."""
+    """As many parents as there are paths, drawn with replacement. order: paths, best first; ranks:
+    their weights for a linear ranking.
+    """
     if selection == Selection.linear_rank:
         return order[roulette(rng, ranks, len(order))]
     parents = np.empty_like(order)

@@ -1,7 +1,9 @@
-"""Probabilistic roadmap: random free points, linked where they see each other, and the shortest path along the links.
+"""Probabilistic roadmap: random free points, linked where they see each other, and the shortest
+path along the links.
 
-The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny2017's Tables 2, 3 and 6, which give no parameters. Among
-circles a link is a segment that enters none; on a grid, one that touches no occupied cell.
+The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny2017's Tables 2, 3 and
+6, which give no parameters. Among circles a link is a segment that enters none; on a grid, one that
+touches no occupied cell.
 """
 
 from collections.abc import Callable
@@ -26,8 +28,8 @@ exact = True
 # Number of points drawn for one free node before the field counts as full.
 _MOST_DRAWS = 10_000
 
-# A segment may be this deep in a circle, in units: to allow for rounding errors of a segment that touches it, such as one from a start on
-# its edge.
+# A segment may be this deep in a circle, in units: to allow for rounding errors of a segment that
+# touches it, such as one from a start on its edge.
 _TOUCHING = 1e-9
 
 
@@ -37,10 +39,22 @@ Links = IntEnum("Links", "visible nearest", start=0)
 class Settings(NamedTuple):
     """Settings of the roadmap; the papers give none."""
 
-    nodes: Annotated[int, Range(0, 2000), About("random points of the free part of the field, beside start and target")]
-    links: Annotated[Links, About("a node is linked with every node that it sees, or with those of its nearest `neighbours` that it sees")]
+    nodes: Annotated[
+        int,
+        Range(0, 2000),
+        About("random points of the free part of the field, beside start and target"),
+    ]
+    links: Annotated[
+        Links,
+        About(
+            "a node is linked with every node that it sees, or with those of its nearest "
+            "`neighbours` that it sees"
+        ),
+    ]
     neighbours: Annotated[int, Range(1), About("nearest nodes that a node may be linked with")]
-    d_min: Annotated[float, Range(0), About("added to every radius; must be 0 on a grid", unit=UNITS)]
+    d_min: Annotated[
+        float, Range(0), About("added to every radius; must be 0 on a grid", unit=UNITS)
+    ]
 
 
 @with_settings(Settings)
@@ -59,7 +73,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        Its objective is its length in units, infinite if there is no path. Extra column: roads, the number of links.
+        Its objective is its length in units, infinite if there is no path. Extra column: roads, the
+        number of links.
 
     References
     ----------
@@ -70,19 +85,38 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     path = Path("polyline", way) if len(way) else None
     found = path is not None
     history = np.array([length])
-    return Plan(path, length, claimed_feasible=found, evaluations=1, history=history, stop="direct", extra={"roads": roads})
+    return Plan(
+        path,
+        length,
+        claimed_feasible=found,
+        evaluations=1,
+        history=history,
+        stop="direct",
+        extra={"roads": roads},
+    )
 
 
 def roadmap(
-    problem: Problem, rng: np.random.Generator, nodes: int, neighbours: int | None, d_min: float = 0.0
+    problem: Problem,
+    rng: np.random.Generator,
+    nodes: int,
+    neighbours: int | None,
+    d_min: float = 0.0,
 ) -> tuple[float, np.ndarray, int]:
-    """Length and points (n, 2) of the shortest path along a random roadmap, infinite and empty if there is none, and the number of links.
+    """Length and points (n, 2) of the shortest path along a random roadmap, infinite and empty if
+    there is none, and the number of links.
 
     neighbours: how many of its nearest nodes a node may be linked with, None for all.
     """
     workspace = problem.workspace
-    low, high, is_free, sees = _on_grid(workspace, d_min) if isinstance(workspace, Grid) else _among_circles(workspace, d_min)
-    points = np.concatenate([[problem.start, problem.target], _free_points(rng, nodes, low, high, is_free)])
+    low, high, is_free, sees = (
+        _on_grid(workspace, d_min)
+        if isinstance(workspace, Grid)
+        else _among_circles(workspace, d_min)
+    )
+    points = np.concatenate(
+        [[problem.start, problem.target], _free_points(rng, nodes, low, high, is_free)]
+    )
     one, other = _pairs(points, neighbours)
     seen = sees(points[one], points[other])
     one, other = one[seen], other[seen]
@@ -91,7 +125,9 @@ def roadmap(
 
 
 class _Field(NamedTuple):
-    """What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and which points and segments (n,) are free."""
+    """What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and
+    which points and segments (n,) are free.
+    """
 
     low: np.ndarray
     high: np.ndarray
@@ -102,7 +138,12 @@ class _Field(NamedTuple):
 def _among_circles(circles: Circles, d_min: float) -> _Field:
     radii = circles.radii + d_min
     low, high = np.reshape(circles.bounds, (2, 2)).T
-    return _Field(low, high, partial(_outside, circles.centres, radii), partial(_visible, centres=circles.centres, radii=radii))
+    return _Field(
+        low,
+        high,
+        partial(_outside, circles.centres, radii),
+        partial(_visible, centres=circles.centres, radii=radii),
+    )
 
 
 def _on_grid(grid: Grid, d_min: float) -> _Field:
@@ -114,9 +155,15 @@ def _on_grid(grid: Grid, d_min: float) -> _Field:
 
 
 def _free_points(
-    rng: np.random.Generator, nodes: int, low: np.ndarray, high: np.ndarray, is_free: Callable[[np.ndarray], np.ndarray]
+    rng: np.random.Generator,
+    nodes: int,
+    low: np.ndarray,
+    high: np.ndarray,
+    is_free: Callable[[np.ndarray], np.ndarray],
 ) -> np.ndarray:
-    """Points (nodes or fewer, 2), uniform in the free part of a field; fewer if almost none of it is free."""
+    """Points (nodes or fewer, 2), uniform in the free part of a field; fewer if almost none of it
+    is free.
+    """
     free = np.empty((0, 2))
     tries = 0
     while len(free) < nodes and tries < _MOST_DRAWS * nodes:
@@ -151,8 +198,8 @@ def _free_legs(occupied, starts, targets):
 
 
 def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of different nodes, as two index arrays (pairs,), each pair once: all pairs, or those in which one node is among the other's
-    nearest.
+    """Pairs of different nodes, as two index arrays (pairs,), each pair once: all pairs, or those
+    in which one node is among the other's nearest.
     """
     count = len(points)
     if neighbours is None or neighbours >= count - 1:
@@ -162,7 +209,9 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
 
 @compiled
 def _marked(nearest):
-    """Numbers count i + j, ascending, of the pairs i < j of which one is among the nearest (count, neighbours) of the other."""
+    """Numbers count i + j, ascending, of the pairs i < j of which one is among the nearest (count,
+    neighbours) of the other.
+    """
     count, neighbours = nearest.shape
     marks = np.zeros(count * count, dtype=np.bool_)
     for i in range(count):
@@ -174,9 +223,11 @@ def _marked(nearest):
 
 @compiled
 def _nearest(points, neighbours):
-    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order.
+    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties
+    in their original order.
 
-    From each point to both sides, in the order of x, until the next one is too far away by its x alone.
+    From each point to both sides, in the order of x, until the next one is too far away by its x
+    alone.
     """
     order = np.argsort(points[:, 0])
     nearest = np.empty((len(points), neighbours), dtype=np.int64)
@@ -196,7 +247,10 @@ def _nearest(points, neighbours):
                     continue
                 count = min(count + 1, neighbours)
                 place = count - 1
-                while place > 0 and (square[place - 1] > distance or (square[place - 1] == distance and nearest[i, place - 1] > j)):
+                while place > 0 and (
+                    square[place - 1] > distance
+                    or (square[place - 1] == distance and nearest[i, place - 1] > j)
+                ):
                     square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
                     place -= 1
                 square[place], nearest[i, place] = distance, j
@@ -205,10 +259,16 @@ def _nearest(points, neighbours):
     return nearest
 
 
-def _visible(starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """Whether the segments between two arrays of points (n, 2) enter no circle; touching is allowed."""
+def _visible(
+    starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii: np.ndarray
+) -> np.ndarray:
+    """Whether the segments between two arrays of points (n, 2) enter no circle; touching is
+    allowed.
+    """
     way = targets - starts
-    square = np.maximum((way**2).sum(axis=1), np.finfo(float).tiny)  # for a single point any share along it is valid
+    square = np.maximum(
+        (way**2).sum(axis=1), np.finfo(float).tiny
+    )  # for a single point any share along it is valid
     visible = np.ones(len(way), dtype=bool)
     for centre, radius in zip(centres, radii):
         share = np.clip(((centre - starts) * way).sum(axis=1) / square, 0, 1)
@@ -217,14 +277,20 @@ def _visible(starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii
     return visible
 
 
-def _shortest_way(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> tuple[float, np.ndarray]:
-    """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and empty if they are not connected."""
+def _shortest_way(
+    points: np.ndarray, one: np.ndarray, other: np.ndarray
+) -> tuple[float, np.ndarray]:
+    """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and
+    empty if they are not connected.
+    """
     return _dijkstra(len(points), one, other, np.hypot(*(points[one] - points[other]).T))
 
 
 @compiled
 def _dijkstra(count, starts, targets, lengths):
-    """`_shortest_way` by Dijkstra's algorithm, over `count` nodes and the lengths (links,) of links between two of them each."""
+    """`_shortest_way` by Dijkstra's algorithm, over `count` nodes and the lengths (links,) of links
+    between two of them each.
+    """
     first = np.zeros(count + 2, dtype=np.int64)  # where the links of each node begin
     for k in range(len(starts)):
         first[starts[k] + 2] += 1
@@ -238,7 +304,10 @@ def _dijkstra(count, starts, targets, lengths):
             first[node + 1] += 1
 
     far, before = np.full(count, np.inf), np.full(count, -1)
-    waiting, waits = np.empty(count, dtype=np.int64), 1  # nodes that are reached and not settled: few, so they need no heap
+    waiting, waits = (
+        np.empty(count, dtype=np.int64),
+        1,
+    )  # nodes that are reached and not settled: few, so they need no heap
     waiting[0], far[0] = 0, 0.0
     while waits > 0:
         slot = 0

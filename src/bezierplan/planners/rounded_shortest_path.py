@@ -1,10 +1,12 @@
 """A baseline: what a practitioner would drive, the exact shortest path with its corners rounded.
 
-At each obstacle corner around which the shortest path turns, a circle of the turning radius is placed so that the corner lies inside it;
-the path is a string of straight legs and arcs pulled tight around these circles. Corners too close together for two circles, such as those
-at the end of a wall, form one turn of two circles side by side. The certified check then judges the path. Where an arc or a leg enters an
-obstacle, or there is no room for the circles, the adjacent circles shrink, in the end to the corner itself: the shortest path is free, so
-this always ends in a free path.
+At each obstacle corner around which the shortest path turns, a circle of the turning radius is
+placed so that the corner lies inside it; the path is a string of straight legs and arcs pulled
+tight around these circles. Corners too close together for two circles, such as those at the end of
+a wall, form one turn of two circles side by side. The certified check then judges the path. Where
+an arc or a leg enters an obstacle, or there is no room for the circles, the adjacent circles
+shrink, in the end to the corner itself: the shortest path is free, so this always ends in a free
+path.
 """
 
 import math
@@ -31,14 +33,17 @@ deterministic = True
 # A vertex at which the shortest path turns by less than this, in radians, is not a corner.
 _STRAIGHT = 1e-9
 
-# A circle shrinks by this factor at each step, and to its corner once below the given share of the turning radius.
+# A circle shrinks by this factor at each step, and to its corner once below the given share of the
+# turning radius.
 _SHRINKING = 0.8
 _SMALLEST = 0.01
 
-# An arc of at most this angle is one cubic piece, which deviates outwards from its circle by at most 4e-6 of the radius.
+# An arc of at most this angle is one cubic piece, which deviates outwards from its circle by at
+# most 4e-6 of the radius.
 _PIECE_ANGLE = math.pi / 4
 
-# Wishes that are tried where the turning radius is not kept, for each halving, and the relative difference that decides no further.
+# Wishes that are tried where the turning radius is not kept, for each halving, and the relative
+# difference that decides no further.
 _STEPS_PER_OCTAVE = 4
 _SAME_RADIUS = 1e-4
 
@@ -55,8 +60,9 @@ _ON_CIRCLE = 1e-3
 class Turns(NamedTuple):
     """What the path turns around, from start to target, each (n,) or (n, 2).
 
-    corner: the obstacle's corner, or the centre of a circular obstacle; radius: that of the obstacle, 0 for a corner. before, after: unit
-    vectors, the path's direction before and after the turn. side: 1 for a turn to the left, -1 to the right.
+    corner: the obstacle's corner, or the centre of a circular obstacle; radius: that of the
+    obstacle, 0 for a corner. before, after: unit vectors, the path's direction before and after the
+    turn. side: 1 for a turn to the left, -1 to the right.
     """
 
     corner: np.ndarray
@@ -67,12 +73,20 @@ class Turns(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """How round the path is. Where there is no room, both are smaller; the extra columns report by how much."""
+    """How round the path is. Where there is no room, both are smaller; the extra columns report by
+    how much.
+    """
 
     turning_radius: Annotated[
-        float, Range(0, LARGEST), About("smallest radius that the path should have; 0 leaves the corners", unit=UNITS)
+        float,
+        Range(0, LARGEST),
+        About("smallest radius that the path should have; 0 leaves the corners", unit=UNITS),
     ]
-    offset: Annotated[float, Range(0, LARGEST), About("distance to keep from the corners around which the path turns", unit=UNITS)]
+    offset: Annotated[
+        float,
+        Range(0, LARGEST),
+        About("distance to keep from the corners around which the path turns", unit=UNITS),
+    ]
 
 
 @with_settings(Settings)
@@ -89,20 +103,32 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     Returns
     -------
     Plan
-        Its objective is its length, in units, or infinite if there is no path. Extra columns: turns, the number of corners; tight_turns,
-        those with a smaller radius than the turning radius; least_radius, the smallest radius of a turn, in units: 0 where a corner is
-        left, infinite if there are no turns.
+        Its objective is its length, in units, or infinite if there is no path. Extra columns:
+        turns, the number of corners; tight_turns, those with a smaller radius than the turning
+        radius; least_radius, the smallest radius of a turn, in units: 0 where a corner is left,
+        infinite if there are no turns.
     """
-    return _answer(problem, shortest_paths.shortest_path(problem), region(problem.workspace), settings)
+    return _answer(
+        problem, shortest_paths.shortest_path(problem), region(problem.workspace), settings
+    )
 
 
 @with_settings(Settings)
-def gentlest(problem: Problem, rng: np.random.Generator | None, settings: Settings, bound: shortest_paths.Bound, blocked: Region) -> Plan:
-    """The same, but where the circles have no room for the turning radius, a path that keeps it is searched (`dubins_search`).
+def gentlest(
+    problem: Problem,
+    rng: np.random.Generator | None,
+    settings: Settings,
+    bound: shortest_paths.Bound,
+    blocked: Region,
+) -> Plan:
+    """The same, but where the circles have no room for the turning radius, a path that keeps it is
+    searched (`dubins_search`).
 
-    If none is found, the largest radius is kept that is: wishes shrink on a fixed scale until the circles have room for one, the largest
-    between it and the one before is found by halving, and from there to the turning radius the search is asked likewise. So a larger wish
-    gives no tighter turn than a smaller one, within `_SAME_SEARCHED`. bound, blocked: the exact shortest path and the region of the map.
+    If none is found, the largest radius is kept that is: wishes shrink on a fixed scale until the
+    circles have room for one, the largest between it and the one before is found by halving, and
+    from there to the turning radius the search is asked likewise. So a larger wish gives no tighter
+    turn than a smaller one, within `_SAME_SEARCHED`. bound, blocked: the exact shortest path and
+    the region of the map.
     """
     first = _answer(problem, bound, blocked, settings)
     if math.isinf(bound.length) or first.extra["tight_turns"] == 0:
@@ -111,7 +137,10 @@ def gentlest(problem: Problem, rng: np.random.Generator | None, settings: Settin
         return driven
     best = _largest(problem, bound, blocked, settings, first)
     x_low, x_high, y_low, y_high = problem.workspace.bounds
-    kept, failed = best.extra["least_radius"], min(settings.turning_radius, 2 * (x_high - x_low + y_high - y_low))
+    kept, failed = (
+        best.extra["least_radius"],
+        min(settings.turning_radius, 2 * (x_high - x_low + y_high - y_low)),
+    )
     while kept > 0 and failed > kept * (1 + _SAME_SEARCHED):
         wish = math.sqrt(kept * failed)
         if driven := _searched(problem, bound, blocked, wish):
@@ -121,17 +150,25 @@ def gentlest(problem: Problem, rng: np.random.Generator | None, settings: Settin
     return best._replace(extra=best.extra | {"tight_turns": best.extra["turns"]})
 
 
-def _searched(problem: Problem, bound: shortest_paths.Bound, blocked: Region, radius: float) -> Plan | None:
+def _searched(
+    problem: Problem, bound: shortest_paths.Bound, blocked: Region, radius: float
+) -> Plan | None:
     """A path that turns no tighter than a radius; None if the search finds none."""
-    found = dubins_search.searched(problem, dubins_search.Settings(radius, math.nan, math.nan), bound, blocked)
+    found = dubins_search.searched(
+        problem, dubins_search.Settings(radius, math.nan, math.nan), bound, blocked
+    )
     if not found.claimed_feasible:
         return None
     turns = len(turns_of(bound.points, problem.workspace).side)
     return found._replace(extra={"turns": turns, "tight_turns": 0, "least_radius": radius})
 
 
-def _largest(problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings, first: Plan) -> Plan:
-    """The rounded path with the largest radius for which the circles have room, or the `first` one if its tightest turn is as wide."""
+def _largest(
+    problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings, first: Plan
+) -> Plan:
+    """The rounded path with the largest radius for which the circles have room, or the `first` one
+    if its tightest turn is as wide.
+    """
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     around = 2 * (x_high - x_low + y_high - y_low)
     failed, tries, kept = min(settings.turning_radius, around), first.evaluations, None
@@ -153,15 +190,27 @@ def _largest(problem: Problem, bound: shortest_paths.Bound, blocked: Region, set
     return best._replace(evaluations=tries)
 
 
-def _answer(problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings) -> Plan:
+def _answer(
+    problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings
+) -> Plan:
     """The shortest path, rounded."""
     if math.isinf(bound.length):
         nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
-        return Plan(None, math.inf, claimed_feasible=False, evaluations=1, history=np.array([math.inf]), stop="no way", extra=nothing)
+        return Plan(
+            None,
+            math.inf,
+            claimed_feasible=False,
+            evaluations=1,
+            history=np.array([math.inf]),
+            stop="no way",
+            extra=nothing,
+        )
     turns = turns_of(bound.points, problem.workspace)
     points, radii, tries, free = _rounded(problem, turns, blocked, settings)
     if not free:  # around corners of a grown obstacle there may be less room than for a circle
-        points, radii, further, _ = _rounded(problem, turns_of(bound.points, None), blocked, settings)
+        points, radii, further, _ = _rounded(
+            problem, turns_of(bound.points, None), blocked, settings
+        )
         tries += further
     path = Path("cubic_chain", points)
     length = curves.length(path)
@@ -181,10 +230,14 @@ def _answer(problem: Problem, bound: shortest_paths.Bound, blocked: Region, sett
 
 
 def turns_of(points: np.ndarray, workspace: object) -> Turns:
-    """The turns of a shortest path, a polyline (n, 2). Around circles and round corners the vertices of an arc are one turn."""
+    """The turns of a shortest path, a polyline (n, 2). Around circles and round corners the
+    vertices of an arc are one turn.
+    """
     heading = _unit(np.diff(points, axis=0))
     bend = heading[:-1, 0] * heading[1:, 1] - heading[:-1, 1] * heading[1:, 0]
-    bends = np.flatnonzero((np.abs(bend) > _STRAIGHT) | ((heading[:-1] * heading[1:]).sum(axis=1) < 0))
+    bends = np.flatnonzero(
+        (np.abs(bend) > _STRAIGHT) | ((heading[:-1] * heading[1:]).sum(axis=1) < 0)
+    )
     corner, radius = points[bends + 1], np.zeros(len(bends))
     first = np.ones(len(bends), dtype=bool)
     centres, radii, near = _discs(workspace)
@@ -196,21 +249,35 @@ def turns_of(points: np.ndarray, workspace: object) -> Turns:
         radius = np.where(round_circle, radii[nearest], 0.0)
         first[1:] = ~(round_circle[1:] & round_circle[:-1] & (nearest[1:] == nearest[:-1]))
     begin, end = _runs(first)
-    return Turns(corner[begin], radius[begin], heading[bends[begin]], heading[bends[end] + 1], np.sign(bend[bends[begin]]))
+    return Turns(
+        corner[begin],
+        radius[begin],
+        heading[bends[begin]],
+        heading[bends[end] + 1],
+        np.sign(bend[bends[begin]]),
+    )
 
 
 def _discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
-    """Centres (n, 2) and radii (n,) of what a shortest path can be round at, and how close to it, in units, its vertices lie."""
+    """Centres (n, 2) and radii (n,) of what a shortest path can be round at, and how close to it,
+    in units, its vertices lie.
+    """
     if isinstance(workspace, Circles):
         return workspace.centres, workspace.radii, _ON_CIRCLE
     if isinstance(workspace, Polygons) and workspace.grown:
         around = workspace.grown.radius * (1 + robot.ARC_EXCESS)  # outside the tangents at a corner
-        return workspace.grown.centres, np.full(len(workspace.grown.centres), around), robot.ARC_EXCESS * around + robot.TOLERANCE
+        return (
+            workspace.grown.centres,
+            np.full(len(workspace.grown.centres), around),
+            robot.ARC_EXCESS * around + robot.TOLERANCE,
+        )
     return np.empty((0, 2)), np.empty(0), 0.0
 
 
 def _runs(begins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First and last indices (m,) of the runs that begin where `begins`, bool (n,), is true; the first element is always true."""
+    """First and last indices (m,) of the runs that begin where `begins`, bool (n,), is true; the
+    first element is always true.
+    """
     first = np.flatnonzero(begins)
     return first, np.append(first[1:], len(begins))[: len(first)] - 1
 
@@ -219,14 +286,19 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
 
 
-def _rounded(problem: Problem, turns: Turns, blocked: Region, settings: Settings) -> tuple[np.ndarray, np.ndarray, int, bool]:
-    """Control points of the rounded path, radius (n,) of each turn, the number of paths tried, and whether the path is free.
+def _rounded(
+    problem: Problem, turns: Turns, blocked: Region, settings: Settings
+) -> tuple[np.ndarray, np.ndarray, int, bool]:
+    """Control points of the rounded path, radius (n,) of each turn, the number of paths tried, and
+    whether the path is free.
 
-    Where two circles of the same sense get in each other's way, they become one turn and are pulled inwards in the same direction. Where
-    that does not help, circles are pulled inwards less, and only then shrink.
+    Where two circles of the same sense get in each other's way, they become one turn and are pulled
+    inwards in the same direction. Where that does not help, circles are pulled inwards less, and
+    only then shrink.
     """
     count = len(turns.side)
-    # Share of the desired radius, share of the way inwards up to the corner's clearance, and whether a turn begins at a corner.
+    # Share of the desired radius, share of the way inwards up to the corner's clearance, and
+    # whether a turn begins at a corner.
     share, pulled, begins = np.ones(count), np.ones(count), np.ones(count, dtype=bool)
     tries = 0
     while True:
@@ -242,7 +314,9 @@ def _rounded(problem: Problem, turns: Turns, blocked: Region, settings: Settings
             _shrink(share, wrong & ~slack, begins)
             continue
         points, owner = _chain(legs, sweeps, centres, radii, turns)
-        pieces = np.ascontiguousarray(points[np.arange(0, len(points) - 1, 3)[:, None] + np.arange(4)])
+        pieces = np.ascontiguousarray(
+            points[np.arange(0, len(points) - 1, 3)[:, None] + np.arange(4)]
+        )
         hit = _colliding(from_origin(pieces, blocked), blocked)
         bad = np.zeros(count + 2, dtype=bool)  # with start and target around the turns
         bad[owner[hit].ravel()] = True
@@ -259,7 +333,9 @@ def _shrink(share: np.ndarray, which: np.ndarray, begins: np.ndarray) -> None:
 
 
 def _join(begins: np.ndarray, bent_back: np.ndarray, turns: Turns) -> bool:
-    """Merge corners at which the string bends back into one turn with the nearer neighbour of the same sense; false if there is none."""
+    """Merge corners at which the string bends back into one turn with the nearer neighbour of the
+    same sense; false if there is none.
+    """
     joined = False
     gap = np.hypot(*np.diff(turns.corner, axis=0).T)
     gap = np.where((turns.side[1:] == turns.side[:-1]) & begins[1:], gap, np.inf)
@@ -277,8 +353,12 @@ def _beside(marked: np.ndarray) -> np.ndarray:
     return wide[:-2] | wide[1:-1] | wide[2:]
 
 
-def _circles(turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, settings: Settings) -> tuple[np.ndarray, np.ndarray]:
-    """Radii (n,) and centres (n, 2) of the circles around which the path runs; the corners lie inside them, at the depth of the offset."""
+def _circles(
+    turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, settings: Settings
+) -> tuple[np.ndarray, np.ndarray]:
+    """Radii (n,) and centres (n, 2) of the circles around which the path runs; the corners lie
+    inside them, at the depth of the offset.
+    """
     margin = turns.radius + share * settings.offset
     radii = np.maximum(margin, share * settings.turning_radius)
     first, last = _runs(begins)
@@ -289,8 +369,9 @@ def _circles(turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.nda
 def _string(
     problem: Problem, turns: Turns, centres: np.ndarray, radii: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Legs (n + 1, 2, 2) of the string around circles, sweeps (n,) of its arcs in their own sense, whether (n,) the string bends back at a
-    circle, and whether a circle overlaps a neighbour so that no leg fits between them.
+    """Legs (n + 1, 2, 2) of the string around circles, sweeps (n,) of its arcs in their own sense,
+    whether (n,) the string bends back at a circle, and whether a circle overlaps a neighbour so
+    that no leg fits between them.
     """
     ends = np.vstack([problem.start, centres, problem.target])
     signed = np.concatenate([[0.0], turns.side * radii, [0.0]])
@@ -298,17 +379,24 @@ def _string(
     distance = np.hypot(*step.T)
     across = np.diff(signed)
     fits = np.abs(across) <= distance
-    tilt = np.arcsin(np.divide(across, distance, out=np.zeros_like(across), where=fits & (distance > 0)))
+    tilt = np.arcsin(
+        np.divide(across, distance, out=np.zeros_like(across), where=fits & (distance > 0))
+    )
     direction = np.arctan2(step[:, 1], step[:, 0]) - tilt
     normal = np.column_stack([-np.sin(direction), np.cos(direction)])
-    legs = np.stack([ends[:-1] - signed[:-1, None] * normal, ends[1:] - signed[1:, None] * normal], axis=1)
+    legs = np.stack(
+        [ends[:-1] - signed[:-1, None] * normal, ends[1:] - signed[1:, None] * normal], axis=1
+    )
     sweeps = turns.side * ((np.diff(direction) + math.pi) % math.tau - math.pi)
     return legs, np.maximum(sweeps, 0.0), sweeps < -_STRAIGHT, ~fits[:-1] | ~fits[1:]
 
 
-def _chain(legs: np.ndarray, sweeps: np.ndarray, centres: np.ndarray, radii: np.ndarray, turns: Turns) -> tuple[np.ndarray, np.ndarray]:
-    """Control points (3 k + 1, 2) of legs and arcs as cubic pieces, and for each piece (k, 2) the two ends or turns between which it lies,
-    numbered from 0 at the start; for an arc, its turn twice.
+def _chain(
+    legs: np.ndarray, sweeps: np.ndarray, centres: np.ndarray, radii: np.ndarray, turns: Turns
+) -> tuple[np.ndarray, np.ndarray]:
+    """Control points (3 k + 1, 2) of legs and arcs as cubic pieces, and for each piece (k, 2) the
+    two ends or turns between which it lies, numbered from 0 at the start; for an arc, its turn
+    twice.
     """
     points, owner = [legs[0, :1]], []
     for number, (begin, end) in enumerate(legs):
@@ -322,7 +410,9 @@ def _chain(legs: np.ndarray, sweeps: np.ndarray, centres: np.ndarray, radii: np.
         handle = 4 / 3 * math.tan(turned / 4)
         for angle in turned * np.arange(parts):
             a, b = (_turned(spoke, each) for each in (angle, angle + turned))
-            points.append(centres[number] + np.array([a + handle * _quarter(a), b - handle * _quarter(b), b]))
+            points.append(
+                centres[number] + np.array([a + handle * _quarter(a), b - handle * _quarter(b), b])
+            )
             owner.append((number + 1, number + 1))
         points[-1][-1] = legs[number + 1, 0]
     points[-1][-1] = legs[-1, 1]  # to the last bit

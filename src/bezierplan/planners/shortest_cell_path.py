@@ -1,5 +1,5 @@
-"""A baseline: the shortest path over free cells, counting 1 for a straight step and 1.5 for a diagonal one. No cell-counting length
-(`cell_length`) can be smaller.
+"""A baseline: the shortest path over free cells, counting 1 for a straight step and 1.5 for a
+diagonal one. No cell-counting length (`cell_length`) can be smaller.
 """
 
 import math
@@ -16,8 +16,9 @@ deterministic = True
 
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
-    """A polyline through the centres of free cells, from the cell of the start to that of the target; a step may pass between two occupied
-    cells that share only a corner. Its objective is its length in cells times the side of a cell, or infinite if there is no path.
+    """A polyline through the centres of free cells, from the cell of the start to that of the
+    target; a step may pass between two occupied cells that share only a corner. Its objective is
+    its length in cells times the side of a cell, or infinite if there is no path.
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
@@ -30,11 +31,23 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
         # A computed cell centre can differ from the given one in the last bit.
         points[[0, -1]] = problem.start, problem.target
         path = Path("polyline", points)
-    return Plan(path, length, claimed_feasible=exists, evaluations=1, history=np.array([length]), stop="exact", extra={})
+    return Plan(
+        path,
+        length,
+        claimed_feasible=exists,
+        evaluations=1,
+        history=np.array([length]),
+        stop="exact",
+        extra={},
+    )
 
 
 def _without_straight_vertices(points: np.ndarray) -> np.ndarray:
     """A polyline (n, 2) without the vertices between two equal steps."""
     steps = np.diff(points, axis=0)
     turns = np.any(np.abs(steps[1:] - steps[:-1]) > 1e-9, axis=1)
-    return points[np.concatenate([[True], turns, [True]])] if len(points) > 1 else np.repeat(points, 2, axis=0)
+    return (
+        points[np.concatenate([[True], turns, [True]])]
+        if len(points) > 1
+        else np.repeat(points, 2, axis=0)
+    )

@@ -1,4 +1,6 @@
-"""A baseline: the exact shortest path, which no other planner can beat (`shortest_paths.shortest_path`)."""
+"""A baseline: the exact shortest path, which no other planner can beat
+(`shortest_paths.shortest_path`).
+"""
 
 import math
 
@@ -14,11 +16,20 @@ deterministic = True
 
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
-    """The shortest path that touches obstacles but enters none; its objective is its length, in units, or infinite if there is no path.
+    """The shortest path that touches obstacles but enters none; its objective is its length, in
+    units, or infinite if there is no path.
 
     Around circles it is a polyline at most 1e-6 units longer.
     """
     bound = shortest_paths.shortest_path(problem)
     found = math.isfinite(bound.length)
     path = Path("polyline", bound.points) if found else None
-    return Plan(path, bound.length, claimed_feasible=found, evaluations=1, history=np.array([bound.length]), stop="exact", extra={})
+    return Plan(
+        path,
+        bound.length,
+        claimed_feasible=found,
+        evaluations=1,
+        history=np.array([bound.length]),
+        stop="exact",
+        extra={},
+    )

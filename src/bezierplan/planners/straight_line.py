@@ -11,7 +11,17 @@ deterministic = True
 
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
-    """The straight line; its objective is its length, in units. It ignores obstacles and considers every path free."""
+    """The straight line; its objective is its length, in units. It ignores obstacles and considers
+    every path free.
+    """
     length = math.dist(problem.start, problem.target)
     path = Path("polyline", np.array([problem.start, problem.target]))
-    return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]), stop="direct", extra={})
+    return Plan(
+        path,
+        length,
+        claimed_feasible=True,
+        evaluations=1,
+        history=np.array([length]),
+        stop="direct",
+        extra={},
+    )

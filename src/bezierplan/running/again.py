@@ -10,9 +10,11 @@ from bezierplan.running import execution, problems, rows
 from bezierplan.running.inputs import Files
 
 
-def with_chunks(experiments: Mapping[str, Files], chunks: Iterable[tuple[int, dict[str, Any]]], folder: Path) -> dict[str, Files]:
-    """Run chunks, by number and job, and write each with its times into `<folder>/<experiment>/<method>`; returns the files of experiments
-    with theirs.
+def with_chunks(
+    experiments: Mapping[str, Files], chunks: Iterable[tuple[int, dict[str, Any]]], folder: Path
+) -> dict[str, Files]:
+    """Run chunks, by number and job, and write each with its times into
+    `<folder>/<experiment>/<method>`; returns the files of experiments with theirs.
     """
     files = {name: each._replace(runs={**each.runs}) for name, each in experiments.items()}
     made = {name: problems.read(each.problems) for name, each in experiments.items()}

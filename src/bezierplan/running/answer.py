@@ -1,7 +1,8 @@
-"""The one door for planners' answers: what comes in is copied once into plain values, and only the copy is judged and stored.
+"""The one door for planners' answers: what comes in is copied once into plain values, and only the
+copy is judged and stored.
 
-It serves runs, drives, the contract tests and `python -m bezierplan plan` alike. Types are exact: a subclass could show one value to the
-judge and another to the table.
+It serves runs, drives, the contract tests and `python -m bezierplan plan` alike. Types are exact: a
+subclass could show one value to the judge and another to the table.
 """
 
 import keyword
@@ -19,9 +20,13 @@ from bezierplan.planners import Plan
 from bezierplan.workspaces.problem import Path, Problem
 
 MOST_POINTS = 10_000
-"""Most control points of a chain of pieces that share no matrix; the checker judges them within seconds."""
+"""Most control points of a chain of pieces that share no matrix; the checker judges them within
+seconds.
+"""
 MOST_BLENDED = 1_000
-"""Most control points of other curves, whose matrix grows with the square of their number. Beziers end at the checker's largest degree."""
+"""Most control points of other curves, whose matrix grows with the square of their number. Beziers
+end at the checker's largest degree.
+"""
 MOST_HISTORY = 1_000_000
 MOST_STOP = 100
 """Most characters of the word for why a planner stopped."""
@@ -45,9 +50,11 @@ class Unfit(ValueError):
 
 
 def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
-    """A planner's answer as a Plan of plain values, copied once: its points and history are new arrays of float64.
+    """A planner's answer as a Plan of plain values, copied once: its points and history are new
+    arrays of float64.
 
-    taken: names not allowed for extra columns. Raises Unfit for the first field with another type, form, size or range.
+    taken: names not allowed for extra columns. Raises Unfit for the first field with another type,
+    form, size or range.
     """
     if type(answer) is not Plan:
         raise Unfit(f"is a {type(answer).__name__}; expected a Plan")
@@ -76,8 +83,8 @@ def accepted(answer: Any, problem: Problem, taken: Collection[str]) -> Plan:
 def check_ends(plan: Plan, problem: Problem) -> None:
     """Raise Unfit if an end of a plan's path differs from the problem's.
 
-    The comparison is bitwise, without a tolerance: a curve begins and ends at control points, into which a planner copies the problem's
-    own numbers, so nothing is rounded.
+    The comparison is bitwise, without a tolerance: a curve begins and ends at control points, into
+    which a planner copies the problem's own numbers, so nothing is rounded.
     """
     if plan.path is None:
         return
@@ -88,7 +95,9 @@ def check_ends(plan: Plan, problem: Problem) -> None:
 
 
 def stored(path: Path | None) -> tuple[str, list[float]]:
-    """A path as a row stores it: its curve, and its control points flat as x0, y0, x1, y1, ...; empty without a path."""
+    """A path as a row stores it: its curve, and its control points flat as x0, y0, x1, y1, ...;
+    empty without a path.
+    """
     return ("", []) if path is None else (path.curve, path.points.ravel().tolist())
 
 
@@ -106,7 +115,7 @@ def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
     return curves.length_of(pieces), check
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # The fields. Each function returns the plain value of a field, or raises Unfit.
 
 
@@ -114,17 +123,24 @@ def _path(path: Any) -> Path:
     if type(path) is not Path:
         raise Unfit("path: expected None or a Path")
     if type(path.curve) is not str:
-        raise Unfit(f"path: curve: is a {type(path.curve).__name__}; expected one of {', '.join(curves.CURVES)}")
+        raise Unfit(
+            f"path: curve: is a {type(path.curve).__name__}; expected one of "
+            f"{', '.join(curves.CURVES)}"
+        )
     if not _is_array(path.points, 2, "f") or path.points.shape[1] != 2:
         raise Unfit("path: points: expected an array of floats, (n, 2)")
     if path.curve in curves.CURVES and len(path.points) > _most_points(path.curve):
-        raise Unfit(f"path: points: {len(path.points)}; expected at most {_most_points(path.curve)} of a {path.curve}")
+        raise Unfit(
+            f"path: points: {len(path.points)}; expected at most {_most_points(path.curve)} of a "
+            f"{path.curve}"
+        )
     points = np.array(path.points, dtype=float, order="C")
     if not np.isfinite(points).all():
         raise Unfit("path: points: expected finite numbers")
     copy = Path(path.curve, points)
     try:
-        # A path that the checker rejects would abort a study: a coordinate too large, a degree too high.
+        # A path that the checker rejects would abort a study: a coordinate too large, a degree too
+        # high.
         checker.refuse_unfit(curves.bezier_pieces(copy))
     except ValueError as error:
         raise Unfit(f"path: {_one_line(error)}") from None
@@ -157,15 +173,26 @@ def _claim(value: Any) -> bool:
 
 def _evaluations(value: Any) -> int:
     if type(value) not in _WHOLES or not 0 <= value <= _LARGEST_WHOLE:
-        raise Unfit(f"evaluations: expected a whole number, at least 0 and at most {_LARGEST_WHOLE}")
+        raise Unfit(
+            f"evaluations: expected a whole number, at least 0 and at most {_LARGEST_WHOLE}"
+        )
     return int(value)
 
 
 def _history(values: Any) -> np.ndarray:
     if not _is_array(values, 1, "fiu") or not 0 < len(values) <= MOST_HISTORY:
-        raise Unfit(f"history: expected an array of numbers without nan, (generations + 1,), of at most {MOST_HISTORY} values")
-    if values.dtype.kind != "f" and not -_LARGEST_EXACT <= int(values.min()) <= int(values.max()) <= _LARGEST_EXACT:
-        raise Unfit(f"history: expected whole numbers between -{_LARGEST_EXACT} and {_LARGEST_EXACT}, or floats")
+        raise Unfit(
+            f"history: expected an array of numbers without nan, (generations + 1,), of at most "
+            f"{MOST_HISTORY} values"
+        )
+    if (
+        values.dtype.kind != "f"
+        and not -_LARGEST_EXACT <= int(values.min()) <= int(values.max()) <= _LARGEST_EXACT
+    ):
+        raise Unfit(
+            f"history: expected whole numbers between -{_LARGEST_EXACT} and {_LARGEST_EXACT}, or "
+            f"floats"
+        )
     history = np.array(values, dtype=float)
     if np.isnan(history).any():
         raise Unfit("history: expected an array of numbers without nan, (generations + 1,)")
@@ -186,7 +213,10 @@ def _extra(columns: Any, taken: Collection[str]) -> dict[str, float | bool]:
     for name in columns:
         if not _NAME.fullmatch(name) or len(name) > MOST_NAME or keyword.iskeyword(name):
             shown = ascii(name[:20])
-            raise Unfit(f"extra: {shown}: expected a name of at most {MOST_NAME} small letters, digits and underscores, and no keyword")
+            raise Unfit(
+                f"extra: {shown}: expected a name of at most {MOST_NAME} small letters, digits "
+                f"and underscores, and no keyword"
+            )
         if name in taken:
             raise Unfit(f"extra: {name}: a column or setting has this name already")
     return {name: _column(name, value) for name, value in columns.items()}
@@ -203,7 +233,9 @@ def _column(name: str, value: Any) -> float | bool:
 
 
 def _is_array(value: Any, dimensions: int, kinds: str) -> bool:
-    """Whether a value is an array, and no subclass, with a number of dimensions and a dtype kind among the given numpy letters."""
+    """Whether a value is an array, and no subclass, with a number of dimensions and a dtype kind
+    among the given numpy letters.
+    """
     return type(value) is np.ndarray and value.ndim == dimensions and value.dtype.kind in kinds
 
 

@@ -1,10 +1,11 @@
-"""Columns of the runs tables, each declared once, as an annotated field of a named tuple: its type, its meaning and its unit. What a file
-of runs holds (`rows.table`), what is expected of it when it is read (`rows.fault`), which names are taken, what a study may select by
-(`study.design`), and the tables in results/README.md (`python -m bezierplan.study.keys`) follow.
+"""Columns of the runs tables, each declared once, as an annotated field of a named tuple: its type,
+its meaning and its unit. What a file of runs holds (`rows.table`), what is expected of it when it
+is read (`rows.fault`), which names are taken, what a study may select by (`study.design`), and the
+tables in results/README.md (`python -m bezierplan.study.keys`) follow.
 
-A row is what is known before its run (`Planned`, with the place of its problem after `problem` and its settings after `planner`), what the
-run found out (`Outcome`), for a drive more of that (`DriveOutcome`), and the planner's own columns. Bounds and times are joined when it
-is read.
+A row is what is known before its run (`Planned`, with the place of its problem after `problem` and
+its settings after `planner`), what the run found out (`Outcome`), for a drive more of that
+(`DriveOutcome`), and the planner's own columns. Bounds and times are joined when it is read.
 """
 
 import typing
@@ -14,8 +15,8 @@ from bezierplan.planners import PLACE
 
 
 class Column(NamedTuple):
-    """What a column means, in words for a table in Markdown; its unit, empty for a pure number; what it means of a drive, where that is
-    something else.
+    """What a column means, in words for a table in Markdown; its unit, empty for a pure number;
+    what it means of a drive, where that is something else.
     """
 
     meaning: str
@@ -33,7 +34,10 @@ SECONDS = "s"
 class Planned(NamedTuple):
     """Known before a run, beside settings."""
 
-    id: Annotated[RunName, Column("`study/experiment/condition/method/repeat`: all that the run's seed depends on")]
+    id: Annotated[
+        RunName,
+        Column("`study/experiment/condition/method/repeat`: all that the run's seed depends on"),
+    ]
     study: Annotated[str, Column("the key of the study")]
     experiment: Annotated[str, Column("the name of the experiment")]
     condition: Annotated[str, Column("the problem and the values of varied settings")]
@@ -54,35 +58,65 @@ class Outcome(NamedTuple):
             drive="time of arrival times the pace, in units; infinite if it did not arrive",
         ),
     ]
-    length: Annotated[float, Column("exact arc length of the path; not a number without one", UNITS, "length of the way driven, in units")]
+    length: Annotated[
+        float,
+        Column(
+            "exact arc length of the path; not a number without one",
+            UNITS,
+            "length of the way driven, in units",
+        ),
+    ]
     claimed_feasible: Annotated[
-        bool, Column("the planner's own test of the path: part of its method, recorded but never repaired", drive="did the robot arrive?")
+        bool,
+        Column(
+            "the planner's own test of the path: part of its method, recorded but never repaired",
+            drive="did the robot arrive?",
+        ),
     ]
     feasible: Annotated[
         bool,
         Column(
-            "the certified check: exact geometry, independent of every planner, of a path that leads exactly from start to target (any "
+            "the certified check: exact geometry, independent of every planner, of a path that "
+            "leads exactly from start to target (any "
             "other path is invalid and stops the job)",
-            drive="did it arrive without a collision, by an exact check of its motion, also between steps?",
+            drive="did it arrive without a collision, by an exact check of its motion, also "
+            "between steps?",
         ),
     ]
     collision_at: Annotated[
-        float, Column("number of the piece plus the parameter within it of the first collision", drive="when it first collided, in steps")
+        float,
+        Column(
+            "number of the piece plus the parameter within it of the first collision",
+            drive="when it first collided, in steps",
+        ),
     ]
-    collision_depth: Annotated[float, Column("depth of the path in obstacles or beyond the border", UNITS)]
-    clearance: Annotated[float, Column("least distance from the path to obstacles and the border", UNITS)]
+    collision_depth: Annotated[
+        float, Column("depth of the path in obstacles or beyond the border", UNITS)
+    ]
+    clearance: Annotated[
+        float, Column("least distance from the path to obstacles and the border", UNITS)
+    ]
     clearance_error: Annotated[float, Column("proven error of the depth and the distance", UNITS)]
     evaluations: Annotated[int, Column("evaluations of the objective")]
-    generations: Annotated[int, Column("generations after the first one", drive="plans after the first")]
+    generations: Annotated[
+        int, Column("generations after the first one", drive="plans after the first")
+    ]
     stop: Annotated[str, Column("why the run ended")]
     history: Annotated[
         list[float],
-        Column("best objective after generation 0, 1, ...", drive="the way driven until each plan plus the length of that plan, in units"),
+        Column(
+            "best objective after generation 0, 1, ...",
+            drive="the way driven until each plan plus the length of that plan, in units",
+        ),
     ]
     path_curve: Annotated[str, Column("the kind of the path's curve; empty without a path")]
     path_points: Annotated[
         list[float],
-        Column("its control points as x0, y0, x1, y1, ...; empty without a path", UNITS, "the way driven, a polyline, in units"),
+        Column(
+            "its control points as x0, y0, x1, y1, ...; empty without a path",
+            UNITS,
+            "the way driven, a polyline, in units",
+        ),
     ]
 
 
@@ -91,13 +125,16 @@ class DriveOutcome(NamedTuple):
 
     arrival: Annotated[float, Column("time of arrival; not a number if it did not arrive", STEPS)]
     steps: Annotated[float, Column("time until the end of the drive", STEPS)]
-    travelled: Annotated[float, Column("length of the way driven, whether or not it is free", UNITS)]
+    travelled: Annotated[
+        float, Column("length of the way driven, whether or not it is free", UNITS)
+    ]
     first_plan: Annotated[float, Column("length of the first plan", UNITS)]
     last_plan: Annotated[float, Column("length of the last plan", UNITS)]
     last_optimum: Annotated[
         float,
         Column(
-            "among cells: the least length that a last plan from cell centre to cell centre could have, with the way to the first centre",
+            "among cells: the least length that a last plan from cell centre to cell centre could "
+            "have, with the way to the first centre",
             UNITS,
         ),
     ]
@@ -108,16 +145,22 @@ class DriveOutcome(NamedTuple):
     known_at: Annotated[
         float,
         Column(
-            "first step from which on the robot could know of its first collision, by what its policy lets it see; not a number if it "
+            "first step from which on the robot could know of its first collision, by what its "
+            "policy lets it see; not a number if it "
             "never could",
             STEPS,
         ),
     ]
     avoidable: Annotated[
         bool,
-        Column("could it have arrived without a collision from where it was then? True is certain; the clairvoyant search can miss a way"),
+        Column(
+            "could it have arrived without a collision from where it was then? True is certain; "
+            "the clairvoyant search can miss a way"
+        ),
     ]
-    clearance_least: Annotated[float, Column("least distance to an obstacle, negative inside a circle", UNITS)]
+    clearance_least: Annotated[
+        float, Column("least distance to an obstacle, negative inside a circle", UNITS)
+    ]
 
 
 class Bound(NamedTuple):
@@ -133,22 +176,37 @@ class Bound(NamedTuple):
             "length of the shortest way through places that are free at some time, in units",
         ),
     ]
-    least_length: Annotated[float, Column("the bound less an allowance for the checker's tolerance", UNITS)]
+    least_length: Annotated[
+        float, Column("the bound less an allowance for the checker's tolerance", UNITS)
+    ]
     bound_path: Annotated[list[float], Column("the shortest path as x0, y0, x1, y1, ...", UNITS)]
     octile_bound: Annotated[
-        float, Column("on grids: the least of all lengths counted in cells, from cell to cell; otherwise not a number", UNITS)
+        float,
+        Column(
+            "on grids: the least of all lengths counted in cells, from cell to cell; otherwise "
+            "not a number",
+            UNITS,
+        ),
     ]
 
 
 class DriveBound(NamedTuple):
     """The rest of that row where a world moves."""
 
-    least_arrival: Annotated[float, Column("no robot arrives earlier; `bound` over the pace", STEPS)]
-    clairvoyant_arrival: Annotated[float, Column("earliest arrival found by a search that knows the future", STEPS)]
+    least_arrival: Annotated[
+        float, Column("no robot arrives earlier; `bound` over the pace", STEPS)
+    ]
+    clairvoyant_arrival: Annotated[
+        float, Column("earliest arrival found by a search that knows the future", STEPS)
+    ]
     clairvoyant_length: Annotated[float, Column("length of its way", UNITS)]
     best_arrival: Annotated[
         float,
-        Column("the earlier one of `clairvoyant_arrival` and the first arrival of all drives of the experiment in this world", STEPS),
+        Column(
+            "the earlier one of `clairvoyant_arrival` and the first arrival of all drives of the "
+            "experiment in this world",
+            STEPS,
+        ),
     ]
 
 
@@ -170,7 +228,9 @@ class DriveTimes(NamedTuple):
 
 
 class Table(NamedTuple):
-    """What declares the columns of a kind of file, and what declares those that it has beside them if its runs are drives."""
+    """What declares the columns of a kind of file, and what declares those that it has beside them
+    if its runs are drives.
+    """
 
     every: tuple[type, ...]
     drives: type
@@ -183,13 +243,26 @@ TABLES = {
 }
 """Kind of file -> its columns."""
 
-TYPES = {RunName: "name", str: "word", int: "number", float: "number", bool: "flag", list[float]: "list"}
-"""Type of a value -> its word in studies' faults: a name is one for each run, a word is text, a flag true or false."""
+TYPES = {
+    RunName: "name",
+    str: "word",
+    int: "number",
+    float: "number",
+    bool: "flag",
+    list[float]: "list",
+}
+"""Type of a value -> its word in studies' faults: a name is one for each run, a word is text, a
+flag true or false.
+"""
 
 
 def declared(*tables: type) -> dict[str, tuple[type, Column]]:
     """Columns with the types of their values and what they mean."""
-    return {name: typing.get_args(annotation) for table in tables for name, annotation in table.__annotations__.items()}
+    return {
+        name: typing.get_args(annotation)
+        for table in tables
+        for name, annotation in table.__annotations__.items()
+    }
 
 
 def _types(*tables: type) -> dict[str, str]:
@@ -197,19 +270,25 @@ def _types(*tables: type) -> dict[str, str]:
 
 
 PLANNED = _types(Planned)
-"""Columns of every runs table that are known before a run, beside the settings, with the types of their values (`TYPES`)."""
+"""Columns of every runs table that are known before a run, beside the settings, with the types of
+their values (`TYPES`).
+"""
 
 RESULTS = _types(Outcome)
 """Likewise: those that a run finds out."""
 
 RUN_COLUMNS = (*PLANNED, *RESULTS)
-"""Columns of every runs table; the settings and a planner's extra columns stand between `planner` and `objective`, and at the end."""
+"""Columns of every runs table; the settings and a planner's extra columns stand between `planner`
+and `objective`, and at the end.
+"""
 
 DRIVE_RESULTS = _types(DriveOutcome)
 """Columns of a runs table that only drives have."""
 
 JOINED = {name: kind for name, kind in _types(Bound, Times).items() if name not in PLANNED}
-"""Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the times."""
+"""Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the
+times.
+"""
 
 DRIVE_JOINED = _types(DriveBound, DriveTimes)
 """Columns that are joined to the table of drives: of `rides.bounds_of`, and the times of plans."""
@@ -218,5 +297,6 @@ WORDS = ("value", "statistic", "metric", "n", "unit", "table")
 """Columns of tables of results, beside those of the runs table that tell their rows apart."""
 
 TAKEN = frozenset((*RUN_COLUMNS, *DRIVE_RESULTS, *PLACE, *JOINED, *DRIVE_JOINED))
-"""Names that no planner's extra column can have; the job's settings and what it varies are others. A setting cannot have them
-either."""
+"""Names that no planner's extra column can have; the job's settings and what it varies are others.
+A setting cannot have them either.
+"""

@@ -1,6 +1,8 @@
-"""Contract tests for a planner, from this package or your own: the requirements of `planners`, on small and degenerate problems.
+"""Contract tests for a planner, from this package or your own: the requirements of `planners`, on
+small and degenerate problems.
 
-Every setting of a planner needs a value. The planner counts its own budget: the tests check its count, not its actual work.
+Every setting of a planner needs a value. The planner counts its own budget: the tests check its
+count, not its actual work.
 """
 
 import hashlib
@@ -41,7 +43,9 @@ _UNIT = "unit"
 
 
 class Finding(NamedTuple):
-    """The result of one test of the contract on one problem. detail: the fault if it failed, otherwise additional information."""
+    """The result of one test of the contract on one problem. detail: the fault if it failed,
+    otherwise additional information.
+    """
 
     problem: str
     fact: str
@@ -53,9 +57,11 @@ class Finding(NamedTuple):
 
 
 def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
-    """Findings on a planner, given as a name or the path of a file, with these settings; computed lazily.
+    """Findings on a planner, given as a name or the path of a file, with these settings; computed
+    lazily.
 
-    Raises Fault, in one line, before the first finding: for a file that is not a planner, and for missing or invalid settings.
+    Raises Fault, in one line, before the first finding: for a file that is not a planner, and for
+    missing or invalid settings.
     """
     module = _loaded(planner)
     first = _check_settings(module, settings, planner)
@@ -63,52 +69,80 @@ def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
 
 
 def check_elsewhere(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
-    """Findings, one a problem, on whether a planner that passes `check_planner` gives the same bits in another process, where `hash`, the
-    order of sets and the addresses of objects differ.
+    """Findings, one a problem, on whether a planner that passes `check_planner` gives the same bits
+    in another process, where `hash`, the order of sets and the addresses of objects differ.
     """
     hashing = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"
     command = [sys.executable, "-m", __name__, planner, json.dumps(settings)]
-    there = subprocess.run(command, env=os.environ | {"PYTHONHASHSEED": hashing}, stdout=subprocess.PIPE, text=True, check=False)
+    there = subprocess.run(
+        command,
+        env=os.environ | {"PYTHONHASHSEED": hashing},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
     elsewhere = dict(line.split("\t", 1) for line in there.stdout.splitlines() if "\t" in line)
     for problem, bits in first_answers(planner, settings):
         same = elsewhere.get(problem) == bits
-        yield Finding(problem, "another process", same, "" if same else "another plan there; hash(), id() and the order of a set differ")
+        yield Finding(
+            problem,
+            "another process",
+            same,
+            "" if same else "another plan there; hash(), id() and the order of a set differ",
+        )
 
 
 def first_answers(planner: str, settings: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """Each problem with a digest of a planner's plan from the first generator; of its exception, if it raises one."""
+    """Each problem with a digest of a planner's plan from the first generator; of its exception, if
+    it raises one.
+    """
     module = interface.loaded(planner, planner)
     for problem in _problems(module):
         try:
-            with watchdog.watching(LIMIT) as watch, watchdog.executing(f"{planner}: {problem.name}", watch):
+            with (
+                watchdog.watching(LIMIT) as watch,
+                watchdog.executing(f"{planner}: {problem.name}", watch),
+            ):
                 found = repr(_bits(module.plan(problem, np.random.default_rng(0), **settings)))
         except watchdog.PlannerFailure as failure:
             found = type(failure.__cause__).__name__
         yield problem.name, hashlib.sha256(found.encode()).hexdigest()
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Before a planner is run: its module and its settings
 
 
 def _loaded(planner: str) -> ModuleType:
     if not planner.endswith(".py") and planner not in known_planners():
-        raise Fault(f"{planner}: unknown planner, and not the path of a file that ends in .py{closest(planner, known_planners())}")
+        raise Fault(
+            f"{planner}: unknown planner, and not the path of a file that ends in "
+            f".py{closest(planner, known_planners())}"
+        )
     return interface.loaded(planner, planner)
 
 
 def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) -> list[Finding]:
-    """Findings from the check of settings: whether the planner's own check, if any, leaves them unchanged. Raises Fault."""
+    """Findings from the check of settings: whether the planner's own check, if any, leaves them
+    unchanged. Raises Fault.
+    """
     interface.refuse_unknown(module, settings, f"{planner}: settings")
     interface.check_settings(module, settings, f"{planner}: settings")
     if not hasattr(module, "check"):
         return []
     handed = dict(settings)
     module.check(handed)
-    return [Finding("any problem", "settings unchanged", handed == settings, "" if handed == settings else "check(settings) changes them")]
+    return [
+        Finding(
+            "any problem",
+            "settings unchanged",
+            handed == settings,
+            "" if handed == settings else "check(settings) changes them",
+        )
+    ]
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # The problems
 
 _IN_THE_WAY = "obstacle in the way"
@@ -118,8 +152,8 @@ _SEALED = "sealed target"
 _ON_BOUNDARY = "start on a boundary"
 _FAR = "far from the origin"
 
-# Rows from the top; S start, T target, B both. Start and target are cell centres, the only places that grid planners support; so no
-# start lies on a boundary.
+# Rows from the top; S start, T target, B both. Start and target are cell centres, the only places
+# that grid planners support; so no start lies on a boundary.
 _GRIDS = {
     "open": ("......", ".S..T.", "..#...", "......"),
     _IN_THE_WAY: ("......", ".S#.T.", "..#...", "......"),
@@ -159,29 +193,43 @@ def _box(middle: tuple[float, float], half: float) -> np.ndarray:
 
 
 _BLOCK = ((_box((5, 5), 2),),)
-_POLYGONS = {"open": ((_box((5, 8), 1),),), _SEALED: ((_box((7, 5), 2), _box((7, 5), 1)),), "no obstacles": ()}
+_POLYGONS = {
+    "open": ((_box((5, 8), 1),),),
+    _SEALED: ((_box((7, 5), 2), _box((7, 5), 1)),),
+    "no obstacles": (),
+}
 
 
 def _grid_problems() -> Iterator[Problem]:
     for title, rows in _GRIDS.items():
         text = "".join(reversed(rows))
-        start, target = (next(cell for cell, mark in enumerate(text) if mark in end) for end in ("SB", "TB"))
+        start, target = (
+            next(cell for cell, mark in enumerate(text) if mark in end) for end in ("SB", "TB")
+        )
         lines = ["".join("#" if mark == "#" else "." for mark in row) for row in rows]
         workspace = grid.from_lines(lines, _LARGE_CELL if title == _FAR else 1.0, _UNIT)
-        yield Problem(f"grid: {title}", workspace, workspace.centre(start), workspace.centre(target))
+        yield Problem(
+            f"grid: {title}", workspace, workspace.centre(start), workspace.centre(target)
+        )
 
 
 def _circle_problems() -> Iterator[Problem]:
     for title in _ENDS:
         circles = _CIRCLES.get(title, _DISC)
         move = _move(title)
-        yield _moved(f"circles: {title}", title, Circles(_bounds(move), circles[:, :2] + move, circles[:, 2].copy(), _UNIT))
+        yield _moved(
+            f"circles: {title}",
+            title,
+            Circles(_bounds(move), circles[:, :2] + move, circles[:, 2].copy(), _UNIT),
+        )
 
 
 def _polygon_problems() -> Iterator[Problem]:
     for title in _ENDS:
         move = _move(title)
-        obstacles = tuple(tuple(ring + move for ring in rings) for rings in _POLYGONS.get(title, _BLOCK))
+        obstacles = tuple(
+            tuple(ring + move for ring in rings) for rings in _POLYGONS.get(title, _BLOCK)
+        )
         yield _moved(f"polygons: {title}", title, Polygons(_bounds(move), obstacles, _UNIT))
 
 
@@ -203,13 +251,14 @@ PROBLEMS = {"grid": _grid_problems, "circles": _circle_problems, "polygons": _po
 """The problems of a kind of workspace, small ones, as an iterator that makes them anew."""
 
 
-# ---------------------------------------------------------------------------------------------------------------------
-# Runs. Only numpy's legacy functions, which ruff (NPY002) warns about, give access to the state of its global generator.
+# --------------------------------------------------------------------------------------------------
+# Runs. Only numpy's legacy functions, which ruff (NPY002) warns about, give access to the state of
+# its global generator.
 
 
 class _Run(NamedTuple):
-    """plan: the answer. used: global generators whose state changed. changed: whether the planner altered the problem. rng: the state of
-    its own generator afterwards; None if nothing was drawn.
+    """plan: the answer. used: global generators whose state changed. changed: whether the planner
+    altered the problem. rng: the state of its own generator afterwards; None if nothing was drawn.
     """
 
     plan: Any
@@ -221,9 +270,10 @@ class _Run(NamedTuple):
 class _Case(NamedTuple):
     """A planner's plans for one problem, all of them valid.
 
-    blocked: the region of the problem. plans: one per generator. again: the first of them reproduced. reseeded: likewise, with the global
-    generators in another state. runs: all of these. columns: names of extra columns on the first problem. exact, keeps_best: what the
-    planner declares.
+    blocked: the region of the problem. plans: one per generator. again: the first of them
+    reproduced. reseeded: likewise, with the global generators in another state. runs: all of these.
+    columns: names of extra columns on the first problem. exact, keeps_best: what the planner
+    declares.
     """
 
     problem: Problem
@@ -250,7 +300,9 @@ def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]
         plan, again, reseeded, *others = (run.plan for run in runs)
         columns = set(plan.extra) if columns is None else columns
         declared = getattr(module, "exact", False), getattr(module, "keeps_best", True)
-        case = _Case(problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, *declared)
+        case = _Case(
+            problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, *declared
+        )
         for name, fact in _FACTS.items():
             finding = Finding(problem.name, name, *fact(case))
             sound = sound and finding.passed
@@ -262,7 +314,11 @@ def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]
         drawn = drawn or (None not in left and len({*left}) == len(left))
     # One that has another fault, such as to draw from a global generator, is not blamed twice.
     if differ and sound:
-        yield Finding("all problems", "generators", *_heeds_generators(differ, drawn, getattr(module, "deterministic", False)))
+        yield Finding(
+            "all problems",
+            "generators",
+            *_heeds_generators(differ, drawn, getattr(module, "deterministic", False)),
+        )
 
 
 def _problems(module: ModuleType) -> Iterator[Problem]:
@@ -271,21 +327,36 @@ def _problems(module: ModuleType) -> Iterator[Problem]:
 
 
 def _heeds_generators(differ: list[str], drawn: bool, deterministic: bool) -> tuple[bool, str]:
-    """differ: for each problem the first field in which plans of different generators differ; empty if none does. drawn: whether on some
-    problem all generators were drawn from and left in different states: then the plans may be the same because the problems are easy.
+    """differ: for each problem the first field in which plans of different generators differ; empty
+    if none does. drawn: whether on some problem all generators were drawn from and left in
+    different states: then the plans may be the same because the problems are easy.
     """
     field = next(filter(None, differ), "")
     if deterministic:
-        return not field, f"{field}: another value from another generator, but deterministic = True" if field else ""
-    return drawn or bool(
-        field
-    ), "" if drawn or field else "the same plans from every generator; draw from rng as it comes, or say deterministic = True"
+        return (
+            not field,
+            f"{field}: another value from another generator, but deterministic = True"
+            if field
+            else "",
+        )
+    return (
+        drawn or bool(field),
+        ""
+        if drawn or field
+        else "the same plans from every generator; draw from rng as it comes, or say "
+        "deterministic = True",
+    )
 
 
 def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tuple[list[_Run], str]:
     """Runs in the order that `_findings` expects, or the fault that left none to inspect."""
     runs = []
-    for seed, surroundings in [(0, 0), (0, 0), (0, 1), *((seed, 0) for seed in range(1, _GENERATORS))]:
+    for seed, surroundings in [
+        (0, 0),
+        (0, 0),
+        (0, 1),
+        *((seed, 0) for seed in range(1, _GENERATORS)),
+    ]:
         name = f"planner {module.__spec__.origin}: {problem.name}"
         try:
             with watchdog.watching(LIMIT) as watch, watchdog.executing(name, watch):
@@ -300,9 +371,11 @@ def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tup
     return runs, ""
 
 
-def _run(module: ModuleType, problem: Problem, settings: dict[str, Any], seed: int, surroundings: int) -> _Run:
-    """One run on a copy of a problem, as the workflow makes it. surroundings: seed of the global generators, whose state is
-    restored afterwards.
+def _run(
+    module: ModuleType, problem: Problem, settings: dict[str, Any], seed: int, surroundings: int
+) -> _Run:
+    """One run on a copy of a problem, as the workflow makes it. surroundings: seed of the global
+    generators, whose state is restored afterwards.
     """
     loan = lend({problem.name: problem})[problem.name]
     kept = np.random.get_state(), random.getstate()  # noqa: NPY002
@@ -334,12 +407,14 @@ def _global_states() -> dict[str, tuple]:
 
 @allocation_free
 def _seed_compiled(seed: int) -> None:
-    """Seed the global generators of compiled code, which numba keeps apart from Python's. Their state cannot be read."""
+    """Seed the global generators of compiled code, which numba keeps apart from Python's. Their
+    state cannot be read.
+    """
     np.random.seed(seed)  # noqa: NPY002
     random.seed(seed)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Facts: each returns whether it holds for a case, and a detail
 
 
@@ -358,7 +433,11 @@ def _history_falls(case: _Case) -> tuple[bool, str]:
         # Written so that NaN fails as well.
         if not (plan.history[1:] <= plan.history[:-1]).all():
             return False, "rises; expected the best objective so far"
-        if plan.path is not None and plan.history[-1] != plan.objective and (case.keeps_best or plan.history[-1] > plan.objective):
+        if (
+            plan.path is not None
+            and plan.history[-1] != plan.objective
+            and (case.keeps_best or plan.history[-1] > plan.objective)
+        ):
             return False, f"ends with {plan.history[-1]}; expected the objective, {plan.objective}"
     return True, ""
 
@@ -370,7 +449,11 @@ def _extra_is_free(case: _Case) -> tuple[bool, str]:
         except answer.Unfit as fault:
             return False, str(fault)
         if plan.extra.keys() != case.columns:
-            return False, f"{min(plan.extra.keys() ^ case.columns)}: not in every plan; a table needs the same columns in each row"
+            return (
+                False,
+                f"{min(plan.extra.keys() ^ case.columns)}: not in every plan; a table needs the "
+                f"same columns in each row",
+            )
     return True, ""
 
 
@@ -392,7 +475,10 @@ def _draws_from_its_own(case: _Case) -> tuple[bool, str]:
 
 def _leaves_problem(case: _Case) -> tuple[bool, str]:
     changed = any(run.changed for run in case.runs)
-    return not changed, "the problem is another after the run; copy what is to be changed" if changed else ""
+    return (
+        not changed,
+        "the problem is another after the run; copy what is to be changed" if changed else "",
+    )
 
 
 def _keeps_budget(case: _Case) -> tuple[bool, str]:
@@ -403,15 +489,22 @@ def _keeps_budget(case: _Case) -> tuple[bool, str]:
         return False, f"{used[-1]} evaluations; expected at most {budget}"
     for plan in case.plans:
         if len(plan.history) > plan.evaluations:
-            return False, f"a history of {len(plan.history)} values from {plan.evaluations} evaluations"
-    return True, f"{used[0]} evaluations" if used[0] == used[-1] else f"{used[0]} to {used[-1]} evaluations"
+            return (
+                False,
+                f"a history of {len(plan.history)} values from {plan.evaluations} evaluations",
+            )
+    return True, f"{used[0]} evaluations" if used[0] == used[
+        -1
+    ] else f"{used[0]} to {used[-1]} evaluations"
 
 
 def _claims_hold(case: _Case) -> tuple[bool, str]:
     """Only a planner that declares itself exact can fail."""
     claims = [plan for plan in case.plans if plan.claimed_feasible]
     agreed = _feasible(claims, case.blocked)
-    return agreed == len(claims) or not case.exact, f"{len(claims)} paths claimed feasible, {agreed} by the checker"
+    return agreed == len(
+        claims
+    ) or not case.exact, f"{len(claims)} paths claimed feasible, {agreed} by the checker"
 
 
 def _finds_no_way(case: _Case) -> tuple[bool, str]:
@@ -421,7 +514,10 @@ def _finds_no_way(case: _Case) -> tuple[bool, str]:
 
 def _feasible(plans: list[Plan], blocked: Region) -> int:
     """Number of plans whose path the checker accepts as feasible."""
-    return sum(plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible for plan in plans)
+    return sum(
+        plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible
+        for plan in plans
+    )
 
 
 def _difference(one: Plan, other: Plan) -> str:

@@ -1,7 +1,8 @@
 """Digests of source code.
 
-A digest names what a result depends on, so that an edit re-runs exactly the jobs that it can change; it also names the folder
-in which numba keeps the compiled kernels of a module, because numba itself does not notice an edit in a module that a kernel calls.
+A digest names what a result depends on, so that an edit re-runs exactly the jobs that it can
+change; it also names the folder in which numba keeps the compiled kernels of a module, because
+numba itself does not notice an edit in a module that a kernel calls.
 """
 
 import ast
@@ -21,14 +22,25 @@ ROOT = PACKAGE.name
 
 
 # Modules that affect how a job starts and ends, but never what it writes.
-NEUTRAL = {f"{ROOT}.{name}" for name in ("places", "running.digest", "running.effort", "running.kernel_cache", "running.log")}
+NEUTRAL = {
+    f"{ROOT}.{name}"
+    for name in (
+        "places",
+        "running.digest",
+        "running.effort",
+        "running.kernel_cache",
+        "running.log",
+    )
+}
 
 COMPUTING = ("numba", "llvmlite", "numpy", "scipy", "shapely", "pandas", "pyarrow")
 """Libraries whose versions can change a number."""
 
 
 class _Module(NamedTuple):
-    """A module by its dotted name, and the folder in which that name is looked up: this package's, or that of a file outside it."""
+    """A module by its dotted name, and the folder in which that name is looked up: this package's,
+    or that of a file outside it.
+    """
 
     home: Path
     name: str
@@ -61,7 +73,9 @@ def _module(name: str) -> _Module:
 
 
 class _Syntax(NamedTuple):
-    """What a file computes, as text: its syntax tree without docstrings; and what it imports: (leading dots, module, name in it)."""
+    """What a file computes, as text: its syntax tree without docstrings; and what it imports:
+    (leading dots, module, name in it).
+    """
 
     tree: str
     imports: list[list[int | str]]
@@ -69,9 +83,15 @@ class _Syntax(NamedTuple):
 
 @cache
 def _syntax(file: Path) -> _Syntax:
-    """The syntax of a file, kept from earlier processes: to parse the package takes as long as to import it."""
+    """The syntax of a file, kept from earlier processes: to parse the package takes as long as to
+    import it.
+    """
     source = file.read_bytes()
-    kept = cache_folder() / "syntax" / f"{hashlib.sha256(source).hexdigest()}.{sys.implementation.cache_tag}.json"
+    kept = (
+        cache_folder()
+        / "syntax"
+        / f"{hashlib.sha256(source).hexdigest()}.{sys.implementation.cache_tag}.json"
+    )
     try:
         return _Syntax(*json.loads(kept.read_bytes()))
     except (OSError, ValueError, TypeError):
@@ -93,16 +113,27 @@ def _parsed(source: bytes) -> _Syntax:
             imports.update((0, alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             imports.update((node.level, node.module or "", alias.name) for alias in node.names)
-        elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node) is not None:
+        elif (
+            isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
+            and ast.get_docstring(node) is not None
+        ):
             node.body = node.body[1:]
-        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "About":
-            node.args = node.args[2:]  # the words about a planner's setting; what remains is its unit
+        elif (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id == "About"
+        ):
+            node.args = node.args[
+                2:
+            ]  # the words about a planner's setting; what remains is its unit
     return _Syntax(ast.dump(tree), sorted(map(list, imports)))
 
 
 @cache
 def _imports(module: _Module) -> set[_Module]:
-    """The modules that a module imports, with their packages: from this package and, for a file outside it, from the file's folder."""
+    """The modules that a module imports, with their packages: from this package and, for a file
+    outside it, from the file's folder.
+    """
     file = module.file()
     packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
     modules = set()
@@ -110,25 +141,37 @@ def _imports(module: _Module) -> set[_Module]:
         above = packages[: len(packages) - level + 1] if level else []
         base = ".".join([*above, *filter(None, [base])])
         for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
-            modules.add(_Module(PACKAGE.parent if full.split(".")[0] == ROOT else module.home, full))
+            modules.add(
+                _Module(PACKAGE.parent if full.split(".")[0] == ROOT else module.home, full)
+            )
     # Modules next to this package are not part of it.
-    ours = {each for each in modules if (each.home != PACKAGE.parent or each.name.split(".")[0] == ROOT) and each.file()}
+    ours = {
+        each
+        for each in modules
+        if (each.home != PACKAGE.parent or each.name.split(".")[0] == ROOT) and each.file()
+    }
     return ours.union(*(each.parents() for each in ours))
 
 
 def source_digest(*modules: str) -> str:
-    """Digest of modules and everything that they import, directly or indirectly, from this package or, for a file, from its folder.
+    """Digest of modules and everything that they import, directly or indirectly, from this package
+    or, for a file, from its folder.
 
-    A module is a dotted name of this package or the path of a file, such as a user's planner. Comments, docstrings and layout do not
-    count: the digest is taken over syntax trees. Raises ValueError for a missing module.
+    A module is a dotted name of this package or the path of a file, such as a user's planner.
+    Comments, docstrings and layout do not count: the digest is taken over syntax trees. Raises
+    ValueError for a missing module.
     """
     return _reached(*modules)[0]
 
 
 def versioned_digest(*modules: str) -> str:
-    """`source_digest`, with the versions of the libraries among `COMPUTING` that these modules import: what a job's results depend on."""
+    """`source_digest`, with the versions of the libraries among `COMPUTING` that these modules
+    import: what a job's results depend on.
+    """
     digest, libraries = _reached(*modules)
-    return " ".join([digest, *(f"{name} {library_version(name)}" for name in COMPUTING if name in libraries)])
+    return " ".join(
+        [digest, *(f"{name} {library_version(name)}" for name in COMPUTING if name in libraries)]
+    )
 
 
 @cache
@@ -139,7 +182,9 @@ def library_version(name: str) -> str:
 
 @cache
 def _reached(*modules: str) -> tuple[str, set[str]]:
-    """The digest of `source_digest`, and the libraries among `COMPUTING` that are imported anywhere; llvmlite comes with numba."""
+    """The digest of `source_digest`, and the libraries among `COMPUTING` that are imported
+    anywhere; llvmlite comes with numba.
+    """
     todo, texts, libraries = [], {}, set()
     for module in map(_module, modules):
         if module.file() is None:
@@ -150,7 +195,11 @@ def _reached(*modules: str) -> tuple[str, set[str]]:
         if module not in texts and module.file() and module.name not in NEUTRAL:
             texts[module] = f"{module.name} {_syntax(module.file()).tree}"
             todo += _imports(module)
-            libraries.update(base.split(".")[0] for level, base, _ in _syntax(module.file()).imports if not level and base)
+            libraries.update(
+                base.split(".")[0]
+                for level, base, _ in _syntax(module.file()).imports
+                if not level and base
+            )
     libraries |= {"llvmlite"} if "numba" in libraries else set()
     digest = hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
     return digest, libraries
@@ -158,9 +207,13 @@ def _reached(*modules: str) -> tuple[str, set[str]]:
 
 @cache
 def content_digest(*files: str) -> str:
-    """Digest of the content of files, in the given order: unlike a timestamp, it shows whether one of them changed."""
+    """Digest of the content of files, in the given order: unlike a timestamp, it shows whether one
+    of them changed.
+    """
     contents = (Path(file).read_bytes() for file in files)
-    return hashlib.sha256(b"".join(hashlib.sha256(content).digest() for content in contents)).hexdigest()[:16]
+    return hashlib.sha256(
+        b"".join(hashlib.sha256(content).digest() for content in contents)
+    ).hexdigest()[:16]
 
 
 KERNELS = cache_folder() / "kernels"
@@ -169,6 +222,8 @@ KERNELS = cache_folder() / "kernels"
 
 @cache
 def kernel_folder(module: str, file: str) -> Path:
-    """The folder of compiled kernels for the current state of a module, from this package or the user's own."""
+    """The folder of compiled kernels for the current state of a module, from this package or the
+    user's own.
+    """
     ours = module.split(".")[0] == ROOT and _module(module).file() is not None
     return KERNELS / f"{Path(file).stem}-{source_digest(module if ours else file)}"

@@ -1,6 +1,7 @@
 """Where the time of a workflow goes: what each job notes of its CPU time, and Snakemake of its own.
 
-A job writes one line into its log at its end, Snakemake one file at the end of a start. Nothing else depends on either.
+A job writes one line into its log at its end, Snakemake one file at the end of a start. Nothing
+else depends on either.
 """
 
 import importlib
@@ -21,15 +22,16 @@ SESSION = Path(".snakemake/effort.json")
 _LAST_FORK = 2.0
 
 spent: Counter[str] = Counter()
-"""CPU seconds of this process `importing`, `loading kernels` and `compiling`, and seconds of the clock `waiting` for kernels that another
-one compiles.
+"""CPU seconds of this process `importing`, `loading kernels` and `compiling`, and seconds of the
+clock `waiting` for kernels that another one compiles.
 """
 _busy: list[str] = []
 
 
 class Session(NamedTuple):
-    """A start of Snakemake: when it started and ended, on how many cores, and the CPU seconds of its own process, of the one that is forked
-    for jobs, and of these forks from their first to their last moment.
+    """A start of Snakemake: when it started and ended, on how many cores, and the CPU seconds of
+    its own process, of the one that is forked for jobs, and of these forks from their first to
+    their last moment.
     """
 
     started: float
@@ -64,9 +66,12 @@ def _timed(load: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 
 def begin() -> None:
-    """Start to note what this process spends, imports included. What a parent spent before this process was forked is the parent's."""
+    """Start to note what this process spends, imports included. What a parent spent before this
+    process was forked is the parent's.
+    """
     spent.clear()
-    # There is no public hook around the loading of a module; without this one the time counts as the job's own.
+    # There is no public hook around the loading of a module; without this one the time counts as
+    # the job's own.
     bootstrap = importlib._bootstrap
     if hasattr(bootstrap, "_load_unlocked"):
         bootstrap._load_unlocked = _timed(bootstrap._load_unlocked)
@@ -75,7 +80,10 @@ def begin() -> None:
 def line() -> str:
     """What this process notes of its CPU time so far, that of its children included: one line."""
     children = os.times()
-    return f"{WORD} {json.dumps({'cpu': time.process_time() + children.children_user + children.children_system, **spent})}"
+    return (
+        f"{WORD} "
+        f"{json.dumps({'cpu': time.process_time() + children.children_user + children.children_system, **spent})}"
+    )
 
 
 def of_job(log: Path) -> dict[str, float] | None:
@@ -89,7 +97,8 @@ def of_job(log: Path) -> dict[str, float] | None:
 
 
 def keep(cores: int, forked: int | None) -> None:
-    """Note the effort of Snakemake, in whose process this is called, at its end. forked: number of the process that is forked, if any.
+    """Note the effort of Snakemake, in whose process this is called, at its end. forked: number of
+    the process that is forked, if any.
 
     A note that cannot be made is left out, for the workflow has ended well.
     """
@@ -105,7 +114,13 @@ def keep(cores: int, forked: int | None) -> None:
             parent, forks = times.user + times.system, times.children_user + times.children_system
     times = snakemake.cpu_times()
     with suppress(OSError):
-        SESSION.write_text(json.dumps(Session(snakemake.create_time(), ended, cores, times.user + times.system, parent, forks)._asdict()))
+        SESSION.write_text(
+            json.dumps(
+                Session(
+                    snakemake.create_time(), ended, cores, times.user + times.system, parent, forks
+                )._asdict()
+            )
+        )
 
 
 def last(folder: Path) -> Session:

@@ -1,8 +1,9 @@
 """Run the scripts of jobs in forks of one process that has imported what they need.
 
-To start Python and to import numba, pandas and seaborn takes one to two seconds, longer than most jobs work. Snakemake starts an
-interpreter for each script; here one process imports these libraries once per workflow, most of them while no job waits, and forks a child
-per job. A child inherits modules, never results: the parent reads no file of the workflow.
+To start Python and to import numba, pandas and seaborn takes one to two seconds, longer than most
+jobs work. Snakemake starts an interpreter for each script; here one process imports these libraries
+once per workflow, most of them while no job waits, and forks a child per job. A child inherits
+modules, never results: the parent reads no file of the workflow.
 """
 
 import contextlib
@@ -24,7 +25,8 @@ from typing import Any
 
 from bezierplan.running.watchdog import end_with_parent
 
-# What the first jobs of a workflow import, which wait for it: each on its own would take as long, and more time of all cores.
+# What the first jobs of a workflow import, which wait for it: each on its own would take as long,
+# and more time of all cores.
 FIRST = (
     "snakemake.iocontainers",
     "pyarrow.dataset",
@@ -46,49 +48,82 @@ LATER = (
     "bezierplan.figures.page.job",
 )
 DONE = b"\n"
-# pyarrow's allocator would start a thread on import; a fork of a process with several threads may lock up, and Python 3.12 warns of it.
+# pyarrow's allocator would start a thread on import; a fork of a process with several threads may
+# lock up, and Python 3.12 warns of it.
 ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 
 
 class Forks:
-    """The process that is forked, seen from Snakemake. It starts with the first job, or before (`start`), and ends with Snakemake, or when
-    this object goes.
+    """The process that is forked, seen from Snakemake. It starts with the first job, or before
+    (`start`), and ends with Snakemake, or when this object goes.
     """
 
     def __init__(self, interpreter: str, script: Callable[..., None]) -> None:
-        """Take the path of Python's interpreter, and Snakemake's function that runs a script in an interpreter of its own."""
-        self._interpreter, self._script, self._names = interpreter, script, inspect.signature(script)
+        """Take the path of Python's interpreter, and Snakemake's function that runs a script in an
+        interpreter of its own.
+        """
+        self._interpreter, self._script, self._names = (
+            interpreter,
+            script,
+            inspect.signature(script),
+        )
         self._starting, self._control = threading.Lock(), None
         self.process: int | None = None  # the number of the process that is forked
 
     def start(self) -> None:
-        """Start the process that is forked, unless it is there: it imports what jobs need while Snakemake has other work."""
+        """Start the process that is forked, unless it is there: it imports what jobs need while
+        Snakemake has other work.
+        """
         with self._starting:
             if self._control is None:
                 self._begin()
 
     def script(self, *arguments: Any) -> None:
-        """Run a script as Snakemake's function of the same name does, which is called with the same arguments.
+        """Run a script as Snakemake's function of the same name does, which is called with the same
+        arguments.
 
-        Raises subprocess.CalledProcessError if the script fails, after the script has said why on stderr.
+        Raises subprocess.CalledProcessError if the script fails, after the script has said why on
+        stderr.
         """
         from snakemake.iocontainers import Snakemake
         from snakemake.script import SourceCache, get_source
 
         job = self._names.bind(*arguments).arguments
         cache = SourceCache(job["sourcecache_path"], job["runtime_sourcecache_path"])
-        file, source, language, *_ = get_source(job["path"], cache, job["basedir"], job["wildcards"], job["params"])
-        # Elsewhere libraries may not survive a fork; and a container or another environment has a Python of its own.
-        if language != "python" or sys.platform != "linux" or job["container_img"] or job["conda_env"] or job["env_modules"]:
+        file, source, language, *_ = get_source(
+            job["path"], cache, job["basedir"], job["wildcards"], job["params"]
+        )
+        # Elsewhere libraries may not survive a fork; and a container or another environment has a
+        # Python of its own.
+        if (
+            language != "python"
+            or sys.platform != "linux"
+            or job["container_img"]
+            or job["conda_env"]
+            or job["env_modules"]
+        ):
             self._script(*arguments)
             return
-        names = ("input", "output", "params", "wildcards", "threads", "resources", "log", "config", "rulename", "bench_iteration")
+        names = (
+            "input",
+            "output",
+            "params",
+            "wildcards",
+            "threads",
+            "resources",
+            "log",
+            "config",
+            "rulename",
+            "bench_iteration",
+        )
         name = file.get_path_or_uri(secret_free=True)
         if not self.succeeds(name, source, Snakemake(*(job[each] for each in names))):
             raise subprocess.CalledProcessError(1, name)
 
     def succeeds(self, name: str, source: str, snakemake: Any) -> bool:
-        """Run a script in a fork, in this process's folder and with the object that scripts know as `snakemake`; did it come to its end?"""
+        """Run a script in a fork, in this process's folder and with the object that scripts know as
+        `snakemake`; did it come to its end?
+        """
         ours, theirs = socket.socketpair()
         with ours:
             with theirs, self._starting:
@@ -101,7 +136,9 @@ class Forks:
             return False
 
     def _hand_over(self, job: socket.socket) -> None:
-        """Send the child's end of a job's socket to the process that is forked, which is started if there is none, or none any more."""
+        """Send the child's end of a job's socket to the process that is forked, which is started if
+        there is none, or none any more.
+        """
         if self._control is not None:
             with contextlib.suppress(ConnectionError):
                 socket.send_fds(self._control, [DONE], [job.fileno()])
@@ -112,16 +149,20 @@ class Forks:
     def _begin(self) -> None:
         self._control, theirs = socket.socketpair()
         with theirs:
-            self.process = subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs, env=os.environ | ONE_THREAD).pid
+            self.process = subprocess.Popen(
+                [self._interpreter, "-m", __name__], stdin=theirs, env=os.environ | ONE_THREAD
+            ).pid
 
 
 def serve(control: socket.socket) -> None:
-    """Fork a child for each socket that arrives, after importing what the first jobs need; import what later ones need while none arrives;
-    return when the other end has closed.
+    """Fork a child for each socket that arrives, after importing what the first jobs need; import
+    what later ones need while none arrives; return when the other end has closed.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, reap)
-    first, later = ([partial(importlib.import_module, name) for name in names] for names in (FIRST, LATER))
+    first, later = (
+        [partial(importlib.import_module, name) for name in names] for names in (FIRST, LATER)
+    )
     first.append(compile_first)
     while True:
         if first or (later and not select.select([control], [], [], 0)[0]):
@@ -139,32 +180,43 @@ def serve(control: socket.socket) -> None:
 
 
 def reap(*_: Any) -> None:
-    """Take note of the children that have ended, so that their CPU time is added to that of this process's children."""
+    """Take note of the children that have ended, so that their CPU time is added to that of this
+    process's children.
+    """
     with contextlib.suppress(ChildProcessError):
         while os.waitpid(-1, os.WNOHANG)[0]:
             pass
 
 
 def compile_first() -> None:
-    """Compile a function, for the first one takes numba half a second more than the others, cached or not."""
+    """Compile a function, for the first one takes numba half a second more than the others, cached
+    or not.
+    """
     import numba
 
     numba.njit(lambda: 0)()
 
 
 def run(parent: socket.socket) -> None:
-    """Run, in a child, the script that a socket brings, and end the process. An exception ends it as it would end an interpreter."""
+    """Run, in a child, the script that a socket brings, and end the process. An exception ends it
+    as it would end an interpreter.
+    """
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    # What was imported before the fork is no garbage: to look through it again and again takes a fifth of a second of most jobs.
+    # What was imported before the fork is no garbage: to look through it again and again takes a
+    # fifth of a second of most jobs.
     gc.freeze()
-    # Held until the process ends: Python 3.13 drops an exception's frames, and sockets in them, before it says what sys.exit was given.
+    # Held until the process ends: Python 3.13 drops an exception's frames, and sockets in them,
+    # before it says what sys.exit was given.
     os.dup(parent.fileno())
     with parent.makefile("rb") as stream:
         folder, name, source, snakemake = pickle.load(stream)
     # A workflow may have changed its folder since this process's parent was started.
     os.chdir(folder)
-    exec(compile(source, name, "exec"), {"__name__": "__main__", "__file__": name, "snakemake": snakemake})
+    exec(
+        compile(source, name, "exec"),
+        {"__name__": "__main__", "__file__": name, "snakemake": snakemake},
+    )
     logging.shutdown()
     sys.stdout.flush()
     sys.stderr.flush()

@@ -1,7 +1,8 @@
 """Names of the input files of jobs.
 
-Snakemake hands a job lists of files, each with a name. What a file is of stands in that name, such as `runs/routes/smooth`, so that no job
-takes paths apart: where files lie is up to the workflow, and to the one of which it is a module.
+Snakemake hands a job lists of files, each with a name. What a file is of stands in that name, such
+as `runs/routes/smooth`, so that no job takes paths apart: where files lie is up to the workflow,
+and to the one of which it is a module.
 """
 
 from collections.abc import Mapping
@@ -33,14 +34,27 @@ def named(part: str, files: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def part(inputs: Any, name: str) -> dict[str, Any]:
-    """The files of a job's inputs that are all of one kind: what they are of -> file or list of files; the reverse of `named`."""
-    return {key.removeprefix(f"{name}/"): files for key, files in inputs.items() if key.startswith(f"{name}/")}
+    """The files of a job's inputs that are all of one kind: what they are of -> file or list of
+    files; the reverse of `named`.
+    """
+    return {
+        key.removeprefix(f"{name}/"): files
+        for key, files in inputs.items()
+        if key.startswith(f"{name}/")
+    }
 
 
 def of_experiments(experiments: Mapping[str, Files]) -> dict[str, Any]:
     """Input files of a job that reads the results of experiments."""
-    runs = {f"{name}/{method}": chunks for name, files in experiments.items() for method, chunks in files.runs.items()}
-    others = {each: {name: getattr(files, each) for name, files in experiments.items()} for each in (PROBLEMS, BOUNDS)}
+    runs = {
+        f"{name}/{method}": chunks
+        for name, files in experiments.items()
+        for method, chunks in files.runs.items()
+    }
+    others = {
+        each: {name: getattr(files, each) for name, files in experiments.items()}
+        for each in (PROBLEMS, BOUNDS)
+    }
     return named(RUNS, runs) | named(PROBLEMS, others[PROBLEMS]) | named(BOUNDS, others[BOUNDS])
 
 
@@ -51,4 +65,7 @@ def experiments(inputs: Any) -> dict[str, Files]:
         experiment, _, method = name.rpartition("/")
         runs.setdefault(experiment, {})[method] = list(chunks)
     bounds = part(inputs, BOUNDS)
-    return {name: Files(runs.get(name, {}), file, bounds[name]) for name, file in part(inputs, PROBLEMS).items()}
+    return {
+        name: Files(runs.get(name, {}), file, bounds[name])
+        for name, file in part(inputs, PROBLEMS).items()
+    }

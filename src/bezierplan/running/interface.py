@@ -1,6 +1,8 @@
-"""Whether a file is a planner: the checks that come before any run, for studies and for the contract tests alike.
+"""Whether a file is a planner: the checks that come before any run, for studies and for the
+contract tests alike.
 
-A file of unknown origin is first executed in a process of its own (`watchdog.verdict`), for it may end or stall the one that it is in.
+A file of unknown origin is first executed in a process of its own (`watchdog.verdict`), for it may
+end or stall the one that it is in.
 """
 
 import inspect
@@ -21,14 +23,16 @@ KINDS = ("grid", "circles", "polygons")
 """Kinds of workspace that planners meet."""
 
 LIMIT = 60.0
-"""Seconds that a planner's file may take to be executed, and each call of its `check` and `serves`."""
+"""Seconds that a planner's file may take to be executed, and each call of its `check` and
+`serves`.
+"""
 
 _EXPECTED = "expected bool, int, float, Literal, or Annotated with a Range"
 
 
 def loaded(planner: str, location: str) -> ModuleType:
-    """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with a location, unless it can be executed
-    and has the interface of a planner (`planners`).
+    """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with
+    a location, unless it can be executed and has the interface of a planner (`planners`).
     """
     module, fault = None, ""
     if planner.endswith(".py"):
@@ -52,11 +56,15 @@ def _loaded(planner: str) -> tuple[ModuleType | None, str]:
 
 
 def asked(function: Callable[..., Any], location: str, *given: Any) -> None:
-    """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises Fault, beginning with a location."""
+    """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises
+    Fault, beginning with a location.
+    """
     if function.__module__.startswith(f"{planners.__name__}."):
         said = _complaint(function, *given)
     else:
-        said = watchdog.verdict(f"{function.__name__} of its planner", partial(_complaint, function, *given), LIMIT)
+        said = watchdog.verdict(
+            f"{function.__name__} of its planner", partial(_complaint, function, *given), LIMIT
+        )
     if said:
         raise Fault(f"{location}: {said}")
 
@@ -79,13 +87,23 @@ def interface_fault(module: ModuleType) -> str | None:
     if not inspect.isfunction(plan):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
     parameters = inspect.signature(plan).parameters.values()
-    fixed = [parameter for parameter in parameters if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD)]
+    fixed = [
+        parameter
+        for parameter in parameters
+        if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD)
+    ]
     positional = [parameter.name for parameter in fixed if parameter.default is parameter.empty]
-    if len(positional) != 2 or any(parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD) for parameter in parameters):
+    if len(positional) != 2 or any(
+        parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
+        for parameter in parameters
+    ):
         return "function plan: expected plan(problem, rng, *, <settings>)"
     for parameter in parameters:
         if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is not parameter.empty:
-            return f"setting {parameter.name}: has a default value; a study gives a value to every setting"
+            return (
+                f"setting {parameter.name}: has a default value; a study gives a value to "
+                f"every setting"
+            )
         if parameter.kind is parameter.KEYWORD_ONLY and parameter.annotation is parameter.empty:
             return f"setting {parameter.name}: has no annotation; {_EXPECTED}"
     try:
@@ -96,7 +114,10 @@ def interface_fault(module: ModuleType) -> str | None:
         try:
             _ = parameter.kind is parameter.KEYWORD_ONLY and setting(parameter.annotation)
         except TypeError:
-            return f"setting {parameter.name}: is annotated with {inspect.formatannotation(parameter.annotation)}; {_EXPECTED}"
+            return (
+                f"setting {parameter.name}: is annotated with "
+                f"{inspect.formatannotation(parameter.annotation)}; {_EXPECTED}"
+            )
     return _workspaces_fault(getattr(module, "workspaces", ()))
 
 
@@ -109,11 +130,16 @@ def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> N
 
 
 def check_settings(module: ModuleType, settings: dict[str, Any], location: str) -> None:
-    """Check a planner's settings: all are there, each has the right type and range, and the planner's own `check` accepts them. Names of no
-    setting are ignored. Raises Fault, beginning with a location.
+    """Check a planner's settings: all are there, each has the right type and range, and the
+    planner's own `check` accepts them. Names of no setting are ignored. Raises Fault, beginning
+    with a location.
     """
     declared = planner_settings(module)
-    missing = [", ".join(filter(None, [f"{name}: {each}", each.meaning])) for name, each in declared.items() if name not in settings]
+    missing = [
+        ", ".join(filter(None, [f"{name}: {each}", each.meaning]))
+        for name, each in declared.items()
+        if name not in settings
+    ]
     if missing:
         raise Fault(f"{location} are missing: {'; '.join(missing)}")
     for name, each in declared.items():
@@ -136,7 +162,11 @@ def _failed(error: BaseException, file: str) -> str:
         line = error.lineno
         text = f"{type(error).__name__}: {error.msg}"
     else:
-        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename.endswith(file)]
+        lines = [
+            frame.lineno
+            for frame in traceback.extract_tb(error.__traceback__)
+            if frame.filename.endswith(file)
+        ]
         line = lines[-1] if lines else None
         text = told(error)
     return f"{f'line {line}: ' if line else ''}{text}"

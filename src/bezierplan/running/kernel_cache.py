@@ -1,8 +1,10 @@
-"""Where compiled kernels of this package lie: one folder for each state of the code from which a kernel is compiled. Of several processes
-that need the same kernel at the same time, one compiles it, and the others wait for it.
+"""Where compiled kernels of this package lie: one folder for each state of the code from which a
+kernel is compiled. Of several processes that need the same kernel at the same time, one compiles
+it, and the others wait for it.
 
-Only functions that `bezierplan.kernels` decorates are kept here. numba's own classes and settings stay as they are, so other libraries in
-the same process keep their compiled functions where they always do.
+Only functions that `bezierplan.kernels` decorates are kept here. numba's own classes and settings
+stay as they are, so other libraries in the same process keep their compiled functions where they
+always do.
 """
 
 import contextlib
@@ -17,7 +19,13 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, NullCache, _CacheLocator
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    IndexDataCacheFile,
+    NullCache,
+    _CacheLocator,
+)
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
@@ -25,9 +33,11 @@ from numba.core.types import unliteral
 from bezierplan.running import effort
 from bezierplan.running.digest import kernel_folder
 
-# Seconds between two looks at whether another process still compiles, and how long a process waits that holds a lock itself. A kernel calls
-# kernels of modules that its own imports, so locks are taken in one order; but a kernel can also be given any function as an argument, and
-# then two processes could wait for each other: one of them ends that, and compiles a kernel for the second time.
+# Seconds between two looks at whether another process still compiles, and how long a process waits
+# that holds a lock itself. A kernel calls kernels of modules that its own imports, so locks are
+# taken in one order; but a kernel can also be given any function as an argument, and then two
+# processes could wait for each other: one of them ends that, and compiles a kernel for the second
+# time.
 LOOK = 0.05
 PATIENCE = 60.0
 
@@ -36,24 +46,29 @@ _held: list[Path] = []
 
 
 class _Locator(_CacheLocator):
-    """Keeps a kernel in a folder named after the digest of its module and of all modules of this package that it imports.
+    """Keeps a kernel in a folder named after the digest of its module and of all modules of this
+    package that it imports.
 
-    By itself, numba notices edits only in the kernel's own file, although constants and kernels of other modules are compiled into it; and
-    it recompiles after an edit of a comment.
+    By itself, numba notices edits only in the kernel's own file, although constants and kernels of
+    other modules are compiled into it; and it recompiles after an edit of a comment.
     """
 
     def __init__(self, py_func: FunctionType, folder: Path) -> None:
         self._py_file = inspect.getfile(py_func)
         self._folder = folder
         # Nested functions can share a name.
-        self._disambiguator = str(py_func.__code__.co_firstlineno) if "<locals>" in py_func.__qualname__ else "0"
+        self._disambiguator = (
+            str(py_func.__code__.co_firstlineno) if "<locals>" in py_func.__qualname__ else "0"
+        )
 
     def get_cache_path(self) -> str:
         """The folder."""
         return str(self._folder)
 
     def get_source_stamp(self) -> str:
-        """The source of a cached kernel: the folder's name alone identifies it, wherever the folder lies."""
+        """The source of a cached kernel: the folder's name alone identifies it, wherever the folder
+        lies.
+        """
         return self._folder.name
 
     def get_disambiguator(self) -> str:
@@ -62,7 +77,9 @@ class _Locator(_CacheLocator):
 
 
 class _File(IndexDataCacheFile):
-    """A file of the cache of which a damaged one counts as missing, so the kernel is compiled and written again; numba ends the process."""
+    """A file of the cache of which a damaged one counts as missing, so the kernel is compiled and
+    written again; numba ends the process.
+    """
 
     def _load_index(self) -> dict:
         try:
@@ -78,7 +95,9 @@ class _File(IndexDataCacheFile):
 
 
 class _Implementation(CompileResultCacheImpl):
-    """How the cache names a kernel's files, for the folder that is given instead of one that numba looks for."""
+    """How the cache names a kernel's files, for the folder that is given instead of one that numba
+    looks for.
+    """
 
     def __init__(self, py_func: FunctionType, folder: Path) -> None:
         self._lineno = py_func.__code__.co_firstlineno
@@ -115,7 +134,9 @@ def _can_be_written(folder: Path) -> bool:
 
 
 class Kernel(CPUDispatcher):
-    """A compiled function that is kept in this cache. Where no folder can be written, each process compiles it."""
+    """A compiled function that is kept in this cache. Where no folder can be written, each process
+    compiles it.
+    """
 
     def enable_caching(self) -> None:
         """Keep compiled forms of this kernel."""
@@ -124,10 +145,13 @@ class Kernel(CPUDispatcher):
             self._cache = KernelCache(self.py_func, folder)
 
     def compile(self, sig: Any) -> Any:
-        """Load the kernel, or compile and keep it, for one process at a time where it has to compile."""
+        """Load the kernel, or compile and keep it, for one process at a time where it has to
+        compile.
+        """
         with global_compiler_lock:
             if isinstance(sig, tuple):
-                # numba would compile a kernel once more for each constant that another kernel passes.
+                # numba would compile a kernel once more for each constant that another kernel
+                # passes.
                 sig = tuple(map(unliteral, sig))
             if isinstance(self._cache, NullCache):
                 with effort.spending("compiling"):
@@ -141,9 +165,11 @@ class Kernel(CPUDispatcher):
 
 @contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder of kernels; the operating system releases it if this process is killed.
+    """Hold the lock of a folder of kernels; the operating system releases it if this process is
+    killed.
 
-    Without the lock, kernels are compiled by each process that needs them: on a file system without locks, and after `PATIENCE` seconds.
+    Without the lock, kernels are compiled by each process that needs them: on a file system without
+    locks, and after `PATIENCE` seconds.
     """
     if folder in _held:
         yield

@@ -1,4 +1,6 @@
-"""Way points: a problem becomes one problem from each to the next, and their answers become one path."""
+"""Way points: a problem becomes one problem from each to the next, and their answers become one
+path.
+"""
 
 import math
 from collections.abc import Sequence
@@ -20,7 +22,9 @@ from bezierplan.workspaces.problem import Path, Problem, Workspace
 
 ROUNDED, DRIVEN = "rounded_shortest_path", "dubins_search"
 TURNING = (ROUNDED, DRIVEN)
-"""Planners of this package that keep a turning radius: they get the exact shortest path and the region, which are known already."""
+"""Planners of this package that keep a turning radius: they get the exact shortest path and the
+region, which are known already.
+"""
 CHAINED = (*TURNING, "shortest_path")
 """Planners whose paths can be joined: chains of pieces."""
 
@@ -40,35 +44,54 @@ SMOOTH = ("arcs", "continuous")
 _NO_JUMP = 1e-6
 
 
-def check_planner(planner: str, via: Sequence[tuple[float, float]], strict: bool, smooth: str = SMOOTH[0]) -> None:
-    """Raise ValueError for way points, a strict turning radius or continuous curvature with a planner that does not have them."""
+def check_planner(
+    planner: str, via: Sequence[tuple[float, float]], strict: bool, smooth: str = SMOOTH[0]
+) -> None:
+    """Raise ValueError for way points, a strict turning radius or continuous curvature with a
+    planner that does not have them.
+    """
     name = planner.removeprefix("bezierplan.planners.")
     if via and name not in CHAINED:
-        raise ValueError(f"via: only for {', '.join(CHAINED[:-1])} and {CHAINED[-1]}; the planner is {name}")
+        raise ValueError(
+            f"via: only for {', '.join(CHAINED[:-1])} and {CHAINED[-1]}; the planner is {name}"
+        )
     if smooth not in SMOOTH:
         raise ValueError(f"smooth: {smooth!r}; expected {' or '.join(SMOOTH)}")
     if smooth == "continuous" and name not in TURNING:
-        raise ValueError(f"smooth: only for {' and '.join(TURNING)}, whose paths have arcs; the planner is {name}")
+        raise ValueError(
+            f"smooth: only for {' and '.join(TURNING)}, whose paths have arcs; the planner is "
+            f"{name}"
+        )
     if strict and name not in TURNING:
-        raise ValueError(f"strict: only for {' and '.join(TURNING)}, which have a turning radius; the planner is {name}")
+        raise ValueError(
+            f"strict: only for {' and '.join(TURNING)}, which have a turning radius; the planner "
+            f"is {name}"
+        )
 
 
 def preset(planner: str, workspace: Workspace) -> dict[str, Any]:
     """Settings of a planner with a turning radius where none are given."""
     x_low, x_high, y_low, y_high = workspace.bounds
     radius = {"turning_radius": SHARE * max(x_high - x_low, y_high - y_low)}
-    return radius | ({"offset": 0.0} if planner == ROUNDED else {"start_heading": None, "target_heading": None})
+    return radius | (
+        {"offset": 0.0} if planner == ROUNDED else {"start_heading": None, "target_heading": None}
+    )
 
 
-def legs(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions = near_region) -> list[Problem]:
-    """The problems from start to the first way point, and so on to the target, on the map where it is computed with.
+def legs(
+    problem: Problem, via: Sequence[tuple[float, float]], regions: Regions = near_region
+) -> list[Problem]:
+    """The problems from start to the first way point, and so on to the target, on the map where it
+    is computed with.
 
     Raises ValueError for a way point that is not free.
     """
     places = [problem.start]
     for point in via:
         try:
-            placed = problems.build("", {"start": point, "target": point}, problem.workspace, regions).start
+            placed = problems.build(
+                "", {"start": point, "target": point}, problem.workspace, regions
+            ).start
         except ValueError as error:
             raise ValueError(f"via{str(error).removeprefix('start')}") from None
         if placed == places[-1]:
@@ -89,7 +112,9 @@ def shortest(parts: Sequence[Problem], blocked: Region) -> list[shortest_paths.B
 
 def whole(bounds: Sequence[shortest_paths.Bound]) -> shortest_paths.Bound:
     """The exact shortest path through all legs."""
-    return shortest_paths.Bound(sum(bound.length for bound in bounds), np.concatenate([bound.points for bound in bounds]))
+    return shortest_paths.Bound(
+        sum(bound.length for bound in bounds), np.concatenate([bound.points for bound in bounds])
+    )
 
 
 def solved(
@@ -100,10 +125,11 @@ def solved(
     settings: dict[str, Any],
     smooth: str = SMOOTH[0],
 ) -> Plan:
-    """The answer of a planner with a turning radius to all legs. Where rounding leaves a corner at a way point, the legs are searched.
+    """The answer of a planner with a turning radius to all legs. Where rounding leaves a corner at
+    a way point, the legs are searched.
 
-    With `continuous` curvature, transitions go before and after arcs wherever there is room. They shift arcs inwards, so these are planned
-    wider and as much farther from the corners.
+    With `continuous` curvature, transitions go before and after arcs wherever there is room. They
+    shift arcs inwards, so these are planned wider and as much farther from the corners.
     """
     if smooth == "continuous":
         radius = settings["turning_radius"] * (1 + transitions.SHIFT) * (1 + transitions.EXCESS)
@@ -113,14 +139,30 @@ def solved(
         return _eased(planner, solved(planner, parts, bounds, blocked, wide), blocked)
     if planner == DRIVEN:
         return joined(_driven(parts, bounds, blocked, settings))
-    rounded = joined([rounded_shortest_path.gentlest(part, None, bound, blocked, **settings) for part, bound in zip(parts, bounds)])
+    rounded = joined(
+        [
+            rounded_shortest_path.gentlest(part, None, bound, blocked, **settings)
+            for part, bound in zip(parts, bounds)
+        ]
+    )
     radius = settings["turning_radius"]
-    if len(parts) == 1 or rounded.path is None or radius < SMALLEST_FEATURE or rounded.extra["least_radius"] >= radius * (1 - _SAME):
+    if (
+        len(parts) == 1
+        or rounded.path is None
+        or radius < SMALLEST_FEATURE
+        or rounded.extra["least_radius"] >= radius * (1 - _SAME)
+    ):
         return rounded
-    driven = joined(_driven(parts, bounds, blocked, preset(DRIVEN, parts[0].workspace) | {"turning_radius": radius}))
+    driven = joined(
+        _driven(
+            parts, bounds, blocked, preset(DRIVEN, parts[0].workspace) | {"turning_radius": radius}
+        )
+    )
     if driven.path is None:
         return rounded
-    return driven._replace(extra={"turns": rounded.extra["turns"], "tight_turns": 0, "least_radius": radius})
+    return driven._replace(
+        extra={"turns": rounded.extra["turns"], "tight_turns": 0, "least_radius": radius}
+    )
 
 
 def _eased(planner: str, plan: Plan, blocked: Region) -> Plan:
@@ -134,8 +176,15 @@ def _eased(planner: str, plan: Plan, blocked: Region) -> Plan:
     return plan._replace(path=path, objective=length, history=np.array([length]), extra=extra)
 
 
-def _driven(parts: Sequence[Problem], bounds: Sequence[shortest_paths.Bound], blocked: Region, settings: dict[str, Any]) -> list[Plan]:
-    """A search on each leg, which begins with the heading in which the one before ends; up to the first one that finds nothing."""
+def _driven(
+    parts: Sequence[Problem],
+    bounds: Sequence[shortest_paths.Bound],
+    blocked: Region,
+    settings: dict[str, Any],
+) -> list[Plan]:
+    """A search on each leg, which begins with the heading in which the one before ends; up to the
+    first one that finds nothing.
+    """
     answers: list[Plan] = []
     heading = settings["start_heading"]
     for number, (part, bound) in enumerate(zip(parts, bounds), start=1):
@@ -151,14 +200,18 @@ def _driven(parts: Sequence[Problem], bounds: Sequence[shortest_paths.Bound], bl
 
 
 def kept(planner: str, plan: Plan, settings: dict[str, Any]) -> float:
-    """Radius of a path's tightest turn, by a planner with a turning radius; nan of others and without a path."""
+    """Radius of a path's tightest turn, by a planner with a turning radius; nan of others and
+    without a path.
+    """
     if planner == ROUNDED:
         return plan.extra["least_radius"]
     return settings["turning_radius"] if planner == DRIVEN and plan.path is not None else math.nan
 
 
 def joined(answers: Sequence[Plan]) -> Plan:
-    """One answer to all legs. At a way point where the direction changes, a corner is left, which counts as a turn."""
+    """One answer to all legs. At a way point where the direction changes, a corner is left, which
+    counts as a turn.
+    """
     if len(answers) == 1:
         return answers[0]
     paths = [answer.path for answer in answers]
@@ -168,11 +221,16 @@ def joined(answers: Sequence[Plan]) -> Plan:
     corners = sum(_has_corner(one, other) for one, other in pairwise(paths))
     extra = {name: sum(answer.extra[name] for answer in answers) for name in answers[0].extra}
     if "least_radius" in extra:
-        extra["least_radius"] = 0.0 if corners else min(answer.extra["least_radius"] for answer in answers)
+        extra["least_radius"] = (
+            0.0 if corners else min(answer.extra["least_radius"] for answer in answers)
+        )
         extra |= {name: extra[name] + corners for name in ("turns", "tight_turns")}
     objective = sum(answer.objective for answer in answers)
     return answers[0]._replace(
-        path=Path(paths[0].curve, np.concatenate([paths[0].points, *(path.points[1:] for path in paths[1:])])),
+        path=Path(
+            paths[0].curve,
+            np.concatenate([paths[0].points, *(path.points[1:] for path in paths[1:])]),
+        ),
         objective=objective,
         claimed_feasible=all(answer.claimed_feasible for answer in answers),
         evaluations=sum(answer.evaluations for answer in answers),
@@ -194,14 +252,27 @@ def is_continuous(jump: float, curvature: float) -> bool:
 
 
 def check_continuous(smooth: str, jump: float, curvature: float, unit: str) -> None:
-    """Raise ValueError if the curvature should be continuous and jumps. jump, curvature: the largest of the path, nan without one."""
+    """Raise ValueError if the curvature should be continuous and jumps. jump, curvature: the
+    largest of the path, nan without one.
+    """
     if smooth == "continuous" and not is_continuous(jump, curvature):
-        raise ValueError(f"smooth: continuous: the curvature jumps by {jump:.3g} / {unit}, no room; expected room, or not strict")
+        raise ValueError(
+            f"smooth: continuous: the curvature jumps by {jump:.3g} / {unit}, no room; expected "
+            f"room, or not strict"
+        )
 
 
 def check_kept(asked: float, kept: float, unit: str) -> None:
-    """Raise ValueError if the tightest turn of a path is tighter than asked, or if there is no path."""
+    """Raise ValueError if the tightest turn of a path is tighter than asked, or if there is no
+    path.
+    """
     if math.isnan(kept):
-        raise ValueError(f"turning_radius: {asked:g} {unit} asked: no path was found; expected one that can be kept, or not strict")
+        raise ValueError(
+            f"turning_radius: {asked:g} {unit} asked: no path was found; expected one that can be "
+            f"kept, or not strict"
+        )
     if kept < asked * (1 - _SAME):
-        raise ValueError(f"turning_radius: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that can be kept, or not strict")
+        raise ValueError(
+            f"turning_radius: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that "
+            f"can be kept, or not strict"
+        )

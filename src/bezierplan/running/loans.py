@@ -1,8 +1,10 @@
-"""What planners get: copies of problems, so that nothing which they do to them can matter to the judge or to a later run unnoticed.
+"""What planners get: copies of problems, so that nothing which they do to them can matter to the
+judge or to a later run unnoticed.
 
-The arrays of a workspace are read-only (`workspaces.arrays`). A planner that replaces one, as `object.__setattr__` can, is found by
-`fault`, which compares objects after every run; and one that writes into the memory of one, as `ctypes` can, by `thorough_fault`, which
-compares texts after a chunk.
+The arrays of a workspace are read-only (`workspaces.arrays`). A planner that replaces one, as
+`object.__setattr__` can, is found by `fault`, which compares objects after every run; and one that
+writes into the memory of one, as `ctypes` can, by `thorough_fault`, which compares texts after a
+chunk.
 """
 
 from collections.abc import Hashable, Iterator
@@ -16,7 +18,8 @@ from bezierplan.workspaces.problem import Problem, Workspace
 class Loan(NamedTuple):
     """A problem for planners.
 
-    text: its workspace as stored, if there is to be a thorough comparison. parts: the objects in its workspace, by place.
+    text: its workspace as stored, if there is to be a thorough comparison. parts: the objects in
+    its workspace, by place.
     """
 
     problem: Problem
@@ -24,18 +27,31 @@ class Loan(NamedTuple):
     parts: dict[str, Any]
 
     def fault(self) -> str:
-        """Which part of the workspace is another object than when it was lent, in one line; empty if none is."""
+        """Which part of the workspace is another object than when it was lent, in one line; empty
+        if none is.
+        """
         found = dict(_parts(self.problem.workspace))
-        changed = [place for place in found.keys() | self.parts.keys() if found.get(place) is not self.parts.get(place)]
+        changed = [
+            place
+            for place in found.keys() | self.parts.keys()
+            if found.get(place) is not self.parts.get(place)
+        ]
         return _told(self.problem, min(changed)) if changed else ""
 
     def thorough_fault(self) -> str:
         """`fault`, or that the content of the workspace has changed."""
-        return self.fault() or ("" if files.to_json(self.problem.workspace) == self.text else _told(self.problem, "content"))
+        return self.fault() or (
+            ""
+            if files.to_json(self.problem.workspace) == self.text
+            else _told(self.problem, "content")
+        )
 
 
 def _told(problem: Problem, place: str) -> str:
-    return f"problem: {problem.name}: workspace: {place}: is another after the run; a planner copies what it changes"
+    return (
+        f"problem: {problem.name}: workspace: {place}: is another after the run; a planner "
+        f"copies what it changes"
+    )
 
 
 def lend(problems: dict[str, Problem]) -> dict[str, Loan]:
@@ -55,7 +71,9 @@ def lend(problems: dict[str, Problem]) -> dict[str, Loan]:
 
 
 def lend_once(problem: Problem) -> Loan:
-    """A problem for one call of a planner, with a workspace object of its own around the same read-only arrays."""
+    """A problem for one call of a planner, with a workspace object of its own around the same
+    read-only arrays.
+    """
     workspace = replace(problem.workspace)
     return Loan(problem._replace(workspace=workspace), "", dict(_parts(workspace)))
 

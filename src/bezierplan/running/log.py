@@ -1,4 +1,6 @@
-"""Common behaviour of workflow jobs: end with the parent, write to the log, leave only complete files, report a failure in one line."""
+"""Common behaviour of workflow jobs: end with the parent, write to the log, leave only complete
+files, report a failure in one line.
+"""
 
 import errno
 import glob
@@ -30,17 +32,24 @@ RUNS_COLUMN = "id"
 
 @contextmanager
 def job(snakemake: Any) -> Iterator[Any]:
-    """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for the output files.
+    """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for
+    the output files.
 
-    The block runs in a process that another one watches (`watchdog.supervise`). The files get their final names when the block ends, and
-    the log says what CPU time the job took (`effort`). An exception is written to the job's log in full and ends the process with a
-    one-line message, which is also the last line of the log; so does an end that nothing in the process could report.
+    The block runs in a process that another one watches (`watchdog.supervise`). The files get their
+    final names when the block ends, and the log says what CPU time the job took (`effort`). An
+    exception is written to the job's log in full and ends the process with a one-line message,
+    which is also the last line of the log; so does an end that nothing in the process could report.
     """
     log = snakemake.log[0]
     end_with_parent()
     watchdog.supervise(str(snakemake.output[0]), partial(report, log))
     effort.begin()
-    logging.basicConfig(filename=log, filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
+    logging.basicConfig(
+        filename=log,
+        filemode="w",
+        level=logging.INFO,
+        format="%(asctime)s %(levelname)s %(message)s",
+    )
     try:
         with whole_files(snakemake.output) as output:
             yield output
@@ -50,7 +59,11 @@ def job(snakemake: Any) -> Iterator[Any]:
             logging.raiseExceptions = False  # the log may lie on the same disk
         logging.error("failed\n%s", account(error))
         said = str(error) if isinstance(error, watchdog.PlannerFailure) else told(error)
-        line = full_disk(error, snakemake.output) or damaged(snakemake.input) or f"{said} (full account: {log})"
+        line = (
+            full_disk(error, snakemake.output)
+            or damaged(snakemake.input)
+            or f"{said} (full account: {log})"
+        )
         logging.critical(line)
         watchdog.settle()
         sys.exit(line)
@@ -70,24 +83,34 @@ def report(log: str, line: str) -> None:
 
 
 def account(error: BaseException) -> str:
-    """The traceback of an exception, each line without control characters and of a limited length."""
+    """The traceback of an exception, each line without control characters and of a limited
+    length.
+    """
     lines = "".join(traceback.format_exception(error, limit=-MOST_FRAMES)).splitlines()
-    shown = lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES // 2], "...", *lines[-MOST_LINES // 2 :]]
+    shown = (
+        lines
+        if len(lines) <= MOST_LINES
+        else [*lines[: MOST_LINES // 2], "...", *lines[-MOST_LINES // 2 :]]
+    )
     return "\n".join(plain(line, LONGEST_LINE) for line in shown)
 
 
 @contextmanager
 def whole_files(files: Any) -> Iterator[Any]:
-    """Temporary names in another folder for a job's files, all of one folder; they get their final names once the block succeeds.
+    """Temporary names in another folder for a job's files, all of one folder; they get their final
+    names once the block succeeds.
 
-    So an existing file is always complete, even if its job was killed. What a killed job left is removed when the job runs again.
+    So an existing file is always complete, even if its job was killed. What a killed job left is
+    removed when the job runs again.
     """
     first = Path(files[0])
     prefix = f".part-{first.name}-"
     for left in first.parent.glob(f"{glob.escape(prefix)}*"):
         shutil.rmtree(left, ignore_errors=True)
     with tempfile.TemporaryDirectory(prefix=prefix, dir=first.parent) as folder:
-        parts = type(files)(toclone=files, custom_map=lambda file: str(Path(folder) / Path(file).name))
+        parts = type(files)(
+            toclone=files, custom_map=lambda file: str(Path(folder) / Path(file).name)
+        )
         yield parts
         for part, file in zip(parts, files, strict=True):
             os.replace(part, file)
@@ -97,26 +120,39 @@ def full_disk(error: Exception, files: Any) -> str:
     """What to do about a disk without space for a job's files; empty for another error."""
     if not (isinstance(error, OSError) and error.errno in FULL):
         return ""
-    return f"{Path(files[0]).parent}: no space left on this disk; free some and start again: finished jobs are kept"
+    return (
+        f"{Path(files[0]).parent}: no space left on this disk; free some and start again: "
+        f"finished jobs are kept"
+    )
 
 
 def damaged(files: Iterable[str]) -> str:
-    """What to do about the first Parquet file that is cut off, or is no table of runs in the place of one, or the first csv file of results
-    that is none; empty if there is none.
+    """What to do about the first Parquet file that is cut off, or is no table of runs in the place
+    of one, or the first csv file of results that is none; empty if there is none.
     """
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
     for file in files:
-        if str(file).endswith(".csv") and "results" in Path(file).parts and not _is_text(Path(file)):
+        if (
+            str(file).endswith(".csv")
+            and "results" in Path(file).parts
+            and not _is_text(Path(file))
+        ):
             return f"{file}: not a csv file; delete it and start again: the workflow reproduces it"
         if str(file).endswith(".parquet"):
             try:
                 columns = parquet.read_schema(file).names
             except (OSError, pa.ArrowException):
-                return f"{file}: not a whole Parquet file; delete it and start again: the workflow reproduces it"
+                return (
+                    f"{file}: not a whole Parquet file; delete it and start again: the "
+                    f"workflow reproduces it"
+                )
             if "runs" in Path(file).parts[-4:] and RUNS_COLUMN not in columns:
-                return f"{file}: not a table of runs; delete it and start again: the workflow reproduces it"
+                return (
+                    f"{file}: not a table of runs; delete it and start again: the workflow "
+                    f"reproduces it"
+                )
     return ""
 
 

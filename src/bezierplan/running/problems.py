@@ -1,7 +1,9 @@
-"""The problems of an experiment: built from their descriptions, and kept in a file with one row per problem.
+"""The problems of an experiment: built from their descriptions, and kept in a file with one row per
+problem.
 
-Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
-JSON: `workspaces.files.to_json`). Columns of a file of bounds: `columns.Bound`.
+Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y
+(units), drawn (the workspace itself, as JSON: `workspaces.files.to_json`). Columns of a file of
+bounds: `columns.Bound`.
 """
 
 import math
@@ -47,8 +49,11 @@ def remembered() -> Regions:
     return find
 
 
-def build(name: str, description: dict, workspace: Workspace, regions: Regions = near_region) -> Problem:
-    """A problem from its description: start and target, (x, y) in units, or start_cell and target_cell, cell numbers of a grid.
+def build(
+    name: str, description: dict, workspace: Workspace, regions: Regions = near_region
+) -> Problem:
+    """A problem from its description: start and target, (x, y) in units, or start_cell and
+    target_cell, cell numbers of a grid.
 
     Raises ValueError, naming key and value, unless start and target lie in free space.
     """
@@ -56,7 +61,9 @@ def build(name: str, description: dict, workspace: Workspace, regions: Regions =
     return Problem(name, workspace, start, target)
 
 
-def _end(end: str, description: dict, workspace: Workspace, regions: Regions) -> tuple[float, float]:
+def _end(
+    end: str, description: dict, workspace: Workspace, regions: Regions
+) -> tuple[float, float]:
     key = end if end in description else f"{end}_cell"
     value = description[key]
     if key == end:
@@ -72,7 +79,8 @@ def _end(end: str, description: dict, workspace: Workspace, regions: Regions) ->
     x_low, x_high, y_low, y_high = home.bounds
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
         raise ValueError(
-            f"{key}: {value}: outside the workspace; expected x from {x_low:.12g} to {x_high:.12g} and y from {y_low:.12g} to {y_high:.12g}"
+            f"{key}: {value}: outside the workspace; expected x from {x_low:.12g} to "
+            f"{x_high:.12g} and y from {y_low:.12g} to {y_high:.12g}"
         )
     near = shifted.lowered(point, shifted.shift_of(home))
     if blocks(regions(home), near):
@@ -82,22 +90,34 @@ def _end(end: str, description: dict, workspace: Workspace, regions: Regions) ->
         least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
         cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.drawn else ""
         raise ValueError(
-            f"{key}: {value}: {distance:.6g} from an obstacle or the border; expected at least the robot's radius, {least:.6g}{cells}"
+            f"{key}: {value}: {distance:.6g} from an obstacle or the border; expected at least "
+            f"the robot's radius, {least:.6g}{cells}"
         )
-    if isinstance(workspace, Grid) and workspace.drawn and workspace.occupied[workspace.cell_of(*point)]:
-        raise ValueError(f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell")
+    if (
+        isinstance(workspace, Grid)
+        and workspace.drawn
+        and workspace.occupied[workspace.cell_of(*point)]
+    ):
+        raise ValueError(
+            f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell"
+        )
     return point
 
 
 def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:
-    """Problems and the names of their workspaces, both keyed by problem, from their descriptions (`jobs.problems_job`).
+    """Problems and the names of their workspaces, both keyed by problem, from their descriptions
+    (`jobs.problems_job`).
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
     from bezierplan.workspaces.kinds import kind_of
 
     kinds = {name: kind_of(each) for name, each in job["workspaces"].items()}
-    fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if hasattr(kinds[name], "load")}
+    fixed = {
+        name: files.load(each, folder)
+        for name, each in job["workspaces"].items()
+        if hasattr(kinds[name], "load")
+    }
     problems = {}
     for name, description in job["problems"].items():
         home = description["workspace"]
@@ -107,11 +127,17 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
         elif hasattr(kinds[home], "draw"):
             workspace = kinds[home].draw(*arguments)
         else:
-            workspace = _suitable(kinds[home].candidates(*arguments), job["workspaces"][home], description)
+            workspace = _suitable(
+                kinds[home].candidates(*arguments), job["workspaces"][home], description
+            )
         if "scenario" in description:
-            description = description | scenario(job["workspaces"][home], description["scenario"], workspace, folder)
+            description = description | scenario(
+                job["workspaces"][home], description["scenario"], workspace, folder
+            )
         problems[name] = build(name, description, workspace)
-    return problems, {name: description["workspace"] for name, description in job["problems"].items()}
+    return problems, {
+        name: description["workspace"] for name, description in job["problems"].items()
+    }
 
 
 # Tolerance between our optimal length of a scenario and the printed one, in cells.
@@ -119,16 +145,23 @@ _SAME_OPTIMUM = 1e-3
 
 
 def scenario(description: dict, number: int, workspace: Workspace, folder: Path) -> dict:
-    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length differs from ours."""
+    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length
+    differs from ours.
+    """
     from bezierplan.geometry import shortest_paths
 
     assert isinstance(workspace, Grid)  # only a kind of grids has scenarios
     printed = files.scenario(description, number, workspace, folder)
     start, target = _cell(workspace, printed.start), _cell(workspace, printed.target)
-    length = shortest_paths.lattice_path(workspace.occupied, start, target, math.sqrt(2), "none").length
+    length = shortest_paths.lattice_path(
+        workspace.occupied, start, target, math.sqrt(2), "none"
+    ).length
     if not abs(length - printed.optimal) <= _SAME_OPTIMUM:
         place = f"{description['scenarios']}: line {number + 1}"
-        raise ValueError(f"{place}: optimal length {printed.optimal:g}; on {description['file']} it is {length:.8g}")
+        raise ValueError(
+            f"{place}: optimal length {printed.optimal:g}; on {description['file']} it is "
+            f"{length:.8g}"
+        )
     return {"start": printed.start, "target": printed.target}
 
 
@@ -137,7 +170,8 @@ _SAME_LENGTH = 1e-4
 
 
 def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
-    """The first of some maps whose shortest path over the 8-connected lattice has the wanted length, in cells, if one is given.
+    """The first of some maps whose shortest path over the 8-connected lattice has the wanted
+    length, in cells, if one is given.
 
     Raises ValueError if there is none.
     """
@@ -145,13 +179,27 @@ def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
 
     wanted = description.get("lattice_length")
     for grid in maps:
-        ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"])
+        ends = lattice.lattice(
+            grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"]
+        )
         start, target = divmod(ends.start, problem["side"]), divmod(ends.target, problem["side"])
-        length = shortest_paths.lattice_path(grid.occupied, start, target, ends.diagonal, description["corners"]).length + ends.ends
+        length = (
+            shortest_paths.lattice_path(
+                grid.occupied, start, target, ends.diagonal, description["corners"]
+            ).length
+            + ends.ends
+        )
         if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
             return grid
-    asked = "a path from start to target" if wanted is None else f"a shortest lattice path of lattice_length {wanted:g}"
-    raise ValueError(f"obstacles: {problem['obstacles']}: of {random_blocks.MOST_MAPS} maps none has so many occupied cells and {asked}")
+    asked = (
+        "a path from start to target"
+        if wanted is None
+        else f"a shortest lattice path of lattice_length {wanted:g}"
+    )
+    raise ValueError(
+        f"obstacles: {problem['obstacles']}: of {random_blocks.MOST_MAPS} maps none has so many "
+        f"occupied cells and {asked}"
+    )
 
 
 def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -> None:
@@ -175,13 +223,20 @@ def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -
 
 
 def read(file: str) -> dict[str, Problem]:
-    """The problems of a file, by name, in file order. Problems in the same workspace share one object."""
+    """The problems of a file, by name, in file order. Problems in the same workspace share one
+    object.
+    """
     import pyarrow.parquet as parquet
 
     table = parquet.read_table(file).to_pylist()
     drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
     return {
-        row["problem"]: Problem(row["problem"], drawn[row["drawn"]], (row["start_x"], row["start_y"]), (row["target_x"], row["target_y"]))
+        row["problem"]: Problem(
+            row["problem"],
+            drawn[row["drawn"]],
+            (row["start_x"], row["start_y"]),
+            (row["target_x"], row["target_y"]),
+        )
         for row in table
     }
 
@@ -191,12 +246,19 @@ def bounds_of(problems: dict[str, Problem]) -> "pa.Table":
     from bezierplan.geometry import shortest_paths
     from bezierplan.running import rows
 
-    bounds = [bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem)) for name, problem in problems.items()]
+    bounds = [
+        bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem))
+        for name, problem in problems.items()
+    ]
     return rows.table([each._asdict() for each in bounds], Bound)
 
 
-def bound_row(name: str, problem: Problem, bound: "shortest_paths.Bound", octile_bound: float) -> Bound:
-    """A row of a file of bounds. bound: the shortest path, in units; octile_bound: in units, NaN where there is none."""
+def bound_row(
+    name: str, problem: Problem, bound: "shortest_paths.Bound", octile_bound: float
+) -> Bound:
+    """A row of a file of bounds. bound: the shortest path, in units; octile_bound: in units, NaN
+    where there is none.
+    """
     from bezierplan.geometry import shortest_paths
 
     return Bound(
@@ -210,14 +272,21 @@ def bound_row(name: str, problem: Problem, bound: "shortest_paths.Bound", octile
 
 
 def _cell_bound(problem: Problem) -> float:
-    """The least length, in units, of a path over free cells with straight and diagonal steps, which may pass between two occupied cells."""
+    """The least length, in units, of a path over free cells with straight and diagonal steps, which
+    may pass between two occupied cells.
+    """
     from bezierplan.geometry import shortest_paths
 
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return math.nan
     start, target = _cell(grid, problem.start), _cell(grid, problem.target)
-    return shortest_paths.lattice_path(grid.occupied, start, target, cell_length.DIAGONAL, "free").length * grid.cell
+    return (
+        shortest_paths.lattice_path(
+            grid.occupied, start, target, cell_length.DIAGONAL, "free"
+        ).length
+        * grid.cell
+    )
 
 
 def _cell(grid: Grid, point: tuple[float, float]) -> tuple[int, int]:

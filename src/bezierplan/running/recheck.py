@@ -1,10 +1,13 @@
-"""Are the results of a scale what their own points say? Every stored path is judged again, every bound computed again.
+"""Are the results of a scale what their own points say? Every stored path is judged again, every
+bound computed again.
 
-Nothing here calls a planner: a path is read from its row, and judged on the workspace of the file of problems, in a process that no planner
-was in. What no path determines, such as a planner's objective, is covered by the digest of each file (`rows`).
+Nothing here calls a planner: a path is read from its row, and judged on the workspace of the file
+of problems, in a process that no planner was in. What no path determines, such as a planner's
+objective, is covered by the digest of each file (`rows`).
 
-Of drives, rows keep the way driven without its times, and traces keep places at whole steps, in single precision. So their lengths and
-the agreement of their columns are checked, and that no place at a whole step lies in an obstacle of a drive that is said to be free.
+Of drives, rows keep the way driven without its times, and traces keep places at whole steps, in
+single precision. So their lengths and the agreement of their columns are checked, and that no place
+at a whole step lies in an obstacle of a drive that is said to be free.
 """
 
 import hashlib
@@ -33,7 +36,8 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import MovingCircles, World
 
-# Numbers of another platform or version may differ in the last bits, and places of a first collision a little more.
+# Numbers of another platform or version may differ in the last bits, and places of a first
+# collision a little more.
 _SAME = 1e-9
 _SAME_PLACE = 1e-6
 # Places of traces are in single precision; of a field of 100 units they are this exact.
@@ -41,7 +45,9 @@ _TRACE = 1e-3
 
 
 class Fault(NamedTuple):
-    """A stored value that differs from what follows from the points. run: its id, or the name of a problem, or `all rows`."""
+    """A stored value that differs from what follows from the points. run: its id, or the name of a
+    problem, or `all rows`.
+    """
 
     file: str
     run: str
@@ -50,11 +56,18 @@ class Fault(NamedTuple):
     recomputed: Any
 
     def __str__(self) -> str:
-        return plain(" ".join(f"{self.file}: {self.run}: {self.column}: stored {self.stored}, recomputed {self.recomputed}".split()))
+        return plain(
+            " ".join(
+                f"{self.file}: {self.run}: {self.column}: stored {self.stored}, recomputed "
+                f"{self.recomputed}".split()
+            )
+        )
 
 
 class Task(NamedTuple):
-    """Runs of an experiment to be judged; or, with a file of bounds, that file, and the drives whose arrivals it takes into account."""
+    """Runs of an experiment to be judged; or, with a file of bounds, that file, and the drives
+    whose arrivals it takes into account.
+    """
 
     problems: str
     bounds: str
@@ -62,8 +75,9 @@ class Task(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """faults: in order of files. files, runs: how many files of runs, and rows in them. paths: different paths among these. bounds: how
-    many were computed again. undigested: files without a digest of their own. digests: a line for each file of runs.
+    """faults: in order of files. files, runs: how many files of runs, and rows in them. paths:
+    different paths among these. bounds: how many were computed again. undigested: files without a
+    digest of their own. digests: a line for each file of runs.
     """
 
     faults: list[Fault]
@@ -81,40 +95,67 @@ class Verdict(NamedTuple):
 
 
 def tasks(folder: File) -> list[Task]:
-    """What there is to check below the folder of a scale. Raises FileNotFoundError if there is no table of runs or of problems."""
+    """What there is to check below the folder of a scale. Raises FileNotFoundError if there is no
+    table of runs or of problems.
+    """
     experiments: dict[File, list[str]] = {}
     for file in sorted(folder.rglob("runs/*/*/*.parquet")):
         if file.stem.isdecimal():  # not the times and traces next to it
             experiments.setdefault(file.parents[1], []).append(str(file))
     if not experiments:
-        raise FileNotFoundError(f"{folder}: no runs here; expected a folder of results, such as results/full")
-    listed = [Task(str(_problems_of(experiment, folder)), "", tuple(files)) for experiment, files in experiments.items()]
+        raise FileNotFoundError(
+            f"{folder}: no runs here; expected a folder of results, such as results/full"
+        )
+    listed = [
+        Task(str(_problems_of(experiment, folder)), "", tuple(files))
+        for experiment, files in experiments.items()
+    ]
     for bounds in sorted(folder.glob("*/problems/*.bounds.parquet")):
         experiment = bounds.name.removesuffix(".bounds.parquet")
         drives = experiments.get(bounds.parents[1] / "runs" / experiment, [])
-        listed.append(Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), tuple(drives)))
+        listed.append(
+            Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), tuple(drives))
+        )
     return listed
 
 
 def _problems_of(experiment: File, folder: File) -> File:
-    """The file of the problems of an experiment's runs; at `extended` an experiment may be that of `full`."""
+    """The file of the problems of an experiment's runs; at `extended` an experiment may be that of
+    `full`.
+    """
     study = experiment.relative_to(folder).parts[0]
-    places = [scale / study / "problems" / f"{experiment.name}.parquet" for scale in (folder, folder.parent / "full")]
+    places = [
+        scale / study / "problems" / f"{experiment.name}.parquet"
+        for scale in (folder, folder.parent / "full")
+    ]
     there = next((place for place in places if place.is_file()), None)
     if there is None:
         raise FileNotFoundError(f"{places[0]}: missing; expected the problems of {experiment}")
     return there
 
 
-def verify(tasks: list[Task], processes: int, told: Callable[[str], None] = lambda line: None) -> Verdict:
-    """The verdict on some tasks, in several processes. told: gets a line of progress now and then."""
+def verify(
+    tasks: list[Task], processes: int, told: Callable[[str], None] = lambda line: None
+) -> Verdict:
+    """The verdict on some tasks, in several processes. told: gets a line of progress now and
+    then.
+    """
     # The largest first, so that no process ends long after the others: bounds take longest.
-    largest = sorted(tasks, key=lambda task: (not task.bounds, -sum(_size(file) for file in (task.problems, *task.runs))))
+    largest = sorted(
+        tasks,
+        key=lambda task: (
+            not task.bounds,
+            -sum(_size(file) for file in (task.problems, *task.runs)),
+        ),
+    )
     done = []
     for n, each in enumerate(_mapped(judged, largest, processes), start=1):
         done.append(each)
         if n % 10 == 0 or n == len(tasks):
-            told(f"{n} of {len(tasks)} tables checked, {sum(len(verdict.faults) for verdict in done)} faults")
+            told(
+                f"{n} of {len(tasks)} tables checked, "
+                f"{sum(len(verdict.faults) for verdict in done)} faults"
+            )
     return merged(done)
 
 
@@ -122,12 +163,18 @@ def _size(file: str) -> int:
     return os.path.getsize(file) if os.path.isfile(file) else 0
 
 
-def _mapped(function: Callable[[Task], Verdict], tasks: list[Task], processes: int) -> Iterator[Verdict]:
-    """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they would begin with a job's script anew."""
+def _mapped(
+    function: Callable[[Task], Verdict], tasks: list[Task], processes: int
+) -> Iterator[Verdict]:
+    """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they
+    would begin with a job's script anew.
+    """
     if processes == 1 or sys.platform != "linux":
         yield from map(function, tasks)
         return
-    with ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), end_with_parent) as pool:
+    with ProcessPoolExecutor(
+        processes, multiprocessing.get_context("fork"), end_with_parent
+    ) as pool:
         yield from pool.map(function, tasks)
 
 
@@ -135,15 +182,24 @@ def merged(verdicts: Iterable[Verdict]) -> Verdict:
     """Several verdicts as one."""
     all_of = list(verdicts)
     counts = (sum(getattr(each, name) for each in all_of) for name in Verdict._fields[1:-1])
-    faults = sorted((fault for each in all_of for fault in each.faults), key=lambda fault: fault[:3])
+    faults = sorted(
+        (fault for each in all_of for fault in each.faults), key=lambda fault: fault[:3]
+    )
     return Verdict(faults, *counts, tuple(line for each in all_of for line in each.digests))
 
 
 def write(verdict: Verdict, file: str) -> None:
-    """Write what was checked, and with which versions, as JSON. Raises ValueError with the first fault if there is any."""
+    """Write what was checked, and with which versions, as JSON. Raises ValueError with the first
+    fault if there is any.
+    """
     if verdict.faults:
-        raise ValueError(f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the file and start again)")
-    counts = {name: getattr(verdict, name) for name in ("files", "runs", "paths", "bounds", "digest")}
+        raise ValueError(
+            f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the "
+            f"file and start again)"
+        )
+    counts = {
+        name: getattr(verdict, name) for name in ("files", "runs", "paths", "bounds", "digest")
+    }
     File(file).write_text(json.dumps(counts | {"versions": versions()}, indent=1) + "\n")
 
 
@@ -153,7 +209,9 @@ def versions() -> dict[str, str]:
 
 
 def judged(task: Task) -> Verdict:
-    """The verdict on one task. Raises ValueError for a file that is not the table that belongs there."""
+    """The verdict on one task. Raises ValueError for a file that is not the table that belongs
+    there.
+    """
     try:
         made, moving = problems.read(task.problems), worlds.read(task.problems)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
@@ -161,22 +219,35 @@ def judged(task: Task) -> Verdict:
     if task.bounds:
         return _bounds_judged(task, made, moving)
     chunks = [_chunk(file, _DRIVE_COLUMNS if moving else _RUN_COLUMNS) for file in task.runs]
-    faults = [fault for chunk in chunks for fault in _chunk_faults(chunk, made, task.problems)] + _twice(chunks)
-    found, paths = (_drive_faults(chunks, made, moving), 0) if moving else _path_faults(chunks, made)
+    faults = [
+        fault for chunk in chunks for fault in _chunk_faults(chunk, made, task.problems)
+    ] + _twice(chunks)
+    found, paths = (
+        (_drive_faults(chunks, made, moving), 0) if moving else _path_faults(chunks, made)
+    )
     digests = tuple(f"{'/'.join(File(chunk.file).parts[-5:])} {chunk.digest}" for chunk in chunks)
     undigested = sum(chunk.kept is None for chunk in chunks)
-    return Verdict(faults + found, len(chunks), sum(len(chunk.ids) for chunk in chunks), paths, 0, undigested, digests)
+    return Verdict(
+        faults + found,
+        len(chunks),
+        sum(len(chunk.ids) for chunk in chunks),
+        paths,
+        0,
+        undigested,
+        digests,
+    )
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Files
 
 
 class _Chunk(NamedTuple):
-    """A file of runs: its columns that are looked at, as lists or arrays by name; others are covered by digests.
+    """A file of runs: its columns that are looked at, as lists or arrays by name; others are
+    covered by digests.
 
-    points: (n,) arrays of control points, flat. rows: by problem, numbers of its rows. digest: of all rows; kept: that of the file itself,
-    if it has one.
+    points: (n,) arrays of control points, flat. rows: by problem, numbers of its rows. digest: of
+    all rows; kept: that of the file itself, if it has one.
     """
 
     file: str
@@ -191,11 +262,30 @@ class _Chunk(NamedTuple):
 
 _IDENTITY = ("id", "study", "experiment", "condition", "problem", "method", "repeat")
 _RUN_COLUMNS = (
-    *(*_IDENTITY, "length", "feasible", "collision_at", "collision_depth", "clearance", "clearance_error", "generations", "history"),
+    *(
+        *_IDENTITY,
+        "length",
+        "feasible",
+        "collision_at",
+        "collision_depth",
+        "clearance",
+        "clearance_error",
+        "generations",
+        "history",
+    ),
     *("path_curve", "path_points"),
 )
 _DRIVE_COLUMNS = (
-    *(*_IDENTITY, "objective", "length", "claimed_feasible", "feasible", "collision_at", "clearance", "path_points"),
+    *(
+        *_IDENTITY,
+        "objective",
+        "length",
+        "claimed_feasible",
+        "feasible",
+        "collision_at",
+        "clearance",
+        "path_points",
+    ),
     *("arrival", "travelled", "clearance_least"),
 )
 
@@ -213,7 +303,11 @@ def _chunk(file: str, wanted: Iterable[str]) -> _Chunk:
     table = _read(file)
     known = columns.PLANNED | columns.RESULTS | columns.DRIVE_RESULTS
     seen = {name: _column(file, table, name, known[name]) for name in wanted}
-    numbers = {name: seen[name].to_numpy(zero_copy_only=False).astype(float) for name in wanted if known[name] in ("number", "flag")}
+    numbers = {
+        name: seen[name].to_numpy(zero_copy_only=False).astype(float)
+        for name in wanted
+        if known[name] in ("number", "flag")
+    }
     if "history" in seen:
         numbers["history"] = seen["history"].value_lengths().to_numpy().astype(float)
     coded = seen["problem"].dictionary_encode()
@@ -221,10 +315,14 @@ def _chunk(file: str, wanted: Iterable[str]) -> _Chunk:
     return _Chunk(
         file=file,
         ids=seen["id"].to_pylist(),
-        words={name: seen[name] for name in wanted if known[name] in ("name", "word")} | {"repeat": seen["repeat"].cast(pa.string())},
+        words={name: seen[name] for name in wanted if known[name] in ("name", "word")}
+        | {"repeat": seen["repeat"].cast(pa.string())},
         numbers=numbers,
         points=_arrays(seen["path_points"]),
-        rows={name: np.flatnonzero(codes == code) for code, name in enumerate(coded.dictionary.to_pylist())},
+        rows={
+            name: np.flatnonzero(codes == code)
+            for code, name in enumerate(coded.dictionary.to_pylist())
+        },
         digest=rows.rows_digest(table),
         kept=rows.kept_digest(table),
     )
@@ -242,7 +340,9 @@ def _misplaced(file: str, what: str) -> ValueError:
 
 
 def _column(file: str, table: pa.Table, name: str, kind: str) -> pa.Array:
-    """A column, with a value in each row. Raises ValueError for one that is not there or holds other things."""
+    """A column, with a value in each row. Raises ValueError for one that is not there or holds
+    other things.
+    """
     expected, fits = _TYPES[kind]
     if name not in table.column_names:
         raise _misplaced(file, f"no column {name}")
@@ -259,7 +359,9 @@ def _arrays(column: pa.Array) -> list[np.ndarray]:
 
 
 def _chunk_faults(chunk: _Chunk, made: dict[str, Problem], problems_file: str) -> list[Fault]:
-    """Whether rows stand in their file, their ids say what their columns say, and the file's digest is that of its rows."""
+    """Whether rows stand in their file, their ids say what their columns say, and the file's digest
+    is that of its rows.
+    """
     faults = []
     if chunk.kept not in (None, chunk.digest):
         faults.append(Fault(chunk.file, "all rows", "digest", chunk.kept, chunk.digest))
@@ -270,13 +372,28 @@ def _chunk_faults(chunk: _Chunk, made: dict[str, Problem], problems_file: str) -
         "experiment": pa.array([experiment] * len(chunk.ids)),
         "method": pa.array([method] * len(chunk.ids)),
         # A condition's name begins with its problem's.
-        "problem": compute.list_element(compute.split_pattern(chunk.words["condition"], ",", max_splits=1), 0),
+        "problem": compute.list_element(
+            compute.split_pattern(chunk.words["condition"], ",", max_splits=1), 0
+        ),
     }
     for column, values in wanted.items():
-        for row in np.flatnonzero(compute.not_equal(chunk.words[column], values).to_numpy(zero_copy_only=False)):
-            faults.append(Fault(chunk.file, chunk.ids[row], column, chunk.words[column][row].as_py(), values[row].as_py()))
+        for row in np.flatnonzero(
+            compute.not_equal(chunk.words[column], values).to_numpy(zero_copy_only=False)
+        ):
+            faults.append(
+                Fault(
+                    chunk.file,
+                    chunk.ids[row],
+                    column,
+                    chunk.words[column][row].as_py(),
+                    values[row].as_py(),
+                )
+            )
     for name in chunk.rows.keys() - made.keys():
-        faults += [Fault(chunk.file, chunk.ids[row], "problem", name, f"one of {problems_file}") for row in chunk.rows[name]]
+        faults += [
+            Fault(chunk.file, chunk.ids[row], "problem", name, f"one of {problems_file}")
+            for row in chunk.rows[name]
+        ]
     return faults
 
 
@@ -293,7 +410,9 @@ def _twice(chunks: list[_Chunk]) -> list[Fault]:
 
 
 def _differing(chunk: _Chunk, again: dict[str, tuple[np.ndarray, Any]]) -> Iterator[Fault]:
-    """The values of a chunk that differ from those computed again, by column, given with their tolerance."""
+    """The values of a chunk that differ from those computed again, by column, given with their
+    tolerance.
+    """
     for name, (values, tolerance) in again.items():
         stored = chunk.numbers[name]
         plain = bool if name in _FLAGS else float
@@ -305,20 +424,24 @@ _FLAGS = ("feasible", "claimed_feasible")
 
 
 def same(stored: np.ndarray, again: np.ndarray, tolerance: Any) -> np.ndarray:
-    """Whether numbers (n,) equal those computed again, up to a tolerance, relative and absolute; not a number equals itself."""
+    """Whether numbers (n,) equal those computed again, up to a tolerance, relative and absolute;
+    not a number equals itself.
+    """
     with np.errstate(invalid="ignore"):
-        close = np.abs(stored - again) <= tolerance * np.maximum(1.0, np.maximum(np.abs(stored), np.abs(again)))
+        close = np.abs(stored - again) <= tolerance * np.maximum(
+            1.0, np.maximum(np.abs(stored), np.abs(again))
+        )
     finite = np.isfinite(stored) & np.isfinite(again)
     return (stored == again) | (finite & close) | (np.isnan(stored) & np.isnan(again))
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Paths
 
 
 class _Judged(NamedTuple):
-    """What the points of a path say. verdict: length, feasible, collision_at, depth, clearance, tolerance. faults: column, stored value,
-    and what would be right.
+    """What the points of a path say. verdict: length, feasible, collision_at, depth, clearance,
+    tolerance. faults: column, stored value, and what would be right.
     """
 
     verdict: tuple[float, ...]
@@ -326,11 +449,15 @@ class _Judged(NamedTuple):
 
 
 def _path_faults(chunks: list[_Chunk], made: dict[str, Problem]) -> tuple[list[Fault], int]:
-    """What of runs differs from what their points say, and the number of different paths. Each problem's region is built once."""
+    """What of runs differs from what their points say, and the number of different paths. Each
+    problem's region is built once.
+    """
     all_faults, count = [], 0
     verdicts = [np.full((len(chunk.ids), 6), math.nan) for chunk in chunks]
     for name, problem in made.items():
-        concerned = [(chunk, verdict) for chunk, verdict in zip(chunks, verdicts) if name in chunk.rows]
+        concerned = [
+            (chunk, verdict) for chunk, verdict in zip(chunks, verdicts) if name in chunk.rows
+        ]
         blocked = region(problem.workspace) if concerned else None
         known: dict[tuple[str, bytes], _Judged] = {}
         for chunk, verdict in concerned:
@@ -366,14 +493,26 @@ def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Regi
         length, check = answer.verdict(path, blocked)
     except ValueError as error:
         return _Judged((math.nan,) * 6, (("path_points", "a path", error),))
-    ends = [] if path is None else zip(("start", "target"), (path.points[at] for at in curves.ends(curve)), (problem.start, problem.target))
-    faults = [(f"path_points ({end})", tuple(at.tolist()), to) for end, at, to in ends if tuple(at.tolist()) != to]
+    ends = (
+        []
+        if path is None
+        else zip(
+            ("start", "target"),
+            (path.points[at] for at in curves.ends(curve)),
+            (problem.start, problem.target),
+        )
+    )
+    faults = [
+        (f"path_points ({end})", tuple(at.tolist()), to)
+        for end, at, to in ends
+        if tuple(at.tolist()) != to
+    ]
     if path is None and len(points):
         faults.append(("path_points", f"{len(points)} numbers", "none without a curve"))
     return _Judged((length, *check[:5]), tuple(faults))
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Drives
 
 
@@ -387,31 +526,61 @@ class _Trace(NamedTuple):
 def _traces(file: str) -> dict[str, _Trace]:
     beside = str(File(file).with_suffix(".traces.parquet"))
     table = _read(beside)
-    x, y, clearance = (_arrays(_column(beside, table, name, "list")) for name in ("x", "y", "clearance"))
+    x, y, clearance = (
+        _arrays(_column(beside, table, name, "list")) for name in ("x", "y", "clearance")
+    )
     names = _column(beside, table, "id", "name").to_pylist()
-    if not all(len(one) == len(other) > len(least) > 0 for one, other, least in zip(x, y, clearance)):
-        raise _misplaced(beside, "columns x, y and clearance: expected as many x as y, and one number less of clearance")
-    return {name: _Trace(np.column_stack(points), least) for name, *points, least in zip(names, x, y, clearance)}
+    if not all(
+        len(one) == len(other) > len(least) > 0 for one, other, least in zip(x, y, clearance)
+    ):
+        raise _misplaced(
+            beside,
+            "columns x, y and clearance: expected as many x as y, and one number less of clearance",
+        )
+    return {
+        name: _Trace(np.column_stack(points), least)
+        for name, *points, least in zip(names, x, y, clearance)
+    }
 
 
-def _drive_faults(chunks: list[_Chunk], made: dict[str, Problem], moving: dict[str, World]) -> list[Fault]:
-    """What of drives differs from what their ways and their traces say. Obstacles at whole steps are placed once for each problem."""
+def _drive_faults(
+    chunks: list[_Chunk], made: dict[str, Problem], moving: dict[str, World]
+) -> list[Fault]:
+    """What of drives differs from what their ways and their traces say. Obstacles at whole steps
+    are placed once for each problem.
+    """
     faults = []
     traces = {chunk.file: _traces(chunk.file) for chunk in chunks}
     measured = [np.full((len(chunk.ids), 4), math.nan) for chunk in chunks]
     for name, problem in made.items():
-        concerned = [(chunk, values) for chunk, values in zip(chunks, measured) if name in chunk.rows]
-        steps = max((len(trace.clearance) for chunk, _ in concerned for trace in traces[chunk.file].values()), default=0)
+        concerned = [
+            (chunk, values) for chunk, values in zip(chunks, measured) if name in chunk.rows
+        ]
+        steps = max(
+            (
+                len(trace.clearance)
+                for chunk, _ in concerned
+                for trace in traces[chunk.file].values()
+            ),
+            default=0,
+        )
         least_distance = _distances(moving[name], steps)
         for chunk, values in concerned:
             for row in chunk.rows[name]:
                 trace = traces[chunk.file].get(chunk.ids[row])
                 if trace is None:
-                    faults.append(Fault(chunk.file, chunk.ids[row], "id", "a drive", "no trace of that id"))
+                    faults.append(
+                        Fault(chunk.file, chunk.ids[row], "id", "a drive", "no trace of that id")
+                    )
                 else:
                     values[row] = _measured(chunk.points[row], trace, problem, least_distance)
     for chunk, values in zip(chunks, measured):
-        pace = np.array([moving[name].pace if name in moving else math.nan for name in chunk.words["problem"].to_pylist()])
+        pace = np.array(
+            [
+                moving[name].pace if name in moving else math.nan
+                for name in chunk.words["problem"].to_pylist()
+            ]
+        )
         length, joins, least, deepest = values.T
         arrival, clearance_least = chunk.numbers["arrival"], chunk.numbers["clearance_least"]
         arrived, low = ~np.isnan(arrival), np.minimum(clearance_least, 0.0) - _TRACE
@@ -433,17 +602,26 @@ def _drive_faults(chunks: list[_Chunk], made: dict[str, Problem], moving: dict[s
 def _measured(
     flat: np.ndarray, trace: _Trace, problem: Problem, least_distance: Callable[[np.ndarray], float]
 ) -> tuple[float, bool, float, float]:
-    """Of a drive: the length of its way, whether that joins start and target, the least clearance of its trace, and its least distance to
-    an obstacle at whole steps.
+    """Of a drive: the length of its way, whether that joins start and target, the least clearance
+    of its trace, and its least distance to an obstacle at whole steps.
     """
     points = flat.reshape(-1, 2)
-    joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (problem.start, problem.target)
-    return float(np.hypot(*np.diff(points, axis=0).T).sum()), joins, float(trace.clearance.min()), least_distance(trace.points)
+    joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (
+        problem.start,
+        problem.target,
+    )
+    return (
+        float(np.hypot(*np.diff(points, axis=0).T).sum()),
+        joins,
+        float(trace.clearance.min()),
+        least_distance(trace.points),
+    )
 
 
 def _distances(world: World, steps: int) -> Callable[[np.ndarray], float]:
-    """A function that gives, of places (n + 1, 2) at step 0, 1, ..., up to some number of steps, and at the end, the least distance to an
-    obstacle or the border at whole steps, in units, negative inside; of cells -inf inside one, or inf.
+    """A function that gives, of places (n + 1, 2) at step 0, 1, ..., up to some number of steps,
+    and at the end, the least distance to an obstacle or the border at whole steps, in units,
+    negative inside; of cells -inf inside one, or inf.
     """
     if isinstance(world, MovingCircles):
         centres = np.array([world.at(step) for step in range(steps)]).reshape(steps, -1, 2)
@@ -460,16 +638,20 @@ def _distances(world: World, steps: int) -> Callable[[np.ndarray], float]:
 
     def outside(points: np.ndarray) -> float:
         numbers = index[: len(points) - 1]
-        inside = any(_inside(maps[n], world.maps[n], points[:-1][numbers == n]) for n in np.unique(numbers))
+        inside = any(
+            _inside(maps[n], world.maps[n], points[:-1][numbers == n]) for n in np.unique(numbers)
+        )
         return -math.inf if inside else math.inf
 
     return outside
 
 
 def _inside(cells: np.ndarray, grid: Grid, points: np.ndarray) -> bool:
-    """Whether any of some points (n, 2), in units, lies in occupied cells or outside, by more than the tolerance of a trace.
+    """Whether any of some points (n, 2), in units, lies in occupied cells or outside, by more than
+    the tolerance of a trace.
 
-    Such a point lies in no free cell, nor at the edge or corner of one. cells: those of the grid, `walled`.
+    Such a point lies in no free cell, nor at the edge or corner of one. cells: those of the grid,
+    `walled`.
     """
     shifts = np.array([[-_TRACE, -_TRACE], [-_TRACE, _TRACE], [_TRACE, -_TRACE], [_TRACE, _TRACE]])
     near = np.floor(grid.in_cells(points[:, None] + shifts)).astype(int) + 1
@@ -477,17 +659,22 @@ def _inside(cells: np.ndarray, grid: Grid, points: np.ndarray) -> bool:
     return bool(cells[row, column].all(axis=1).any())
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Bounds
 
 
 def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World]) -> Verdict:
     kept = _read(task.bounds)
-    again = rides.bounds_again(made, moving, kept, task.runs) if moving else problems.bounds_of(made)
+    again = (
+        rides.bounds_again(made, moving, kept, task.runs) if moving else problems.bounds_of(made)
+    )
     for field in again.schema:
         _column(task.bounds, kept, field.name, _kind(field.type))
     stored = {row["problem"]: row for row in kept.to_pylist()}
-    faults = [Fault(task.bounds, name, "problem", name, "no problem of that name") for name in stored.keys() - made.keys()]
+    faults = [
+        Fault(task.bounds, name, "problem", name, "no problem of that name")
+        for name in stored.keys() - made.keys()
+    ]
     for row in again.to_pylist():
         faults += _bound_faults(task.bounds, stored.get(row["problem"]), row)
     return Verdict(faults, 0, 0, 0, len(again), 0, ())
@@ -503,6 +690,8 @@ def _bound_faults(file: str, stored: dict[str, Any] | None, row: dict[str, Any])
         return
     for name, value in row.items():
         if name != "problem":
-            one, other = (np.atleast_1d(np.array(each, dtype=float)) for each in (stored[name], value))
+            one, other = (
+                np.atleast_1d(np.array(each, dtype=float)) for each in (stored[name], value)
+            )
             if len(one) != len(other) or not same(one, other, _SAME).all():
                 yield Fault(file, row["problem"], name, stored[name], value)

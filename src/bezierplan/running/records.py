@@ -1,6 +1,8 @@
-"""How long jobs took and how much they wrote: what Snakemake noted in a working folder, and the file that the repository keeps of it.
+"""How long jobs took and how much they wrote: what Snakemake noted in a working folder, and the
+file that the repository keeps of it.
 
-A job's name is its log file without scale, `logs` and ending, and for runs without the chunk: `song2016/runs/routes/smooth`.
+A job's name is its log file without scale, `logs` and ending, and for runs without the chunk:
+`song2016/runs/routes/smooth`.
 """
 
 import csv
@@ -13,15 +15,18 @@ from typing import NamedTuple
 KEPT = Path("docs/outcome/times.csv")
 METADATA = Path(".snakemake/metadata")
 START = 3.0
-"""Seconds that a job of runs takes beside its planner: a process, imports, compiled code from the cache, checks of the paths. The median of
-300 jobs."""
+"""Seconds that a job of runs takes beside its planner: a process, imports, compiled code from the
+cache, checks of the paths. The median of 300 jobs.
+"""
 
 _LOG = re.compile(r"results/(?P<scale>[^/]+)/(?P<name>.+)\.log")
 _RUNS = re.compile(r"(?P<name>[^/]+/runs/.+)/(?P<chunk>\d+)")
 
 
 class Job(NamedTuple):
-    """A job by its log file. chunk: number of the block of repeats, or None for a job that runs no planner."""
+    """A job by its log file. chunk: number of the block of repeats, or None for a job that runs no
+    planner.
+    """
 
     scale: str
     name: str
@@ -29,7 +34,9 @@ class Job(NamedTuple):
 
 
 class Record(NamedTuple):
-    """What a job took. units: how many runs it made, 1 for other jobs. seconds: of a core of its own. megabytes: of what it wrote."""
+    """What a job took. units: how many runs it made, 1 for other jobs. seconds: of a core of its
+    own. megabytes: of what it wrote.
+    """
 
     units: int
     seconds: float
@@ -40,7 +47,9 @@ class Record(NamedTuple):
         if units == self.units:
             return self
         factor = units / self.units
-        return Record(units, START + factor * max(self.seconds - START, 0.0), factor * self.megabytes)
+        return Record(
+            units, START + factor * max(self.seconds - START, 0.0), factor * self.megabytes
+        )
 
 
 def job_of(log: str) -> Job | None:
@@ -50,14 +59,19 @@ def job_of(log: str) -> Job | None:
         return None
     name = match["name"].replace("/logs/", "/", 1)
     runs = _RUNS.fullmatch(name)
-    return Job(match["scale"], runs["name"], int(runs["chunk"])) if runs else Job(match["scale"], name, None)
+    return (
+        Job(match["scale"], runs["name"], int(runs["chunk"]))
+        if runs
+        else Job(match["scale"], name, None)
+    )
 
 
 def measured(folder: Path, units: Callable[[Job], int]) -> dict[tuple[str, str], Record]:
-    """Record of each job noted in a working folder, by scale and name; of several chunks, their mean.
+    """Record of each job noted in a working folder, by scale and name; of several chunks, their
+    mean.
 
-    units: how many runs a job makes. Of a job of runs, its planner's CPU time counts; of others the clock's, as far as a core was theirs:
-    as CPU time to the clock's in the jobs of runs.
+    units: how many runs a job makes. Of a job of runs, its planner's CPU time counts; of others the
+    clock's, as far as a core was theirs: as CPU time to the clock's in the jobs of runs.
     """
     noted: dict[Job, tuple[float, list[Path]]] = {}
     for file in (folder / METADATA).glob("*"):
@@ -78,7 +92,10 @@ def measured(folder: Path, units: Callable[[Job], int]) -> dict[tuple[str, str],
         own = planner[job]
         record = Record(units(job), START + own[0] if own else seconds * share, size)
         grouped.setdefault((job.scale, job.name), []).append(record)
-    return {key: Record(*(sum(column) / len(records) for column in zip(*records))) for key, records in grouped.items()}
+    return {
+        key: Record(*(sum(column) / len(records) for column in zip(*records)))
+        for key, records in grouped.items()
+    }
 
 
 def output_of(file: Path) -> str:
@@ -89,7 +106,9 @@ def output_of(file: Path) -> str:
 
 
 def planner_times(outputs: Iterable[Path]) -> tuple[float, float] | None:
-    """Seconds of the CPU and of the clock that the runs of a job took; None for a job without runs."""
+    """Seconds of the CPU and of the clock that the runs of a job took; None for a job without
+    runs.
+    """
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
@@ -108,7 +127,10 @@ def planner_times(outputs: Iterable[Path]) -> tuple[float, float] | None:
 def kept(file: Path) -> dict[str, Record]:
     """The records that the repository keeps, by name. Raises FileNotFoundError."""
     with file.open(encoding="utf-8", newline="") as lines:
-        return {row["job"]: Record(int(row["units"]), float(row["seconds"]), float(row["megabytes"])) for row in csv.DictReader(lines)}
+        return {
+            row["job"]: Record(int(row["units"]), float(row["seconds"]), float(row["megabytes"]))
+            for row in csv.DictReader(lines)
+        }
 
 
 def keep(records: dict[str, Record], file: Path) -> None:
@@ -117,4 +139,6 @@ def keep(records: dict[str, Record], file: Path) -> None:
         writer = csv.writer(lines, lineterminator="\n")
         writer.writerow(["job", *Record._fields])
         for name, record in sorted(records.items()):
-            writer.writerow([name, round(record.units), f"{record.seconds:.3g}", f"{record.megabytes:.3g}"])
+            writer.writerow(
+                [name, round(record.units), f"{record.seconds:.3g}", f"{record.megabytes:.3g}"]
+            )

@@ -1,8 +1,9 @@
-"""One chunk of runs in moving worlds: like `execution`, of which it keeps names, seeds and columns, but a run is a simulated drive.
+"""One chunk of runs in moving worlds: like `execution`, of which it keeps names, seeds and columns,
+but a run is a simulated drive.
 
-A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by name. Columns are those of
-`columns.Outcome`, some with a meaning of their own, and `columns.DriveOutcome`; of times, those of `columns.Times` and
-`columns.DriveTimes`.
+A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by
+name. Columns are those of `columns.Outcome`, some with a meaning of their own, and
+`columns.DriveOutcome`; of times, those of `columns.Times` and `columns.DriveTimes`.
 """
 
 import json
@@ -19,7 +20,15 @@ import pyarrow.parquet as parquet
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, rows, watchdog
 from bezierplan.running import problems as problem_files
-from bezierplan.running.columns import Bound, DriveBound, DriveOutcome, DriveTimes, Outcome, Planned, Times
+from bezierplan.running.columns import (
+    Bound,
+    DriveBound,
+    DriveOutcome,
+    DriveTimes,
+    Outcome,
+    Planned,
+    Times,
+)
 from bezierplan.running.execution import Condition
 from bezierplan.running.loans import lend_once
 from bezierplan.running.simulation import cells, hindsight, motion_check
@@ -31,7 +40,9 @@ from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_jso
 
 
 def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
-    """The drive of one run. Raises `execution.UnfitAnswer` for a plan that is not valid for the problem that the robot saw."""
+    """The drive of one run. Raises `execution.UnfitAnswer` for a plan that is not valid for the
+    problem that the robot saw.
+    """
     module, rng = planner_module(job["planner"]), execution.generator(job, condition, repeat)
     settings = execution.settings_in(job, condition)
     policy = _policy(job)
@@ -39,7 +50,11 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: W
     def planner(seen: Problem, state: Any) -> tuple:
         loan = lend_once(seen)
         given = loan.problem, rng
-        plan, state = module.resume(*given, state, **settings) if policy.warm else (module.plan(*given, **settings), None)
+        plan, state = (
+            module.resume(*given, state, **settings)
+            if policy.warm
+            else (module.plan(*given, **settings), None)
+        )
         execution.refuse_changed(loan, job, condition, repeat)
         return execution.accepted(plan, seen, job, condition, repeat), state
 
@@ -50,9 +65,12 @@ def _policy(job: dict) -> Policy:
     return Policy(**job["policy"] | {"plan_margins": tuple(job["policy"]["plan_margins"])})
 
 
-def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], dict[str, Any]]:
-    """One row of the runs table, and one of the table of traces: id; x and y at step 0, 1, ... and at the end of the drive, and clearance
-    in each step, all in single precision; and the plans, by the time, curve and control points of each.
+def row(
+    job: dict, condition: Condition, repeat: int, ride: Ride, problem: Problem, world: World
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """One row of the runs table, and one of the table of traces: id; x and y at step 0, 1, ... and
+    at the end of the drive, and clearance in each step, all in single precision; and the plans, by
+    the time, curve and control points of each.
     """
     verdict = motion_check.check(ride.motion, world)
     points, times = ride.motion
@@ -63,12 +81,24 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
     least = float(verdict.clearance.min())
     lengths = [plan.length for plan in ride.plans]
     driven = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
-    # The leg that leads to the collision: what the robot did before, not what it does once it is hit.
-    leg = int(np.clip(np.searchsorted(times, verdict.collision_at, side="left"), 1, len(times) - 1)) if collided else 0
-    known = hindsight.known_at(ride.motion, verdict.collision_at, world, _policy(job)) if collided else math.nan
+    # The leg that leads to the collision: what the robot did before, not what it does once it is
+    # hit.
+    leg = (
+        int(np.clip(np.searchsorted(times, verdict.collision_at, side="left"), 1, len(times) - 1))
+        if collided
+        else 0
+    )
+    known = (
+        hindsight.known_at(ride.motion, verdict.collision_at, world, _policy(job))
+        if collided
+        else math.nan
+    )
     moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
     # Without regard to what the robot believes: the motion itself leads from start to target.
-    joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (problem.start, problem.target)
+    joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (
+        problem.start,
+        problem.target,
+    )
     outcome = Outcome(
         objective=float(times[-1]) * world.pace if ride.arrived else math.inf,
         length=travelled,
@@ -94,7 +124,9 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
         last_optimum=_last_optimum(ride, world, problem),
         replans=ride.replans,
         waits=float(ride.waited),
-        collision_steps=int((verdict.clearance < -motion_check.TOUCHING).sum()) if least < 0 else int(collided),
+        collision_steps=int((verdict.clearance < -motion_check.TOUCHING).sum())
+        if least < 0
+        else int(collided),
         hit_waiting=collided and bool(np.array_equal(points[leg], points[leg - 1])),
         known_at=known,
         avoidable=hindsight.avoidable(ride.motion, known, world, problem),
@@ -108,7 +140,9 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
         "clearance": verdict.clearance.astype(np.float32),
         "plan_time": [plan.time for plan in ride.plans],
         "plan_curve": [plan.path.curve if plan.path else "" for plan in ride.plans],
-        "plan_points": [plan.path.points.ravel().tolist() if plan.path else [] for plan in ride.plans],
+        "plan_points": [
+            plan.path.points.ravel().tolist() if plan.path else [] for plan in ride.plans
+        ],
     }
     return columns, trace
 
@@ -118,14 +152,18 @@ def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
     if not isinstance(world, ChangingCells):
         return math.nan
     time = ride.plans[-1].time
-    return cells.least_plan(motion_check.between(ride.motion, 0.0, time), world.workspace(time), problem.target)
+    return cells.least_plan(
+        motion_check.between(ride.motion, 0.0, time), world.workspace(time), problem.target
+    )
 
 
-def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict) -> tuple[pa.Table, pa.Table, pa.Table]:
+def run_chunk(
+    problems: dict[str, Problem], worlds: dict[str, World], job: dict
+) -> tuple[pa.Table, pa.Table, pa.Table]:
     """The runs of a job, their times, and their traces (`row`).
 
-    Robots drive in copies of the worlds, and these stay here to judge by. Raises RuntimeError, naming the run, if a planner fails, does not
-    return a valid plan, or changes a world.
+    Robots drive in copies of the worlds, and these stay here to judge by. Raises RuntimeError,
+    naming the run, if a planner fails, does not return a valid plan, or changes a world.
     """
     texts = {name: to_json(worlds[name]) for name in job["problems"]}
     driven = {name: from_json(text) for name, text in texts.items()}
@@ -136,7 +174,9 @@ def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict)
                 problem, world = problems[condition.problem], worlds[condition.problem]
                 once = partial(run, job, condition, repeat, problem, driven[condition.problem])
                 if not drives:
-                    first, *_ = execution.timed(once, job, condition, repeat, watch)  # compiles and loads
+                    first, *_ = execution.timed(
+                        once, job, condition, repeat, watch
+                    )  # compiles and loads
                 ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
                 drive, trace = row(job, condition, repeat, ride, problem, world)
                 if not drives:
@@ -149,13 +189,20 @@ def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict)
     for name, text in texts.items():
         if to_json(driven[name]) != text:
             runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
-            raise execution.UnfitAnswer(f"run {runs_of}: planner {job['planner']}: problem: {name}: world: is another after the runs")
+            raise execution.UnfitAnswer(
+                f"run {runs_of}: planner {job['planner']}: problem: {name}: world: is another "
+                f"after the runs"
+            )
     runs = rows.table(drives, Planned, Outcome, DriveOutcome)
     return runs, rows.table(times, Times, DriveTimes), pa.Table.from_pylist(traces)
 
 
-def rerun(job: dict, condition: str, repeat: int, problem: Problem, world: World) -> tuple[Ride, motion_check.Verdict]:
-    """The drive of a run, by the name of its condition, and the verdict on it: for what no table keeps."""
+def rerun(
+    job: dict, condition: str, repeat: int, problem: Problem, world: World
+) -> tuple[Ride, motion_check.Verdict]:
+    """The drive of a run, by the name of its condition, and the verdict on it: for what no table
+    keeps.
+    """
     named = {each.name: each for each in execution.conditions(list(job["problems"]), job["vary"])}
     ride = run(job, named[condition], repeat, problem, world)
     return ride, motion_check.check(ride.motion, world)
@@ -166,11 +213,16 @@ def _replan_times(ride: Ride, step_seconds: float) -> DriveTimes:
     late = int((seconds > step_seconds).sum())
     if not len(seconds):
         return DriveTimes(math.nan, math.nan, math.nan, late)
-    return DriveTimes(float(seconds.mean()), float(np.quantile(seconds, 0.95)), float(seconds.max()), late)
+    return DriveTimes(
+        float(seconds.mean()), float(np.quantile(seconds, 0.95)), float(seconds.max()), late
+    )
 
 
-def bounds_of(problems: dict[str, Problem], worlds: dict[str, World], arrivals: dict[str, float]) -> pa.Table:
-    """One row per problem: columns of `columns.Bound`, without an octile bound, and of `columns.DriveBound`.
+def bounds_of(
+    problems: dict[str, Problem], worlds: dict[str, World], arrivals: dict[str, float]
+) -> pa.Table:
+    """One row per problem: columns of `columns.Bound`, without an octile bound, and of
+    `columns.DriveBound`.
 
     arrivals: the first arrival of a drive, by problem, left out if there is none.
     """
@@ -183,12 +235,22 @@ def bounds_of(problems: dict[str, Problem], worlds: dict[str, World], arrivals: 
             clairvoyant_length=schedule.length,
             best_arrival=min(schedule.arrival, arrivals.get(name, math.inf)),
         )
-        bounds.append(problem_files.bound_row(name, problem, least, math.nan)._asdict() | arrival._asdict())
+        bounds.append(
+            problem_files.bound_row(name, problem, least, math.nan)._asdict() | arrival._asdict()
+        )
     return rows.table(bounds, Bound, DriveBound)
 
 
-def write_bounds(problems: dict[str, Problem], worlds: dict[str, World], runs: Sequence[str], repeats: int, file: str) -> None:
-    """Write the bounds of problems with the first arrivals of the drives in some files, up to a number of repeats, and whose they are."""
+def write_bounds(
+    problems: dict[str, Problem],
+    worlds: dict[str, World],
+    runs: Sequence[str],
+    repeats: int,
+    file: str,
+) -> None:
+    """Write the bounds of problems with the first arrivals of the drives in some files, up to a
+    number of repeats, and whose they are.
+    """
     table = bounds_of(problems, worlds, first_arrivals(runs, repeats))
     drives = {"methods": sorted(set(map(_method, runs))), "repeats": repeats}
     parquet.write_table(table.replace_schema_metadata({_DRIVES: json.dumps(drives)}), file)
@@ -197,12 +259,22 @@ def write_bounds(problems: dict[str, Problem], worlds: dict[str, World], runs: S
 _DRIVES = b"bezierplan_drives"
 
 
-def bounds_again(problems: dict[str, Problem], worlds: dict[str, World], kept: pa.Table, runs: Iterable[str]) -> pa.Table:
-    """The bounds of problems with the first arrivals of those drives in some files that a file of bounds takes into account."""
+def bounds_again(
+    problems: dict[str, Problem], worlds: dict[str, World], kept: pa.Table, runs: Iterable[str]
+) -> pa.Table:
+    """The bounds of problems with the first arrivals of those drives in some files that a file of
+    bounds takes into account.
+    """
     drives = json.loads((kept.schema.metadata or {}).get(_DRIVES, "null"))
     if drives is None:
         return bounds_of(problems, worlds, first_arrivals(runs, sys.maxsize))
-    return bounds_of(problems, worlds, first_arrivals([run for run in runs if _method(run) in drives["methods"]], drives["repeats"]))
+    return bounds_of(
+        problems,
+        worlds,
+        first_arrivals(
+            [run for run in runs if _method(run) in drives["methods"]], drives["repeats"]
+        ),
+    )
 
 
 def _method(run: str) -> str:
@@ -211,10 +283,14 @@ def _method(run: str) -> str:
 
 
 def first_arrivals(files: Iterable[str], repeats: int) -> dict[str, float]:
-    """The first arrival without a collision, in steps, of the drives in some files, up to a number of repeats, by problem."""
+    """The first arrival without a collision, in steps, of the drives in some files, up to a number
+    of repeats, by problem.
+    """
     first: dict[str, float] = {}
     for file in files:
-        drives = parquet.read_table(file, columns=["problem", "repeat", "feasible", "arrival"]).to_pylist()
+        drives = parquet.read_table(
+            file, columns=["problem", "repeat", "feasible", "arrival"]
+        ).to_pylist()
         for each in drives:
             if each["feasible"] and each["repeat"] < repeats:
                 first[each["problem"]] = min(first.get(each["problem"], math.inf), each["arrival"])

@@ -1,5 +1,5 @@
-"""Files of runs: tables whose columns have the declared types (`columns`), and that hold a digest of their own rows, so that a later
-change of any column shows.
+"""Files of runs: tables whose columns have the declared types (`columns`), and that hold a digest
+of their own rows, so that a later change of any column shows.
 """
 
 import hashlib
@@ -25,29 +25,37 @@ _TYPES = {
 
 
 def table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
-    """Rows as a table: declared columns, which every row must have, in their types, others in that of their values.
+    """Rows as a table: declared columns, which every row must have, in their types, others in that
+    of their values.
 
-    Conditions may differ in their settings, so columns are collected over all rows. Raises KeyError for a row that lacks a declared column,
-    and `pyarrow.ArrowInvalid` or `ArrowTypeError` for a value that does not have its type.
+    Conditions may differ in their settings, so columns are collected over all rows. Raises KeyError
+    for a row that lacks a declared column, and `pyarrow.ArrowInvalid` or `ArrowTypeError` for a
+    value that does not have its type.
     """
     types = {name: _TYPES[kind] for name, (kind, _) in columns.declared(*declared).items()}
     names = dict.fromkeys(name for row in rows for name in row)
     return pa.table(
         {
-            name: pa.array([row[name] for row in rows], types[name]) if name in types else pa.array([row.get(name) for row in rows])
+            name: pa.array([row[name] for row in rows], types[name])
+            if name in types
+            else pa.array([row.get(name) for row in rows])
             for name in (names or types)
         }
     )
 
 
 def fault(schema: pa.Schema, *declared: type) -> str:
-    """The first declared column that a file lacks or has in another type, in words; empty if there is none."""
+    """The first declared column that a file lacks or has in another type, in words; empty if there
+    is none.
+    """
     for name, (kind, _) in columns.declared(*declared).items():
         if name not in schema.names:
             return f"no column {name}"
         found = schema.field(name).type
         # What wrote a file chooses between the two types of text.
-        if found != _TYPES[kind] and not (pa.types.is_large_string(found) and pa.types.is_string(_TYPES[kind])):
+        if found != _TYPES[kind] and not (
+            pa.types.is_large_string(found) and pa.types.is_string(_TYPES[kind])
+        ):
             return f"column {name} is of type {found}, not {_TYPES[kind]}"
     return ""
 
@@ -70,7 +78,9 @@ def edited(table: pa.Table) -> bool:
 
 
 def rows_digest(table: pa.Table) -> str:
-    """A hash over the content of a table, column by column in order of name: to the last bit, whatever the layout of the file."""
+    """A hash over the content of a table, column by column in order of name: to the last bit,
+    whatever the layout of the file.
+    """
     digest = hashlib.sha256()
     for name in sorted(table.column_names):
         column = table[name].combine_chunks()
@@ -85,8 +95,16 @@ def _parts(column: pa.Array) -> list[bytes]:
     if pa.types.is_list(column.type):
         values = column.flatten()
         # Without values, any type of them is the same content.
-        return [b"list", *_parts(column.value_lengths()), *(_parts(values) if len(values) else [b"[]"])]
+        return [
+            b"list",
+            *_parts(column.value_lengths()),
+            *(_parts(values) if len(values) else [b"[]"]),
+        ]
     if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
         missing = column.is_null().to_numpy(zero_copy_only=False)
-        return [str(column.type).encode(), missing.tobytes(), column.fill_null(0).to_numpy(zero_copy_only=False).tobytes()]
+        return [
+            str(column.type).encode(),
+            missing.tobytes(),
+            column.fill_null(0).to_numpy(zero_copy_only=False).tobytes(),
+        ]
     return [json.dumps(column.to_pylist()).encode()]

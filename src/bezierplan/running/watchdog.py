@@ -1,8 +1,11 @@
-"""Work in a process that another one watches, so that nothing it does can end, stall or outlive the job in silence.
+"""Work in a process that another one watches, so that nothing it does can end, stall or outlive the
+job in silence.
 
-Code of planners can do anything: exit, crash, loop in a compiled kernel that never yields to Python, or leave processes behind. So a
-process that may meet such code goes on in a child (`supervise`) and itself only waits: it knows how the child ends, what was under way, and
-for how long, and it kills whatever the child leaves. A pipe tells it which run has begun, which costs a run two short writes.
+Code of planners can do anything: exit, crash, loop in a compiled kernel that never yields to
+Python, or leave processes behind. So a process that may meet such code goes on in a child
+(`supervise`) and itself only waits: it knows how the child ends, what was under way, and for how
+long, and it kills whatever the child leaves. A pipe tells it which run has begun, which costs a run
+two short writes.
 """
 
 import contextlib
@@ -21,9 +24,11 @@ from typing import Any, NoReturn
 from bezierplan.schema.words import told
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
-# Seconds between two looks at whether the child is there: while its end of the pipe is open, which another process may hold, and after.
+# Seconds between two looks at whether the child is there: while its end of the pipe is open, which
+# another process may hold, and after.
 _LOOK, _CLOSED = 1.0, 0.005
-# Seconds that a process has for ending after its work is done: threads that a planner left running would keep an interpreter for ever.
+# Seconds that a process has for ending after its work is done: threads that a planner left running
+# would keep an interpreter for ever.
 _ENDING = 10.0
 # What a child tells last: that its end, good or bad, needs no more words.
 _SETTLED = "settled"
@@ -33,7 +38,9 @@ _pipe: int | None = None
 
 
 def end_with_parent() -> None:
-    """Have the kernel end this process when its parent ends, so that no job keeps writing after its workflow is killed (Linux only)."""
+    """Have the kernel end this process when its parent ends, so that no job keeps writing after its
+    workflow is killed (Linux only).
+    """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
@@ -41,9 +48,9 @@ def end_with_parent() -> None:
 def supervise(name: str, report: Callable[[str], None]) -> None:
     """Return in a child of this process; the process itself waits for it and ends as it does.
 
-    report: called, in this process, with a line that begins with what was under way, or with `name` if nothing was: if the child ends
-    before it is settled (`settle`), or takes longer than it may (`watching`). Then the status is 1. Processes that the child leaves are
-    killed.
+    report: called, in this process, with a line that begins with what was under way, or with `name`
+    if nothing was: if the child ends before it is settled (`settle`), or takes longer than it may
+    (`watching`). Then the status is 1. Processes that the child leaves are killed.
     """
     global _pipe
     _flush()
@@ -74,7 +81,8 @@ def settle() -> None:
 
 @contextmanager
 def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
-    """Yield a function to call with the name of a run when it begins, and with an empty text when it ends.
+    """Yield a function to call with the name of a run when it begins, and with an empty text when
+    it ends.
 
     A run longer than `limit` seconds ends this process, if it is supervised; None is no limit.
     """
@@ -82,15 +90,17 @@ def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
 
 
 class PlannerFailure(RuntimeError):
-    """What a planner does that no result may come from; the message is one line that names the planner and its run."""
+    """What a planner does that no result may come from; the message is one line that names the
+    planner and its run.
+    """
 
 
 @contextmanager
 def executing(name: str, watch: Callable[[str], None]) -> Iterator[None]:
     """A block that executes code of a planner, of which `name` tells the planner and what it does.
 
-    watch: as yielded by `watching`. Raises PlannerFailure, beginning with the name, for any exception and for processes that the block
-    leaves behind, which are ended.
+    watch: as yielded by `watching`. Raises PlannerFailure, beginning with the name, for any
+    exception and for processes that the block leaves behind, which are ended.
     """
     before = children()
     watch(name)
@@ -98,7 +108,8 @@ def executing(name: str, watch: Callable[[str], None]) -> Iterator[None]:
         yield
     except (Interrupted, PlannerFailure):
         raise
-    except BaseException as error:  # code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included
+    # Code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included.
+    except BaseException as error:
         end_children(before)
         raise PlannerFailure(f"{name}: {told(error)}") from error
     finally:
@@ -109,16 +120,26 @@ def executing(name: str, watch: Callable[[str], None]) -> Iterator[None]:
 
 
 def children() -> frozenset[int]:
-    """The processes that this one has started, or inherited as the last one responsible, and that have not ended (Linux only).
+    """The processes that this one has started, or inherited as the last one responsible, and that
+    have not ended (Linux only).
 
-    The process in which Python's multiprocessing keeps track of shared memory is none of them: it ends by itself.
+    The process in which Python's multiprocessing keeps track of shared memory is none of them: it
+    ends by itself.
     """
     try:
         os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
     except ChildProcessError:  # the usual case: a thousand of these calls take a millisecond
         return frozenset()
-    tracker = getattr(getattr(sys.modules.get("multiprocessing.resource_tracker"), "_resource_tracker", None), "_pid", None)
-    found = (int(child) for file in Path("/proc/self/task").glob("*/children") for child in file.read_text().split())
+    tracker = getattr(
+        getattr(sys.modules.get("multiprocessing.resource_tracker"), "_resource_tracker", None),
+        "_pid",
+        None,
+    )
+    found = (
+        int(child)
+        for file in Path("/proc/self/task").glob("*/children")
+        for child in file.read_text().split()
+    )
     return frozenset(child for child in found if child != tracker and not _is_dead(child))
 
 
@@ -132,14 +153,17 @@ def end_children(spared: frozenset[int] = frozenset()) -> None:
 
 
 def _flush() -> None:
-    """Print what is still to be printed, which a fork would print once more. A process may have been started without streams."""
+    """Print what is still to be printed, which a fork would print once more. A process may have
+    been started without streams.
+    """
     for stream in filter(None, (sys.stdout, sys.stderr)):
         stream.flush()
 
 
 def verdict(name: str, judge: Callable[[], str], limit: float) -> str:
-    """What a function says that is called in a process of its own, which cannot harm this one; or, beginning with `name`, how the process
-    ended instead. limit: seconds that it may take. What it prints is lost. On Linux; elsewhere it is called in this process.
+    """What a function says that is called in a process of its own, which cannot harm this one; or,
+    beginning with `name`, how the process ended instead. limit: seconds that it may take. What it
+    prints is lost. On Linux; elsewhere it is called in this process.
     """
     if sys.platform != "linux":  # a fork of a process that has loaded libraries of macOS may crash
         return judge()
@@ -160,7 +184,9 @@ def verdict(name: str, judge: Callable[[], str], limit: float) -> str:
     return said
 
 
-def _judge(name: str, judge: Callable[[], str], limit: float, say: Callable[[str], object]) -> NoReturn:
+def _judge(
+    name: str, judge: Callable[[], str], limit: float, say: Callable[[str], object]
+) -> NoReturn:
     try:
         end_with_parent()
         supervise(name, say)
@@ -187,7 +213,9 @@ def _tell(text: str) -> None:
 
 
 def _forget() -> None:
-    """A fork of the watched process is not the watched one; if it held the pipe, the end of that one would go unnoticed."""
+    """A fork of the watched process is not the watched one; if it held the pipe, the end of that
+    one would go unnoticed.
+    """
     global _pipe
     if _pipe is not None:
         os.close(_pipe)
@@ -235,11 +263,19 @@ def _heard(child: int, heard: int, name: str) -> tuple[str, int]:
             continue
         under_way = name if last in ("", _SETTLED) else last.split(" ", 1)[1]
         if ended:
-            return ("", status_code(status)) if last == _SETTLED else (f"{under_way}: {how_ended(status)}", 1)
+            return (
+                ("", status_code(status))
+                if last == _SETTLED
+                else (f"{under_way}: {how_ended(status)}", 1)
+            )
         if time.monotonic() >= until:
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
-            return ("", 0) if last == _SETTLED else (f"{under_way}: not done within the time limit of {limit:g} s; it is ended", 1)
+            return (
+                ("", 0)
+                if last == _SETTLED
+                else (f"{under_way}: not done within the time limit of {limit:g} s; it is ended", 1)
+            )
 
 
 def how_ended(status: int) -> str:
@@ -247,9 +283,16 @@ def how_ended(status: int) -> str:
     if os.WIFSIGNALED(status):
         number = os.WTERMSIG(status)
         name = signal.Signals(number).name if number in set(signal.Signals) else f"number {number}"
-        cause = ", by itself, by another program, or for want of memory" if number == signal.SIGKILL else ""
+        cause = (
+            ", by itself, by another program, or for want of memory"
+            if number == signal.SIGKILL
+            else ""
+        )
         return f"its process was ended by signal {name}{cause}"
-    return f"its process ended itself with exit status {os.waitstatus_to_exitcode(status)}, before it was done"
+    return (
+        f"its process ended itself with exit status {os.waitstatus_to_exitcode(status)}, "
+        f"before it was done"
+    )
 
 
 def status_code(status: int) -> int:

@@ -1,5 +1,6 @@
-"""The problems of experiments in moving worlds: built from their descriptions, and kept in files like those of `problems`, with one more
-column: world, as JSON (`workspaces.worlds`). The workspace of such a problem is what planners see at the beginning.
+"""The problems of experiments in moving worlds: built from their descriptions, and kept in files
+like those of `problems`, with one more column: world, as JSON (`workspaces.worlds`). The workspace
+of such a problem is what planners see at the beginning.
 """
 
 from pathlib import Path
@@ -16,8 +17,11 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
 
-def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str], dict[str, World]]:
-    """Problems, the names of their workspaces, and their worlds, all keyed by problem, from their descriptions (`jobs.problems_job`).
+def build_all(
+    job: dict, folder: Path
+) -> tuple[dict[str, Problem], dict[str, str], dict[str, World]]:
+    """Problems, the names of their workspaces, and their worlds, all keyed by problem, from their
+    descriptions (`jobs.problems_job`).
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
@@ -31,7 +35,8 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
 
 
 def build(description: dict, problem: dict, name: str, folder: Path) -> World:
-    """The world of a problem; random ones are drawn from the name of study and workspace and from the problem's numbers alone.
+    """The world of a problem; random ones are drawn from the name of study and workspace and from
+    the problem's numbers alone.
 
     Raises ValueError, naming the key.
     """
@@ -46,7 +51,9 @@ def build(description: dict, problem: dict, name: str, folder: Path) -> World:
 # Files
 
 
-def write(problems: dict[str, Problem], workspaces: dict[str, str], found: dict[str, World], file: str) -> None:
+def write(
+    problems: dict[str, Problem], workspaces: dict[str, str], found: dict[str, World], file: str
+) -> None:
     """Write problems, with the names of their workspaces and their worlds."""
     problem_files.write(problems, workspaces, file)
     table = parquet.read_table(file)

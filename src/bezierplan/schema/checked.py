@@ -1,8 +1,10 @@
-"""YAML files read strictly, within stated limits; every fault is reported in one line with its place.
+"""YAML files read strictly, within stated limits; every fault is reported in one line with its
+place.
 
-YAML is written by people and read from folders of unknown origin, so anything that could overload the reader is rejected before it is
-built: files that are not regular, long files, deep nesting, and aliases that expand beyond what a file could hold. Tags are not
-supported, because plain scalars get their types without them.
+YAML is written by people and read from folders of unknown origin, so anything that could overload
+the reader is rejected before it is built: files that are not regular, long files, deep nesting, and
+aliases that expand beyond what a file could hold. Tags are not supported, because plain scalars get
+their types without them.
 """
 
 import difflib
@@ -35,7 +37,9 @@ LONGEST_MESSAGE, MESSAGE_END = 1000, 300
 
 
 class Fault(ValueError):
-    """A problem in a file that the user must fix, in one line of bounded length: no character from the file can break the line."""
+    """A problem in a file that the user must fix, in one line of bounded length: no character from
+    the file can break the line.
+    """
 
     def __init__(self, text: str) -> None:
         if len(text) > LONGEST_MESSAGE:
@@ -44,7 +48,9 @@ class Fault(ValueError):
 
 
 class _Loader(SafeLoader):
-    """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number; a key may occur only once."""
+    """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number;
+    a key may occur only once.
+    """
 
 
 _Loader.yaml_implicit_resolvers = {}
@@ -52,9 +58,15 @@ for _tag, _pattern, _first in (
     ("null", r"|null|~", ["", "n", "~"]),
     ("bool", r"true|false", list("tf")),
     ("int", r"[-+]?[0-9]{1,18}", list("-+0123456789")),
-    ("float", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan", list("-+.0123456789")),
+    (
+        "float",
+        r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan",
+        list("-+.0123456789"),
+    ),
 ):
-    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), _first)
+    _Loader.add_implicit_resolver(
+        f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), _first
+    )
 _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(node.value))
 
 
@@ -62,9 +74,13 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
     content = {}
     for key, value in node.value:
         if not isinstance(key, yaml.ScalarNode):
-            raise yaml.MarkedYAMLError(problem="a key is a list or a mapping; expected a name", problem_mark=key.start_mark)
+            raise yaml.MarkedYAMLError(
+                problem="a key is a list or a mapping; expected a name", problem_mark=key.start_mark
+            )
         if key.value in content:
-            raise yaml.MarkedYAMLError(problem=f"{key.value}: this key is given twice", problem_mark=key.start_mark)
+            raise yaml.MarkedYAMLError(
+                problem=f"{key.value}: this key is given twice", problem_mark=key.start_mark
+            )
         # Names are text even when they look like numbers.
         content[key.value] = loader.construct_object(value, deep=True)
     return content
@@ -74,12 +90,16 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def read(file: Path, location: str | None = None) -> Any:
-    """The content of a YAML file. Raises Fault, beginning with the place (by default the file's name)."""
+    """The content of a YAML file. Raises Fault, beginning with the place (by default the file's
+    name).
+    """
     return parse(text_of(file, location or str(file)), location or str(file))
 
 
 def text_of(file: Path, location: str) -> str:
-    """The text of a file. Raises Fault, beginning with a location, unless it is a regular text file of at most `LONGEST_FILE` bytes."""
+    """The text of a file. Raises Fault, beginning with a location, unless it is a regular text file
+    of at most `LONGEST_FILE` bytes.
+    """
     try:
         found = file.stat()
         if not stat.S_ISREG(found.st_mode):
@@ -109,20 +129,28 @@ def _line(location: str, mark: Any) -> str:
 
 
 def _check_size(text: str, location: str) -> None:
-    """Raise Fault for nesting and aliases beyond the limits, and for tags, from the events alone, before anything is built."""
+    """Raise Fault for nesting and aliases beyond the limits, and for tags, from the events alone,
+    before anything is built.
+    """
     sizes: dict[str, int] = {}  # of nodes with an anchor
     opened = [("", 0)]  # anchor and value count so far of each open node
     for event in yaml.parse(text, _Loader):
         anchor, size = getattr(event, "anchor", None) or "", 0
         if getattr(event, "tag", None):
-            raise Fault(f"{_line(location, event.start_mark)}: {event.tag}: tags are not read; write the plain value")
+            raise Fault(
+                f"{_line(location, event.start_mark)}: {event.tag}: tags are not read; write the "
+                f"plain value"
+            )
         if isinstance(event, yaml.CollectionStartEvent):
             opened.append((anchor, 1))
             if len(opened) > DEEPEST:
                 raise Fault(f"{_line(location, event.start_mark)}: {TOO_DEEP}")
         elif isinstance(event, yaml.AliasEvent):
             if anchor not in sizes:
-                raise Fault(f"{_line(location, event.start_mark)}: *{anchor}: stands for nothing before it, or for itself")
+                raise Fault(
+                    f"{_line(location, event.start_mark)}: *{anchor}: stands for nothing before "
+                    f"it, or for itself"
+                )
             size = sizes[anchor]
         elif isinstance(event, yaml.ScalarEvent):
             sizes[anchor] = size = 1
@@ -131,7 +159,10 @@ def _check_size(text: str, location: str) -> None:
             sizes[anchor] = size
         opened[-1] = opened[-1][0], opened[-1][1] + size
         if opened[-1][1] > MOST_NODES:
-            raise Fault(f"{_line(location, event.start_mark)}: more than {MOST_NODES} values, aliases counted as what they stand for")
+            raise Fault(
+                f"{_line(location, event.start_mark)}: more than {MOST_NODES} values, aliases "
+                f"counted as what they stand for"
+            )
 
 
 # More known words than this are not all listed, but only some that are most alike.
@@ -139,7 +170,9 @@ MOST_LISTED, FEW_LISTED = 40, 10
 
 
 def closest(word: Any, known: Iterable[Any]) -> str:
-    """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence about an unknown one."""
+    """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence
+    about an unknown one.
+    """
     words = sorted(map(str, known))
     near = difflib.get_close_matches(str(word), words, n=1)
     hint = f"; did you mean {near[0]}?" if near else ";"

@@ -1,12 +1,13 @@
 """Mappings in files as frozen classes, one per kind of mapping, whose fields are the keys.
 
-They are built with pydantic. Snakemake has already loaded it when a study is read, so it adds nothing to the start-up time (msgspec
-would add 0.05 s), and it reports every fault as a record of kind, place and input, from which this module makes one line that names
-place, key, value and what would be right. msgspec stops at the first fault and then reports a misspelt key as a missing one.
+They are built with pydantic. Snakemake has already loaded it when a study is read, so it adds
+nothing to the start-up time (msgspec would add 0.05 s), and it reports every fault as a record of
+kind, place and input, from which this module makes one line that names place, key, value and what
+would be right. msgspec stops at the first fault and then reports a misspelt key as a missing one.
 
-The description of a field is written once and serves three purposes: the message about a wrong value, the tables of config/README.md,
-and the reader of the class. The types below reject what `pydantic` would convert: a number stays the integer or the decimal that was
-written.
+The description of a field is written once and serves three purposes: the message about a wrong
+value, the tables of config/README.md, and the reader of the class. The types below reject what
+`pydantic` would convert: a number stays the integer or the decimal that was written.
 """
 
 import math
@@ -16,7 +17,16 @@ import typing
 from collections.abc import Callable, Iterable, Iterator
 from typing import Annotated, Any, NamedTuple, Self, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, PlainValidator, TypeAdapter, ValidationError, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    PlainValidator,
+    TypeAdapter,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
@@ -38,7 +48,8 @@ class Model(BaseModel):
         fields = keys(cls)
         if not isinstance(content, dict):
             raise wrong(
-                f"{shown(content)}: expected a mapping with {', '.join(key for key in fields if fields[key].is_required()) or 'keys'}"
+                f"{shown(content)}: expected a mapping with "
+                f"{', '.join(key for key in fields if fields[key].is_required()) or 'keys'}"
             )
         for key in content:
             if key not in fields:
@@ -65,7 +76,11 @@ class Model(BaseModel):
     def plain(self, *without: str) -> dict[str, Any]:
         """The mapping as written, in plain values, for jobs; some keys can be left out."""
         fields = type(self).model_fields.items()
-        entry = {field.alias or name: getattr(self, name) for name, field in fields if name in self.model_fields_set}
+        entry = {
+            field.alias or name: getattr(self, name)
+            for name, field in fields
+            if name in self.model_fields_set
+        }
         return {key: plain(value) for key, value in entry.items() if key not in without}
 
     def but(self, **changed: Any) -> Self:
@@ -104,9 +119,14 @@ def parsed(model: type[M], content: Any, location: str) -> M:
 
 
 def first_fault(error: ValidationError) -> list[str]:
-    """The fault that is reported of several: the keys that lead to it, and the end of the message."""
+    """The fault that is reported of several: the keys that lead to it, and the end of the
+    message.
+    """
     # After a key that is itself wrong, pydantic puts `[key]`.
-    faults = [([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None)) for fault in error.errors(include_url=False)]
+    faults = [
+        ([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None))
+        for fault in error.errors(include_url=False)
+    ]
     path, text = min(faults, key=lambda fault: (": unknown key" not in fault[1], len(fault[0])))
     return [*path, text]
 
@@ -132,7 +152,9 @@ _EXPECTED = {
 
 
 def _fault(fault: Any, field: FieldInfo | None) -> str:
-    """The end of a message, from a pydantic record; for the value of a field, from the field's description."""
+    """The end of a message, from a pydantic record; for the value of a field, from the field's
+    description.
+    """
     context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
@@ -141,7 +163,10 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
     if fault["type"] == "literal_error" and isinstance(value, str):
         known = re.findall(r"'([^']*)'", context["expected"])
         return f"{value}: unknown{closest(value, known)}"
-    return f"{shown(value)}: expected {field.description if field else _EXPECTED.get(fault['type'], fault['msg'])}"
+    return (
+        f"{shown(value)}: expected "
+        f"{field.description if field else _EXPECTED.get(fault['type'], fault['msg'])}"
+    )
 
 
 # Types of values.
@@ -178,12 +203,21 @@ LONGEST_LINE = 600
 
 
 def is_line(entry: Any, longest: int = LONGEST_LINE) -> bool:
-    """Whether it is one line of printable text that is not blank, with at most so many characters."""
-    return isinstance(entry, str) and bool(entry.strip()) and len(entry) <= longest and entry.isprintable()
+    """Whether it is one line of printable text that is not blank, with at most so many
+    characters.
+    """
+    return (
+        isinstance(entry, str)
+        and bool(entry.strip())
+        and len(entry) <= longest
+        and entry.isprintable()
+    )
 
 
 LONGEST_LABEL, LONGEST_WORD = 80, 30
-"""Characters of a text that is printed in a figure or in the head of a table, and of a word in it: lines are broken at blanks."""
+"""Characters of a text that is printed in a figure or in the head of a table, and of a word in it:
+lines are broken at blanks.
+"""
 MOST = 1_000_000
 """Largest count: of repeats, of layouts, of cells."""
 SMALLEST, LARGEST = 1e-12, 1e12
@@ -206,15 +240,29 @@ def sized(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
 Number = Annotated[float, sized(lambda entry: True, "a number")]
 Positive = Annotated[float, sized(lambda entry: entry > 0, "a number above 0")]
 NotNegative = Annotated[float, sized(lambda entry: entry >= 0, "a number of at least 0")]
-Whole = Annotated[int, value(lambda entry: _is_whole(entry) and 0 <= entry <= MOST, f"a whole number from 0 to {MOST}")]
-Count = Annotated[int, value(lambda entry: _is_whole(entry) and 1 <= entry <= MOST, f"a whole number of at least 1, at most {MOST}")]
-Decimals = Annotated[int, value(lambda entry: _is_whole(entry) and 0 <= entry <= 15, "a whole number from 0 to 15")]
+Whole = Annotated[
+    int,
+    value(
+        lambda entry: _is_whole(entry) and 0 <= entry <= MOST, f"a whole number from 0 to {MOST}"
+    ),
+]
+Count = Annotated[
+    int,
+    value(
+        lambda entry: _is_whole(entry) and 1 <= entry <= MOST,
+        f"a whole number of at least 1, at most {MOST}",
+    ),
+]
+Decimals = Annotated[
+    int, value(lambda entry: _is_whole(entry) and 0 <= entry <= 15, "a whole number from 0 to 15")
+]
 
 
 def line(longest: int) -> PlainValidator:
     """A type of text: one line, kept as written."""
     return value(
-        lambda entry: is_line(entry, longest), f"one line of text without control characters, not blank, at most {longest} characters"
+        lambda entry: is_line(entry, longest),
+        f"one line of text without control characters, not blank, at most {longest} characters",
     )
 
 
@@ -222,14 +270,20 @@ Line = Annotated[str, line(LONGEST_LINE)]
 Label = Annotated[
     str,
     value(
-        lambda entry: is_line(entry, LONGEST_LABEL) and max(map(len, entry.split())) <= LONGEST_WORD,
-        f"one line of text without control characters, not blank, at most {LONGEST_LABEL} characters, {LONGEST_WORD} a word",
+        lambda entry: (
+            is_line(entry, LONGEST_LABEL) and max(map(len, entry.split())) <= LONGEST_WORD
+        ),
+        f"one line of text without control characters, not blank, at most {LONGEST_LABEL} "
+        f"characters, {LONGEST_WORD} a word",
     ),
 ]
 Flag = Annotated[bool, value(lambda entry: isinstance(entry, bool), "true or false")]
 Scalar = Annotated[
     str | float | bool,
-    value(lambda entry: isinstance(entry, bool) or is_number(entry) or is_line(entry, LONGEST_LINE), "a word or a number"),
+    value(
+        lambda entry: isinstance(entry, bool) or is_number(entry) or is_line(entry, LONGEST_LINE),
+        "a word or a number",
+    ),
 ]
 """A value of a column: a word, a number, true or false."""
 Setting = Annotated[
@@ -247,12 +301,22 @@ Setting = Annotated[
 
 LONGEST_NAME = 100
 """Characters of a name, which is part of paths."""
-DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))})
+DEVICES = frozenset(
+    {
+        "con",
+        "prn",
+        "aux",
+        "nul",
+        *(f"{port}{number}" for port in ("com", "lpt") for number in range(10)),
+    }
+)
 """Names that no file can have on Windows."""
 
 
 def matching(pattern: str, expected: str) -> PlainValidator:
-    """A type of text that a regular expression matches as a whole, and that a file or folder can be called."""
+    """A type of text that a regular expression matches as a whole, and that a file or folder can be
+    called.
+    """
 
     def check(entry: Any) -> Any:
         if not (isinstance(entry, str) and re.fullmatch(pattern, entry)):
@@ -266,7 +330,12 @@ def matching(pattern: str, expected: str) -> PlainValidator:
     return PlainValidator(check)
 
 
-Name = Annotated[str, matching(r"[a-z][a-z0-9_]*", "a name of lower-case letters, digits and _ that begins with a letter")]
+Name = Annotated[
+    str,
+    matching(
+        r"[a-z][a-z0-9_]*", "a name of lower-case letters, digits and _ that begins with a letter"
+    ),
+]
 
 
 def one_or_list(entry: Any) -> list:
@@ -275,11 +344,15 @@ def one_or_list(entry: Any) -> list:
 
 
 MOST_ENTRIES = 1000
-"""Entries of a list of names or values, and of a mapping of what has a name: methods, problems, claims, ..."""
+"""Entries of a list of names or values, and of a mapping of what has a name: methods, problems,
+claims, ...
+"""
 
 
 def identity(entry: Any) -> str:
-    """A text that equal values share, and no others: 20 and 20.0 are one number, true and 1 are not; also inside lists."""
+    """A text that equal values share, and no others: 20 and 20.0 are one number, true and 1 are
+    not; also inside lists.
+    """
     if isinstance(entry, list):
         return f"[{', '.join(map(identity, entry))}]"
     return repr(float(entry) if is_number(entry) else entry)
@@ -297,11 +370,15 @@ def at_most(number: int) -> AfterValidator:
 
 
 def listed(item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False) -> Any:
-    """A type of list without duplicates, kept as written; with `single`, also a lone item without a list."""
+    """A type of list without duplicates, kept as written; with `single`, also a lone item without a
+    list.
+    """
     return Annotated[list[item], _distinct(item, least=least, most=most, single=single)]
 
 
-def _distinct(item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False) -> PlainValidator:
+def _distinct(
+    item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False
+) -> PlainValidator:
     adapter = TypeAdapter(list[item], config=ConfigDict(strict=True))
 
     def check(entry: Any) -> Any:
@@ -309,7 +386,11 @@ def _distinct(item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bo
             raise PydanticCustomError("expected", "{text}", {"text": "a list"})
         if isinstance(entry, list) and len(entry) > most:
             raise wrong(f"{len(entry)} entries; expected at most {most}")
-        items = adapter.validate_python(one_or_list(entry)) if isinstance(entry, list) else _one(adapter, entry)
+        items = (
+            adapter.validate_python(one_or_list(entry))
+            if isinstance(entry, list)
+            else _one(adapter, entry)
+        )
         if isinstance(entry, list) and len(items) < least:
             raise PydanticCustomError("expected", "{text}", {"text": f"a list of at least {least}"})
         texts: dict[str, None] = {}
@@ -326,7 +407,9 @@ def _one(adapter: TypeAdapter, entry: Any) -> list:
     try:
         return adapter.validate_python([entry])
     except ValidationError:
-        raise PydanticCustomError("expected", "{text}", {"text": "a value or a list of values"}) from None
+        raise PydanticCustomError(
+            "expected", "{text}", {"text": "a value or a list of values"}
+        ) from None
 
 
 Values = Annotated[list[Scalar], _distinct(Scalar, single=True)]
@@ -343,7 +426,10 @@ def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
             raise wrong(f"{key}: missing key; one of {', '.join(sorted(models))}")
         kind = entry[key]
         if not isinstance(kind, str) or kind not in models:
-            raise wrong(f"{key}: {kind if isinstance(kind, str) else shown(kind)}: unknown{closest(kind, models)}")
+            raise wrong(
+                f"{key}: {kind if isinstance(kind, str) else shown(kind)}: "
+                f"unknown{closest(kind, models)}"
+            )
         return models[kind].model_validate(entry)
 
     return PlainValidator(check)
@@ -352,7 +438,9 @@ def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
 def mapping_or(mapping: Any, other: Any) -> PlainValidator:
     """A type of value that is either a mapping of one type, or of another type."""
     as_mapping, as_other = TypeAdapter(mapping), TypeAdapter(other)
-    return PlainValidator(lambda entry: (as_mapping if isinstance(entry, dict) else as_other).validate_python(entry))
+    return PlainValidator(
+        lambda entry: (as_mapping if isinstance(entry, dict) else as_other).validate_python(entry)
+    )
 
 
 def after(check: Callable[[Any], Any]) -> AfterValidator:
@@ -364,8 +452,8 @@ def after(check: Callable[[Any], Any]) -> AfterValidator:
 
 
 class Names(NamedTuple):
-    """Marks a field whose text names something: a metric, a column, a method, ...; `named` finds these names, and `checks` looks them
-    up.
+    """Marks a field whose text names something: a metric, a column, a method, ...; `named` finds
+    these names, and `checks` looks them up.
     """
 
     what: str
@@ -386,31 +474,46 @@ Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]
 Where = Annotated[dict[Column, Values], Names("where")]
 Arguments = dict[Name, Any]
-"""Keyword-only arguments of a function of a study's module, which `checks` compares with their annotations."""
-ARGUMENTS = "the function's keyword-only arguments, by name: values that the paper gives, or that were chosen"
+"""Keyword-only arguments of a function of a study's module, which `checks` compares with their
+annotations.
+"""
+ARGUMENTS = (
+    "the function's keyword-only arguments, by name: values that the paper gives, or that "
+    "were chosen"
+)
 
 
 def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    """Every name in a model that is defined elsewhere: the keys that lead to it, what it names, and the name."""
+    """Every name in a model that is defined elsewhere: the keys that lead to it, what it names, and
+    the name.
+    """
     for key, field in type(model).model_fields.items():
         if key in model.model_fields_set:
             yield from _named(getattr(model, key), field.metadata, field.annotation, (*path, key))
 
 
 def unwrapped(metadata: Iterable[Any], annotation: Any) -> tuple[list[Any], Any]:
-    """What stands beside a type, and the type itself, whether a key may be left out (`type | None`) or not."""
+    """What stands beside a type, and the type itself, whether a key may be left out (`type | None`)
+    or not.
+    """
     metadata = list(metadata)
     while True:
         parts = typing.get_args(annotation)
         if typing.get_origin(annotation) is Annotated:
             metadata, annotation = [*metadata, *annotation.__metadata__], annotation.__origin__
-        elif typing.get_origin(annotation) in (typing.Union, types.UnionType) and len(parts) == 2 and parts[1] is type(None):
+        elif (
+            typing.get_origin(annotation) in (typing.Union, types.UnionType)
+            and len(parts) == 2
+            and parts[1] is type(None)
+        ):
             annotation = parts[0]
         else:
             return metadata, annotation
 
 
-def _named(content: Any, metadata: Any, annotation: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str, Any]]:
+def _named(
+    content: Any, metadata: Any, annotation: Any, path: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], str, Any]]:
     if isinstance(content, Model):
         yield from named(content, path)
         return

@@ -5,13 +5,19 @@ LONGEST = 500
 
 
 def plain(text: str, most: int | None = None) -> str:
-    """A text with its control characters escaped, line breaks too, and cut after `most` characters, which is told."""
-    cut = text if most is None or len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
+    """A text with its control characters escaped, line breaks too, and cut after `most` characters,
+    which is told.
+    """
+    cut = (
+        text if most is None or len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
+    )
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)
 
 
 def told(error: BaseException, most: int = LONGEST) -> str:
-    """An exception as one line: its class and its text, which code of unknown origin may have written."""
+    """An exception as one line: its class and its text, which code of unknown origin may have
+    written.
+    """
     try:
         text = str(error)
     except BaseException as fault:  # of a class of unknown origin

@@ -12,7 +12,9 @@ from bezierplan.study.definition import Study
 
 
 def alternatives(study: Study) -> dict[str, tuple[str, Any]]:
-    """Every alternative of an assumption that governs a setting: its name, such as `O2_8`, -> the assumption's id and the value."""
+    """Every alternative of an assumption that governs a setting: its name, such as `O2_8`, -> the
+    assumption's id and the value.
+    """
     return {
         f"{assumption.id}_{value}": (assumption.id, value)
         for assumption in study.assumptions
@@ -23,7 +25,11 @@ def alternatives(study: Study) -> dict[str, tuple[str, Any]]:
 
 def tried(study: Study) -> list[str]:
     """Names of the alternatives that are tried on claims."""
-    return [name for name, (identity, _) in alternatives(study).items() if assumption_of(study, identity).claims]
+    return [
+        name
+        for name, (identity, _) in alternatives(study).items()
+        if assumption_of(study, identity).claims
+    ]
 
 
 def assumption_of(study: Study, identity: str) -> Assumption:
@@ -32,8 +38,14 @@ def assumption_of(study: Study, identity: str) -> Assumption:
 
 
 def concerned(study: Study, assumption: Assumption) -> list[str]:
-    """Methods whose setting an assumption governs, except baselines and variants; only those that its default names, if any."""
-    methods = [name for name, method in study.methods.items() if name not in study.baselines and not method.variant_of]
+    """Methods whose setting an assumption governs, except baselines and variants; only those that
+    its default names, if any.
+    """
+    methods = [
+        name
+        for name, method in study.methods.items()
+        if name not in study.baselines and not method.variant_of
+    ]
     if isinstance(assumption.default, dict):
         methods = [method for method in methods if method in assumption.default]
     return [method for method in methods if assumption.setting in study.resolved(method)]
@@ -50,7 +62,11 @@ def with_alternative(study: Study, name: str) -> Study:
     assumption = assumption_of(study, identity)
     methods = dict(study.methods)
     for method in methods_changed(study, name):
-        changed = methods[method].settings | {assumption.setting: value} | assumption.along.get(method, {})
+        changed = (
+            methods[method].settings
+            | {assumption.setting: value}
+            | assumption.along.get(method, {})
+        )
         methods[method] = methods[method].but(settings=changed)
     return dataclasses.replace(study, methods=methods)
 
@@ -72,14 +88,27 @@ def alternatives_described(study: Study) -> dict[str, dict]:
     for name in tried(study):
         identity, value = alternatives(study)[name]
         assumption = assumption_of(study, identity)
-        parts = {"detail": assumption.detail, "setting": assumption.setting, "default": assumption.default}
-        described[name] = {"study": study.key, "assumption": identity, **parts, "alternative": value}
+        parts = {
+            "detail": assumption.detail,
+            "setting": assumption.setting,
+            "default": assumption.default,
+        }
+        described[name] = {
+            "study": study.key,
+            "assumption": identity,
+            **parts,
+            "alternative": value,
+        }
     return described
 
 
 def methods_of_claims(study: Study, claims: list[Claim], experiment: str) -> list[str]:
-    """Methods of an experiment, without variants, that claims compare; all of them if a check names none."""
-    methods = [name for name in study.experiments[experiment].methods if not study.methods[name].variant_of]
+    """Methods of an experiment, without variants, that claims compare; all of them if a check names
+    none.
+    """
+    methods = [
+        name for name in study.experiments[experiment].methods if not study.methods[name].variant_of
+    ]
     named = set()
     for claim in claims:
         for check in claim.checks:
@@ -95,12 +124,18 @@ def _compared(study: Study, claim: Claim, check: Check) -> set[str]:
         methods.update(check.groups_named)
     if "rest" in methods:
         tables = [study.compared()[name] for name in claim.artefacts if name in study.compared()]
-        methods.update(*(one_or_list(table.where.get("method", list(study.methods))) for table in tables))
+        methods.update(
+            *(one_or_list(table.where.get("method", list(study.methods))) for table in tables)
+        )
     return methods
 
 
 def experiments_of_claims(claims: list[Claim]) -> list[str]:
-    """Names of the experiments whose runs decide claims, each once, in order; variants may name more."""
+    """Names of the experiments whose runs decide claims, each once, in order; variants may name
+    more.
+    """
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
-    named += itertools.chain.from_iterable(one_or_list(value) for claim in claims for value in claim.variants.get("experiment", []))
+    named += itertools.chain.from_iterable(
+        one_or_list(value) for claim in claims for value in claim.variants.get("experiment", [])
+    )
     return list(dict.fromkeys(named))

@@ -4,7 +4,14 @@ import re
 from collections.abc import Iterable
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError, model_validator
+from pydantic import (
+    ConfigDict,
+    Field,
+    PlainValidator,
+    TypeAdapter,
+    ValidationError,
+    model_validator,
+)
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
@@ -40,7 +47,9 @@ from bezierplan.schema.model import (
 from bezierplan.study.experiments import Settings
 
 PublishedFile = Annotated[
-    str, matching(r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"), Names("published")
+    str,
+    matching(r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"),
+    Names("published"),
 ]
 # A column of the runs table, `value` or `statistic`.
 Columns = listed(Annotated[Name, Names("level")], least=0)
@@ -57,23 +66,33 @@ class Table(Model):
 class TableValue(Model):
     """An entry of a table's `values`."""
 
-    metric: Metric = Field(description="the name of a metric (`src/bezierplan/analysis/metrics.py`)")
+    metric: Metric = Field(
+        description="the name of a metric (`src/bezierplan/analysis/metrics.py`)"
+    )
     statistic: listed(Statistic, single=True) = Field(
-        description="the name of a statistic (`src/bezierplan/analysis/statistics.py`) or a list of names; `unstated` where the "
+        description="the name of a statistic (`src/bezierplan/analysis/statistics.py`) or a list "
+        "of names; `unstated` where the "
         "paper does not say, "
         "and ours is then the median"
     )
-    where: Where = Field({}, description="column of the runs table → value or list of values: the runs that count")
+    where: Where = Field(
+        {}, description="column of the runs table → value or list of values: the runs that count"
+    )
     least: Quantity = Field(
-        None, description="a column of numbers of the runs table that no value of these runs can lie below, if the metric has no such bound"
+        None,
+        description="a column of numbers of the runs table that no value of these runs can lie "
+        "below, if the metric has no such bound",
     )
     defined: Flag = Field(
         True,
-        description="whether the paper says what it counts here; if not, its numbers are shown beside ours, but are all inconclusive, and "
+        description="whether the paper says what it counts here; if not, its numbers are shown "
+        "beside ours, but are all inconclusive, and "
         "`snakemake interpretations` leaves them out; left out: true",
     )
     label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")
-    decimals: Decimals = Field(description="how many decimals are printed, a whole number from 0 to 15")
+    decimals: Decimals = Field(
+        description="how many decimals are printed, a whole number from 0 to 15"
+    )
 
     @property
     def statistics(self) -> list[str]:
@@ -89,18 +108,30 @@ class Monotone(Model):
 
     metric: Metric = Field(description="the name of a metric")
     statistic: Statistic = Field(description="the name of a statistic")
-    along: Column = Field(description="a column of the published file, along which the numbers must rise or fall")
+    along: Column = Field(
+        description="a column of the published file, along which the numbers must rise or fall"
+    )
     direction: Literal["up", "down"] = Field(description="up or down; equal numbers are accepted")
     because: Line = Field(description="why they must, in words")
 
 
 class Identify(Model):
-    """An entry of a table's `identify`: an enumeration of paths whose lengths the published numbers may be."""
+    """An entry of a table's `identify`: an enumeration of paths whose lengths the published numbers
+    may be.
+    """
 
     metric: Metric = Field(description="the metric of the published numbers that are tried")
-    where: Where = Field({}, description="column of the published file → value or list of values: those that are tried")
-    edges: Count = Field(description="most edges of a polyline through cell centres, a whole number of at least 1")
-    counts: Flag = Field(True, description="whether a number that is such a length counts as identified; left out: true")
+    where: Where = Field(
+        {},
+        description="column of the published file → value or list of values: those that are tried",
+    )
+    edges: Count = Field(
+        description="most edges of a polyline through cell centres, a whole number of at least 1"
+    )
+    counts: Flag = Field(
+        True,
+        description="whether a number that is such a length counts as identified; left out: true",
+    )
     because: Line = Field(description="why the numbers may be such lengths, in words")
 
 
@@ -109,40 +140,55 @@ class Pivot(Table):
 
     kind: Literal["pivot"] = Field(description="pivot")
     experiment: Experiment = Field(description="the name of an experiment")
-    where: Where = Field({}, description="column of the runs table → value or list of values, which also gives the order")
-    index: Columns = Field(description="a list of columns of the runs table, `value` or `statistic`: what the rows are")
+    where: Where = Field(
+        {},
+        description="column of the runs table → value or list of values, which also gives the order",
+    )
+    index: Columns = Field(
+        description="a list of columns of the runs table, `value` or `statistic`: what the rows are"
+    )
     columns: Columns = Field([], description="likewise: what the columns are")
     values: Annotated[list[TableValue], at_most(MOST_VALUES)] = Field(
-        description="a list of {metric, statistic, label, decimals}, and perhaps `where`", min_length=1
+        description="a list of {metric, statistic, label, decimals}, and perhaps `where`",
+        min_length=1,
     )
     published: PublishedFile = Field(
-        None, description="a file in the study's folder `published` to compare with: letters, digits, _ and -, then .csv"
+        None,
+        description="a file in the study's folder `published` to compare with: letters, digits, _ "
+        "and -, then .csv",
     )
     reads: dict[Name, Metric] = Field(
         {},
-        description="metric in the published file → the metric that the number is compared with, where the paper leaves open which it is",
+        description="metric in the published file → the metric that the number is compared with, "
+        "where the paper leaves open which it is",
     )
     within: Column = Field(
         None,
-        description="the column of which all runs behind a published number share one value, such as layout: predictions are then for "
+        description="the column of which all runs behind a published number share one value, such "
+        "as layout: predictions are then for "
         "experiments within one of ours; left out: none",
     )
     monotone: Annotated[list[Monotone], at_most(MOST_VALUES)] = Field(
         [],
-        description="orders that the published numbers must keep, which the audit checks: {metric, statistic, along, direction, because}",
+        description="orders that the published numbers must keep, which the audit checks: "
+        "{metric, statistic, along, direction, because}",
     )
     fitted: Flag = Field(
         False,
-        description="true if the workspaces were reconstructed so that the published lengths are possible: the audit does not compare them "
+        description="true if the workspaces were reconstructed so that the published lengths are "
+        "possible: the audit does not compare them "
         "with its bounds; left out: false",
     )
     identify: list[Identify] = Field(
         [],
-        description="published lengths on grids that may be, to the last digit, those of free polylines through cell centres from start to "
+        description="published lengths on grids that may be, to the last digit, those of free "
+        "polylines through cell centres from start to "
         "target, which the audit enumerates: {metric, where, edges, because}, and perhaps `counts`",
     )
     primary: Where = Field(
-        {}, description="column → the value whose rows count as the paper's interpretation in the summary; left out: all rows"
+        {},
+        description="column → the value whose rows count as the paper's interpretation in the "
+        "summary; left out: all rows",
     )
 
     @model_validator(mode="after")
@@ -155,9 +201,14 @@ class Pivot(Table):
         labels = [entry.label for entry in self.values]
         for number, label in enumerate(labels):
             if label in labels[:number]:
-                raise wrong(f"values: {number}: label: {label}: another entry has this label; expected one that tells them apart")
+                raise wrong(
+                    f"values: {number}: label: {label}: another entry has this label; expected "
+                    f"one that tells them apart"
+                )
         if self.reads and self.published is None:
-            raise wrong("reads: the table has no published numbers, whose metrics it names; leave it out")
+            raise wrong(
+                "reads: the table has no published numbers, whose metrics it names; leave it out"
+            )
         return self
 
 
@@ -165,7 +216,9 @@ class Transcribed(Table):
     """A published file, unchanged."""
 
     kind: Literal["transcribed"] = Field(description="transcribed")
-    published: PublishedFile = Field(description="a file in the study's folder `published`: letters, digits, _ and -, then .csv")
+    published: PublishedFile = Field(
+        description="a file in the study's folder `published`: letters, digits, _ and -, then .csv"
+    )
 
 
 class FunctionTable(Table):
@@ -173,21 +226,28 @@ class FunctionTable(Table):
 
     kind: Literal["function"] = Field(description="function")
     function: Function = Field(
-        description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`, called with all published tables by file name"
+        description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`, "
+        "called with all published tables by file name"
     )
     arguments: Arguments = Field({}, description=ARGUMENTS)
 
 
 class Comparison(Table):
-    """The published numbers of other tables next to ours, with prediction intervals for experiments of the paper's size."""
+    """The published numbers of other tables next to ours, with prediction intervals for experiments
+    of the paper's size.
+    """
 
     kind: Literal["comparison"] = Field(description="comparison")
-    of: listed(Annotated[Name, Names("compared")]) = Field(description="a list of tables with published numbers")
+    of: listed(Annotated[Name, Names("compared")]) = Field(
+        description="a list of tables with published numbers"
+    )
     metrics: listed(Metric) = Field(description="a list of metrics")
     where: Where = Field({}, description="column of the comparison → value or list of values")
 
 
-TABLES = {model.model_fields["kind"].annotation.__args__[0]: model for model in Table.__subclasses__()}
+TABLES = {
+    model.model_fields["kind"].annotation.__args__[0]: model for model in Table.__subclasses__()
+}
 """Kind -> its model."""
 
 
@@ -201,7 +261,9 @@ _PANEL = TypeAdapter(Annotated[Panel, one_of("kind", kinds())])
 
 
 def _expanded(entry: Any) -> dict[str, Panel]:
-    """The panels that an entry in a list of panels stands for, by the keys in it that lead to them."""
+    """The panels that an entry in a list of panels stands for, by the keys in it that lead to
+    them.
+    """
     if not isinstance(entry, dict) or "each" not in entry:
         return {"": _PANEL.validate_python(entry)}
     panels = {}
@@ -209,11 +271,15 @@ def _expanded(entry: Any) -> dict[str, Panel]:
         location = f"each: {number}"
         try:
             joined = _joined(part, entry, location)
-            panels[location] = _PANEL.validate_python({key: value for key, value in joined.items() if key != "each"})
+            panels[location] = _PANEL.validate_python(
+                {key: value for key, value in joined.items() if key != "each"}
+            )
         except ValidationError as error:
             path = first_fault(error)
             key = path[0].split(":")[0]
-            raise wrong(": ".join(path if key in entry and key not in part else [location, *path])) from None
+            raise wrong(
+                ": ".join(path if key in entry and key not in part else [location, *path])
+            ) from None
     return panels
 
 
@@ -222,12 +288,17 @@ def _joined(part: dict[str, Any], shared: dict[str, Any], location: str) -> dict
     joined = part | shared
     for key in part.keys() & shared.keys():
         if not (isinstance(part[key], dict) and isinstance(shared[key], dict)):
-            raise wrong(f"{location}: {key}: is given beside each as well; expected it in one of the two places")
+            raise wrong(
+                f"{location}: {key}: is given beside each as well; expected it in one of the two "
+                f"places"
+            )
         joined[key] = _joined(part[key], shared[key], f"{location}: {key}")
     return joined
 
 
-_ENTRIES = TypeAdapter(Annotated[list[Annotated[Any, PlainValidator(_expanded)]], Field(min_length=1)])
+_ENTRIES = TypeAdapter(
+    Annotated[list[Annotated[Any, PlainValidator(_expanded)]], Field(min_length=1)]
+)
 _LIST = TypeAdapter(Annotated[list[Any], at_most(MOST_PANELS)], config=ConfigDict(strict=True))
 
 
@@ -261,31 +332,46 @@ def _look(given: Any) -> str:
 class ArtefactsFile(Model):
     """The file."""
 
-    labels: dict[Line, Label] = Field({}, description="name → how it is printed, at most 80 characters, 30 a word")
+    labels: dict[Line, Label] = Field(
+        {}, description="name → how it is printed, at most 80 characters, 30 a word"
+    )
     looks: dict[Name, Annotated[str, PlainValidator(_look)]] = Field(
         {},
-        description="name of a method → how it looks in every figure: " + ", ".join(style.LOOKS) + "; left out: as its planner does in all "
+        description="name of a method → how it looks in every figure: "
+        + ", ".join(style.LOOKS)
+        + "; left out: as its planner does in all "
         "studies, or unlike most other methods",
     )
-    tables: dict[Name, Annotated[Table, one_of("kind", TABLES)]] = Field({}, description="name → a table")
+    tables: dict[Name, Annotated[Table, one_of("kind", TABLES)]] = Field(
+        {}, description="name → a table"
+    )
     figures: dict[Name, Figure] = Field({}, description="name → title, columns and panels")
 
 
 class ConfigFile(Model):
     """The file `config/config.yaml`, or what `--config` gives."""
 
-    studies: listed(Line) = Field(description="a list of studies, each the name of a folder in `config/studies` or a path")
+    studies: listed(Line) = Field(
+        description="a list of studies, each the name of a folder in `config/studies` or a path"
+    )
     settings: dict[Name, dict[Name, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
-        {}, description="study → settings that take the place of those of the same name in its `experiments.yaml`"
+        {},
+        description="study → settings that take the place of those of the same name in its "
+        "`experiments.yaml`",
     )
 
 
 def in_printed_order(names: Iterable[str]) -> list[str]:
-    """Names of tables and figures with the numbered ones first, tables before figures, each by its number; the others as they were.
+    """Names of tables and figures with the numbered ones first, tables before figures, each by its
+    number; the others as they were.
 
     >>> in_printed_order(["work", "figure11", "figure2", "table6", "table4"])
     ['table4', 'table6', 'figure2', 'figure11', 'work']
     """
-    numbered = {name: found for name in names if (found := re.fullmatch(r"(table|figure)(\d+)", name))}
-    first = sorted(numbered, key=lambda name: (numbered[name][1] != "table", int(numbered[name][2])))
+    numbered = {
+        name: found for name in names if (found := re.fullmatch(r"(table|figure)(\d+)", name))
+    }
+    first = sorted(
+        numbered, key=lambda name: (numbered[name][1] != "table", int(numbered[name][2]))
+    )
     return [*first, *(name for name in names if name not in numbered)]

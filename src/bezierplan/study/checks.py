@@ -1,5 +1,5 @@
-"""Checks across the files of a study: names defined in other files, planners and their settings, free places, matching published
-numbers. Every fault is reported in one line.
+"""Checks across the files of a study: names defined in other files, planners and their settings,
+free places, matching published numbers. Every fault is reported in one line.
 """
 
 import importlib
@@ -35,8 +35,17 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
 
-RESERVED = {*columns.RUN_COLUMNS, *columns.DRIVE_RESULTS, *columns.JOINED, *columns.DRIVE_JOINED, *columns.WORDS, *PLACE} - {"generations"}
-"""Names that no setting can have. The column `generations` holds the number actually performed, so a setting of that name adds nothing."""
+RESERVED = {
+    *columns.RUN_COLUMNS,
+    *columns.DRIVE_RESULTS,
+    *columns.JOINED,
+    *columns.DRIVE_JOINED,
+    *columns.WORDS,
+    *PLACE,
+} - {"generations"}
+"""Names that no setting can have. The column `generations` holds the number actually performed, so
+a setting of that name adds nothing.
+"""
 LONGEST_REFERENCE = 1000
 """Times the perimeter of a workspace: no best known path is longer."""
 
@@ -81,7 +90,8 @@ def _check_labels(study: Study, location: str) -> None:
                 if owner != name:
                     labelled = name if name in study.labels else owner
                     raise Fault(
-                        f"{location}: {labelled}: {printed}: {owner} and {name} of experiment {experiment} would both be printed so"
+                        f"{location}: {labelled}: {printed}: {owner} and {name} of experiment "
+                        f"{experiment} would both be printed so"
                     )
 
 
@@ -102,7 +112,9 @@ def _known(name: Any, known: Iterable[Any], location: str) -> None:
 def _functions(study: Study) -> dict[str, Callable]:
     """The public functions of a study's module, by name."""
     names = vars(importlib.import_module(study.module())) if study.module() else {}
-    return {name: value for name, value in names.items() if callable(value) and not name.startswith("_")}
+    return {
+        name: value for name, value in names.items() if callable(value) and not name.startswith("_")
+    }
 
 
 # experiments.yaml
@@ -114,20 +126,32 @@ def _check_experiments(study: Study, location: str) -> None:
         loaded(study, name, where)
         for setting in study.accepted(name):
             if setting in RESERVED:
-                raise Fault(f"{where}: planner: {method.planner}: its setting {setting} is a column of results; give it another name")
+                raise Fault(
+                    f"{where}: planner: {method.planner}: its setting {setting} is a column of "
+                    f"results; give it another name"
+                )
         if method.variant_of:
             _known(method.variant_of, study.methods.keys() - {name}, f"{where}: variant_of")
         for setting in method.settings:
             _known(setting, study.accepted(name), f"{where}: settings")
         if method.policy:
             _known(method.policy, study.policies, f"{where}: policy")
-            if study.policies[method.policy].warm and not hasattr(planner_module(study.planner(name)), "resume"):
-                raise Fault(f"{where}: policy: {method.policy}: warm, but planner {method.planner} has no function resume")
+            if study.policies[method.policy].warm and not hasattr(
+                planner_module(study.planner(name)), "resume"
+            ):
+                raise Fault(
+                    f"{where}: policy: {method.policy}: warm, but planner {method.planner} has no "
+                    f"function resume"
+                )
     used = {setting for name in study.methods for setting in study.accepted(name)}
     _check_shared_settings(study, used, location)
     check_complete(study, location)
     for name in study.methods:
-        check_settings(planner_module(study.planner(name)), study.resolved(name), f"{location}: methods: {name}: settings")
+        check_settings(
+            planner_module(study.planner(name)),
+            study.resolved(name),
+            f"{location}: methods: {name}: settings",
+        )
     built = cache(partial(_built, study))
     for name in study.workspaces:
         _check_workspace(study, name, f"{location}: workspaces: {name}")
@@ -146,17 +170,25 @@ def _check_shared_settings(study: Study, used: set[str], location: str) -> None:
     """Settings of all methods, of a planner's methods, and of presets exist in some planner."""
     for setting in study.settings:
         if setting not in used:
-            raise Fault(f"{location}: settings: {setting}: no planner of this study has this setting{closest(setting, used)}")
+            raise Fault(
+                f"{location}: settings: {setting}: no planner of this study has this "
+                f"setting{closest(setting, used)}"
+            )
     planners = {method.planner: name for name, method in study.methods.items()}
     for planner, settings in study.planner_settings.items():
         if planner not in planners:
-            raise Fault(f"{location}: settings: {planner}: no method of this study has this planner{closest(planner, planners)}")
+            raise Fault(
+                f"{location}: settings: {planner}: no method of this study has this "
+                f"planner{closest(planner, planners)}"
+            )
         for setting in settings:
             _known(setting, study.accepted(planners[planner]), f"{location}: settings: {planner}")
     for preset, values in study.presets.items():
         if preset in used or preset in RESERVED:
             taken = "a planner's setting" if preset in used else "a column of results"
-            raise Fault(f"{location}: presets: {preset}: {taken} has this name; give it another one")
+            raise Fault(
+                f"{location}: presets: {preset}: {taken} has this name; give it another one"
+            )
         for value, settings in values.items():
             for setting in settings:
                 _known(setting, used, f"{location}: presets: {preset}: {value}")
@@ -179,31 +211,48 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
     problem, home = study.problems[name], study.workspace_of(name)
     if home.kind == "spheres":
         raise Fault(
-            f"{location}: workspace: {problem.workspace}: has three dimensions; a panel of kind spheres plans there, and no experiment"
+            f"{location}: workspace: {problem.workspace}: has three dimensions; a panel of kind "
+            f"spheres plans there, and no experiment"
         )
     drawn = [kind for kind, model in kinds().items() if model.drawn]
     if bool(home.drawn) != (problem.layouts is not None):
         needed = (
-            "layouts and obstacles are needed" if home.drawn else f"layouts and obstacles need a workspace of kind {' or '.join(drawn)}"
+            "layouts and obstacles are needed"
+            if home.drawn
+            else f"layouts and obstacles need a workspace of kind {' or '.join(drawn)}"
         )
         raise Fault(f"{location}: workspace: {problem.workspace}: {needed}")
     if home.drawn and problem.start is None:
-        raise Fault(f"{location}: start_cell: {problem.start_cell}: cells of drawn workspaces have no numbers; expected start: [x, y]")
+        raise Fault(
+            f"{location}: start_cell: {problem.start_cell}: cells of drawn workspaces have no "
+            f"numbers; expected start: [x, y]"
+        )
     if home.with_side != (problem.side is not None):
         with_side = [kind for kind, model in kinds().items() if model.with_side]
-        needed = "side is needed" if home.with_side else f"side needs a workspace of kind {' or '.join(with_side)}"
+        needed = (
+            "side is needed"
+            if home.with_side
+            else f"side needs a workspace of kind {' or '.join(with_side)}"
+        )
         raise Fault(f"{location}: workspace: {problem.workspace}: {needed}")
     if home.drawn and hasattr(home, "circles") and max(problem.obstacles) > home.circles:
-        raise Fault(f"{location}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, the circles of the workspace")
+        raise Fault(
+            f"{location}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, "
+            f"the circles of the workspace"
+        )
     try:
         seen = built(name)
     except ValueError as error:
         raise Fault(f"{location}: {error}") from None
     if problem.reference is not None:
-        # The exact bound takes too long for a start; the job that computes it tells a reference below it.
+        # The exact bound takes too long for a start; the job that computes it tells a reference
+        # below it.
         least, most = math.dist(seen.start, seen.target), LONGEST_REFERENCE * _perimeter(seen)
         if not (1 - measures.ROUNDED) * least <= problem.reference <= most:
-            limits = f"a length from {least:.6g}, the straight line, to {most:.6g}, {LONGEST_REFERENCE} times round the workspace"
+            limits = (
+                f"a length from {least:.6g}, the straight line, to {most:.6g}, "
+                f"{LONGEST_REFERENCE} times round the workspace"
+            )
             raise Fault(f"{location}: reference: {problem.reference}: expected {limits}")
 
 
@@ -213,15 +262,26 @@ def _perimeter(problem: Problem) -> float:
 
 
 def _built(study: Study, name: str) -> Problem:
-    """A problem as planners see it, in the first layout if the workspace is random. Raises ValueError."""
+    """A problem as planners see it, in the first layout if the workspace is random. Raises
+    ValueError.
+    """
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
     described = {name: problem.plain("settings", "layouts") | drawn}
     build_all = worlds.build_all if home.moves else problems.build_all
-    return build_all({"study": study.key, "problems": described, "workspaces": {problem.workspace: home.plain()}}, study.folder)[0][name]
+    return build_all(
+        {
+            "study": study.key,
+            "problems": described,
+            "workspaces": {problem.workspace: home.plain()},
+        },
+        study.folder,
+    )[0][name]
 
 
-def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, location: str) -> None:
+def _check_experiment(
+    study: Study, built: Callable[[str], Problem], name: str, location: str
+) -> None:
     experiment = study.experiments[name]
     for problem in experiment.problems:
         _known(problem, study.problems, f"{location}: problems")
@@ -231,10 +291,17 @@ def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, 
         _known(method, study.methods.keys() - study.baselines, f"{location}: methods")
     still = [problem for problem in experiment.problems if not study.workspace_of(problem).moves]
     if study.moves(name) and still:
-        raise Fault(f"{location}: problems: {still[0]}: its workspace does not move; expected problems that all move, or none")
+        raise Fault(
+            f"{location}: problems: {still[0]}: its workspace does not move; expected problems "
+            f"that all move, or none"
+        )
     for method in experiment.methods:
         if study.moves(name) != bool(study.methods[method].policy):
-            wrong = "has no policy, which a world that moves needs" if study.moves(name) else "has a policy, but nothing moves here"
+            wrong = (
+                "has no policy, which a world that moves needs"
+                if study.moves(name)
+                else "has a policy, but nothing moves here"
+            )
             raise Fault(f"{location}: methods: {method}: {wrong}")
     accepted = {setting for method in experiment.methods for setting in study.accepted(method)}
     for setting, values in experiment.vary.items():
@@ -252,32 +319,55 @@ def _check_worth(study: Study, location: str) -> None:
     for experiment in study.worth.experiments:
         _known(experiment, study.experiments, f"{location}: experiments")
         if baseline not in study.methods_of(experiment):
-            raise Fault(f"{location}: experiments: {experiment}: the baseline {baseline} does not join it; leave it out")
+            raise Fault(
+                f"{location}: experiments: {experiment}: the baseline {baseline} does not join "
+                f"it; leave it out"
+            )
 
 
-def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, method: str, location: str) -> None:
-    """A method's planner supports the problems of an experiment, and its settings are valid under every condition."""
+def _check_method_in(
+    study: Study, built: Callable[[str], Problem], name: str, method: str, location: str
+) -> None:
+    """A method's planner supports the problems of an experiment, and its settings are valid under
+    every condition.
+    """
     module, experiment = planner_module(study.planner(method)), study.experiments[name]
     for problem in experiment.problems:
         kind = study.kind_of(problem)
         if kind not in getattr(module, "workspaces", (kind,)):
             served = ", ".join(module.workspaces)
-            raise Fault(f"{location}: methods: {method}: its planner serves workspaces of kind {served}, not {kind} ({problem})")
+            raise Fault(
+                f"{location}: methods: {method}: its planner serves workspaces of kind {served}, "
+                f"not {kind} ({problem})"
+            )
         if hasattr(module, "serves"):
-            interface.asked(module.serves, f"{location}: methods: {method}: problem {problem}", built(problem))
+            interface.asked(
+                module.serves, f"{location}: methods: {method}: problem {problem}", built(problem)
+            )
     described = job(study, name, method, "full", 0)
     # One problem for each distinct set of problem settings.
-    apart = {str(met.get("settings")): problem for problem, met in reversed(described["problems"].items())}
+    apart = {
+        str(met.get("settings")): problem
+        for problem, met in reversed(described["problems"].items())
+    }
     for condition in conditions(list(apart.values()), experiment.vary):
-        where = f"{location}: vary: {condition.name}: {method}" if condition.values else f"{location}: methods: {method}"
+        where = (
+            f"{location}: vary: {condition.name}: {method}"
+            if condition.values
+            else f"{location}: methods: {method}"
+        )
         check_settings(module, settings_in(described, condition), f"{where}: settings")
 
 
 # Names defined elsewhere, in artefacts.yaml and claims.yaml
 
 
-def _check_names(design: Design, functions: dict[str, Callable], model: Model, location: str) -> None:
-    """Names in a model refer to something that exists. The columns of a panel without runs belong to its function."""
+def _check_names(
+    design: Design, functions: dict[str, Callable], model: Model, location: str
+) -> None:
+    """Names in a model refer to something that exists. The columns of a panel without runs belong
+    to its function.
+    """
     study = design.study
     experiments = one_or_list(getattr(model, "experiment", None) or [])
     known: Mapping[str, Iterable[str]] = {
@@ -304,10 +394,14 @@ def _check_names(design: Design, functions: dict[str, Callable], model: Model, l
         elif experiments:
             _check_of_runs(design, experiments, what, name, where, isinstance(model, Check))
         if what == "function" and len(path) == 1:
-            _check_arguments(functions[name], getattr(model, "arguments", {}), f"{location}: arguments")
+            _check_arguments(
+                functions[name], getattr(model, "arguments", {}), f"{location}: arguments"
+            )
 
 
-def _check_of_runs(design: Design, experiments: list[str], what: str, name: Any, location: str, of_claim: bool) -> None:
+def _check_of_runs(
+    design: Design, experiments: list[str], what: str, name: Any, location: str, of_claim: bool
+) -> None:
     """A column, a selection, a repeat or a problem exists in the runs of experiments."""
     match what:
         case "column" | "number column" | "quantity":
@@ -320,13 +414,23 @@ def _check_of_runs(design: Design, experiments: list[str], what: str, name: Any,
         case "repeat":
             design.check_repeat(experiments, name, location)
         case "problem of runs":
-            _known(name, [problem for each in experiments for problem in design.study.problems_of(each, "full")], location)
+            _known(
+                name,
+                [
+                    problem
+                    for each in experiments
+                    for problem in design.study.problems_of(each, "full")
+                ],
+                location,
+            )
 
 
 def _check_arguments(function: Callable, arguments: dict[str, Any], location: str) -> None:
     """A function's keyword-only arguments are given, each as its annotation says."""
     accepted = {
-        name: parameter for name, parameter in inspect.signature(function).parameters.items() if parameter.kind is parameter.KEYWORD_ONLY
+        name: parameter
+        for name, parameter in inspect.signature(function).parameters.items()
+        if parameter.kind is parameter.KEYWORD_ONLY
     }
     for name in arguments:
         _known(name, accepted, location)
@@ -334,25 +438,34 @@ def _check_arguments(function: Callable, arguments: dict[str, Any], location: st
         if name not in arguments:
             raise Fault(f"{location}: {name}: missing; {function.__name__} needs it")
         try:
-            TypeAdapter(parameter.annotation, config=ConfigDict(strict=True)).validate_python(arguments[name])
+            TypeAdapter(parameter.annotation, config=ConfigDict(strict=True)).validate_python(
+                arguments[name]
+            )
         except ValidationError as error:
             raise Fault(": ".join([location, name, *first_fault(error)])) from None
 
 
 def _at(location: str, path: tuple[str, ...]) -> str:
-    """The keys that lead to a name, without its index if it is in a list of names; indices in lists of mappings stay."""
+    """The keys that lead to a name, without its index if it is in a list of names; indices in lists
+    of mappings stay.
+    """
     return ": ".join([location, *(path[:-1] if path[-1].isdecimal() else path)])
 
 
 def _check_shown(design: Design, panel: Panel, location: str) -> None:
-    """A panel's runs are of the kind that it shows, of one problem and one method if it shows one run, and of enough methods."""
+    """A panel's runs are of the kind that it shows, of one problem and one method if it shows one
+    run, and of enough methods.
+    """
     if not getattr(panel, "experiment", None):
         return
     study = design.study
     if getattr(panel, "hue", None) and panel.hue == getattr(panel, "x", None):
         raise Fault(f"{location}: hue: {panel.hue}: is x already; expected another column")
     if panel.drives and not study.moves(panel.experiment):
-        raise Fault(f"{location}: experiment: {panel.experiment}: nothing moves there; expected an experiment of drives")
+        raise Fault(
+            f"{location}: experiment: {panel.experiment}: nothing moves there; expected an "
+            f"experiment of drives"
+        )
     hue = getattr(panel, "hue", None) if panel.one else None
     rows = design.rows(panel.experiment) if hue else []
     for value in design.values([panel.experiment], hue, rows) if hue else [None]:
@@ -364,17 +477,26 @@ def _check_shown(design: Design, panel: Panel, location: str) -> None:
             if len(shown[column]) > 1:
                 some = ", ".join(sorted(shown[column])[:3])
                 raise Fault(
-                    f"{location}: where: selects {len(shown[column])} values of {column} ({some}, ...); expected one, which is shown"
+                    f"{location}: where: selects {len(shown[column])} values of {column} ({some}, "
+                    f"...); expected one, which is shown"
                 )
     methods = design.shown(panel.experiment, panel.where)["method"]
     if len(methods) < panel.fewest_methods:
-        raise Fault(f"{location}: where: method: {', '.join(sorted(methods))}: expected at least {panel.fewest_methods} methods")
+        raise Fault(
+            f"{location}: where: method: {', '.join(sorted(methods))}: expected at least "
+            f"{panel.fewest_methods} methods"
+        )
     for method in sorted(methods) if panel.tracks else []:
         if not hasattr(planner_module(study.planner(method)), "track"):
-            raise Fault(f"{location}: where: method: {method}: its planner {study.methods[method].planner} has no function track")
+            raise Fault(
+                f"{location}: where: method: {method}: its planner "
+                f"{study.methods[method].planner} has no function track"
+            )
 
 
-def _check_table(design: Design, functions: dict[str, Callable], table: Table, location: str) -> None:
+def _check_table(
+    design: Design, functions: dict[str, Callable], table: Table, location: str
+) -> None:
     _check_names(design, functions, table, location)
     if isinstance(table, Comparison):
         _check_comparison(design, table, location)
@@ -383,7 +505,10 @@ def _check_table(design: Design, functions: dict[str, Callable], table: Table, l
     if table.published:
         published.check(design, table, location)
     elif table.monotone:
-        raise Fault(f"{location}: monotone: the table has no published numbers, which it is about; leave it out")
+        raise Fault(
+            f"{location}: monotone: the table has no published numbers, which it is about; leave "
+            f"it out"
+        )
     keys = published.keys(design.study, table)
     for column in table.primary:
         _known(column, keys, f"{location}: primary")
@@ -398,14 +523,20 @@ def _check_comparison(design: Design, table: Comparison, location: str) -> None:
         for key in published.keys(design.study, pivot)
     }
     for metric in table.metrics:
-        _known(metric, {entry.metric for pivot in pivots for entry in pivot.values}, f"{location}: metrics")
+        _known(
+            metric,
+            {entry.metric for pivot in pivots for entry in pivot.values},
+            f"{location}: metrics",
+        )
     for column, wanted in table.where.items():
         _known(column, keys, f"{location}: where")
         for value in one_or_list(wanted):
             design.check_where(keys[column], {column: value}, f"{location}: where")
 
 
-def _check_claim(design: Design, functions: dict[str, Callable], claim: Claim, location: str) -> None:
+def _check_claim(
+    design: Design, functions: dict[str, Callable], claim: Claim, location: str
+) -> None:
     _check_names(design, functions, claim, location)
     _check_variants(design, claim, f"{location}: variants")
     for number, check in enumerate(claim.checks):
@@ -422,12 +553,19 @@ def _check_claim(design: Design, functions: dict[str, Callable], claim: Claim, l
                 raise Fault(f"{where}: group: {group}: unknown{design.hint(group, values)}")
         design.check_mixtures(check, in_first_variant(claim, check), where)
         _check_values_of_x(design, check, in_first_variant(claim, check), where)
-        if isinstance(getattr(check, "margin", None), PublishedMargin) and not _is_printed(design.study, check):
-            raise Fault(f"{where}: margin: published: no table of {', '.join(check.experiments)} has printed numbers of {check.metric}")
+        if isinstance(getattr(check, "margin", None), PublishedMargin) and not _is_printed(
+            design.study, check
+        ):
+            raise Fault(
+                f"{where}: margin: published: no table of {', '.join(check.experiments)} has "
+                f"printed numbers of {check.metric}"
+            )
 
 
 def _check_variants(design: Design, claim: Claim, location: str) -> None:
-    """Every value of a variant exists, and takes the place of something: of a metric or an experiment, or of runs that a check selects."""
+    """Every value of a variant exists, and takes the place of something: of a metric or an
+    experiment, or of runs that a check selects.
+    """
     experiments = list(dict.fromkeys(name for check in claim.checks for name in check.experiments))
     for column, values in claim.variants.items():
         if not experiments:
@@ -441,49 +579,86 @@ def _check_variants(design: Design, claim: Claim, location: str) -> None:
             else:
                 design.check_where(experiments, {column: value}, location, baselines=False)
         if column in ("metric", "experiment"):
-            judged = {name for check in claim.checks for name in one_or_list(getattr(check, column, None) or [])}
+            judged = {
+                name
+                for check in claim.checks
+                for name in one_or_list(getattr(check, column, None) or [])
+            }
             for value in one_or_list(values[0]):
                 if value not in judged:
-                    raise Fault(f"{location}: {column}: {value}: not in a check; expected first what the checks name: {', '.join(judged)}")
+                    raise Fault(
+                        f"{location}: {column}: {value}: not in a check; expected first what the "
+                        f"checks name: {', '.join(judged)}"
+                    )
 
 
 def _check_values_of_x(design: Design, check: Check, where: dict[str, Any], location: str) -> None:
     """A trend has several values to go along."""
     if check.cells_key != "x":
         return
-    rows = [row for row in design.selectable(check.experiments, baselines=False) if fits(row, where)]
+    rows = [
+        row for row in design.selectable(check.experiments, baselines=False) if fits(row, where)
+    ]
     values = design.values(check.experiments, check.x, rows)
     if len(values) < 2:
-        raise Fault(f"{location}: x: {check.x}: has the only value {values[0] if values else 'none'}; a trend needs at least two")
+        raise Fault(
+            f"{location}: x: {check.x}: has the only value {values[0] if values else 'none'}; a "
+            f"trend needs at least two"
+        )
 
 
 def _is_printed(study: Study, check: Check) -> bool:
     """Whether a table of a check's experiments has printed numbers of its metric."""
     metric = check.metric
     for pivot in study.compared().values():
-        given = published.rows_of(study, pivot.published) if pivot.published and pivot.experiment in check.experiments else []
+        given = (
+            published.rows_of(study, pivot.published)
+            if pivot.published and pivot.experiment in check.experiments
+            else []
+        )
         if metric in {pivot.reads.get(row["metric"], row["metric"]) for row in given}:
             return True
     return False
 
 
 def _check_dimensions(study: Study, panel: Panel, location: str) -> None:
-    """Only panels of kind `spheres` show a workspace of that kind, and no other; what they plan there is valid."""
+    """Only panels of kind `spheres` show a workspace of that kind, and no other; what they plan
+    there is valid.
+    """
     workspace = study.workspaces.get(getattr(panel, "workspace", None))
     if workspace and panel.plans != (workspace.kind == "spheres"):
-        fit = "of kind spheres" if panel.plans else "in the plane, since only panels of kind spheres show others"
-        raise Fault(f"{location}: workspace: {panel.workspace}: a workspace of kind {workspace.kind}; expected one {fit}")
-    of_cells = [key for key in ("numbers", "embed") if getattr(panel, key, "none") not in ("none", False)]
+        fit = (
+            "of kind spheres"
+            if panel.plans
+            else "in the plane, since only panels of kind spheres show others"
+        )
+        raise Fault(
+            f"{location}: workspace: {panel.workspace}: a workspace of kind {workspace.kind}; "
+            f"expected one {fit}"
+        )
+    of_cells = [
+        key for key in ("numbers", "embed") if getattr(panel, key, "none") not in ("none", False)
+    ]
     if workspace and of_cells and (workspace.made or workspace.kind) != "grid":
-        raise Fault(f"{location}: {of_cells[0]}: {panel.workspace}: a workspace of kind {workspace.kind}; only grids have cells")
+        raise Fault(
+            f"{location}: {of_cells[0]}: {panel.workspace}: a workspace of kind {workspace.kind}; "
+            f"only grids have cells"
+        )
     if not panel.plans:
         return
     _known(panel.method, study.methods, f"{location}: method")
     if study.methods[panel.method].planner != spheres.PLANNER:
-        raise Fault(f"{location}: method: {panel.method}: its planner cannot plan among spheres; expected a method of {spheres.PLANNER}")
+        raise Fault(
+            f"{location}: method: {panel.method}: its planner cannot plan among spheres; expected "
+            f"a method of {spheres.PLANNER}"
+        )
     for setting in panel.settings:
         _known(setting, study.accepted(panel.method), f"{location}: settings")
-    check_settings(planner_module(spheres.PLANNER), study.resolved(panel.method) | panel.settings, f"{location}: settings")
+    check_settings(
+        planner_module(spheres.PLANNER),
+        study.resolved(panel.method) | panel.settings,
+        f"{location}: settings",
+    )
     try:
         spheres.problem(files.load(workspace.plain(), study.folder), panel.start, panel.target)
     except ValueError as error:
@@ -494,13 +669,18 @@ def _check_dimensions(study: Study, panel: Panel, location: str) -> None:
 
 
 def check_assumption(study: Study, assumption: Assumption, location: str) -> None:
-    """An assumption's claims belong to the study, its default is in force, and every alternative is a valid value of its setting."""
+    """An assumption's claims belong to the study, its default is in force, and every alternative is
+    a valid value of its setting.
+    """
     for identity in assumption.claims:
         _known(identity, [claim.id for claim in study.claims], f"{location}: claims")
         claim = next(each for each in study.claims if each.id == identity)
         drives = [name for each in claim.checks for name in each.experiments if study.moves(name)]
         if drives:
-            raise Fault(f"{location}: claims: {identity}: is about drives ({drives[0]}), which alternatives do not repeat")
+            raise Fault(
+                f"{location}: claims: {identity}: is about drives ({drives[0]}), which "
+                f"alternatives do not repeat"
+            )
     for name in assumption.problems:
         _known(name, study.problems, f"{location}: problems")
     for name, key in assumption.workspace.items():
@@ -513,46 +693,79 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
     methods = concerned(study, assumption)
     if not methods:
         used = {setting for method in study.methods for setting in study.resolved(method)}
-        raise Fault(f"{location}: setting: {assumption.setting}: no method has this setting{closest(assumption.setting, used)}")
+        raise Fault(
+            f"{location}: setting: {assumption.setting}: no method has this "
+            f"setting{closest(assumption.setting, used)}"
+        )
     _check_in_force(study, assumption, methods, location)
     for method, settings in assumption.along.items():
         _known(method, methods, f"{location}: with")
         for setting in settings:
-            _known(setting, study.accepted(method).keys() - {assumption.setting}, f"{location}: with: {method}")
+            _known(
+                setting,
+                study.accepted(method).keys() - {assumption.setting},
+                f"{location}: with: {method}",
+            )
     for name, (identity, value) in alternatives(study).items():
         if identity == assumption.id:
             changed = with_alternative(study, name)
             for method in methods_changed(study, name):
                 module = planner_module(study.planner(method))
-                check_settings(module, changed.resolved(method), f"{location}: alternatives: {value}: {method}: settings")
+                check_settings(
+                    module,
+                    changed.resolved(method),
+                    f"{location}: alternatives: {value}: {method}: settings",
+                )
 
 
 def _check_key(study: Study, assumption: Assumption, name: str, key: str, location: str) -> None:
-    """The key of a workspace that an assumption governs has the default, and can have every alternative."""
+    """The key of a workspace that an assumption governs has the default, and can have every
+    alternative.
+    """
     _known(name, study.workspaces, f"{location}: workspace")
     workspace = study.workspaces[name]
     _known(key, workspace.plain(), f"{location}: workspace: {name}")
     if workspace.plain()[key] != assumption.default:
-        raise Fault(f"{location}: default: {assumption.default}: not in force; the {key} of {name} is {workspace.plain()[key]}")
+        raise Fault(
+            f"{location}: default: {assumption.default}: not in force; the {key} of {name} is "
+            f"{workspace.plain()[key]}"
+        )
     for value in assumption.alternatives:
-        changed = parsed(type(workspace), workspace.plain() | {key: value}, f"{location}: alternatives: {value}: {name}")
+        changed = parsed(
+            type(workspace),
+            workspace.plain() | {key: value},
+            f"{location}: alternatives: {value}: {name}",
+        )
         for file in files_of(changed).values():
             if not (study.folder / file).is_file():
-                raise Fault(f"{location}: alternatives: {file}: no such file in {relative(study.folder)}")
+                raise Fault(
+                    f"{location}: alternatives: {file}: no such file in {relative(study.folder)}"
+                )
 
 
-def _check_in_force(study: Study, assumption: Assumption, methods: list[str], location: str) -> None:
-    """The default is what runs use: those of each method that it names; without names, those of the methods without a value of their own
-    or, if all have one, of at least one of them.
+def _check_in_force(
+    study: Study, assumption: Assumption, methods: list[str], location: str
+) -> None:
+    """The default is what runs use: those of each method that it names; without names, those of the
+    methods without a value of their own or, if all have one, of at least one of them.
     """
     in_force = {method: study.resolved(method)[assumption.setting] for method in methods}
     default = assumption.default
     if isinstance(default, dict):
         for method, value in in_force.items():
             if value != default[method]:
-                raise Fault(f"{location}: default: {method}: {default[method]}: not in force; its {assumption.setting} is {value}")
+                raise Fault(
+                    f"{location}: default: {method}: {default[method]}: not in force; its "
+                    f"{assumption.setting} is {value}"
+                )
         return
-    shared = [value for method, value in in_force.items() if assumption.setting not in study.methods[method].settings]
+    shared = [
+        value
+        for method, value in in_force.items()
+        if assumption.setting not in study.methods[method].settings
+    ]
     if any(value != default for value in shared) or default not in in_force.values():
         values = ", ".join(dict.fromkeys(map(str, shared or in_force.values())))
-        raise Fault(f"{location}: default: {default}: not in force; {assumption.setting} is {values}")
+        raise Fault(
+            f"{location}: default: {default}: not in force; {assumption.setting} is {values}"
+        )

@@ -1,13 +1,15 @@
-"""The grid of interpretations of a paper: every choice that it leaves open and that governs its published numbers.
+"""The grid of interpretations of a paper: every choice that it leaves open and that governs its
+published numbers.
 
-A choice is a mapping of plain values: id; detail; values, the default first (None, as methods may differ in it); and what it governs:
+A choice is a mapping of plain values: id; detail; values, the default first (None, as methods may
+differ in it); and what it governs:
 
-    setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings; with `problems`, on these
-                              problems alone
+    setting, methods, along   a setting of some methods, and further settings that go with it,
+                              method -> settings; with `problems`, on these problems alone
     workspace                 workspace -> its key
     table                     a key of the tables
-    column, overrules         the column of the tables whose value is the paper's world, and value -> ids of the choices of settings that it
-                              makes itself
+    column, overrules         the column of the tables whose value is the paper's world, and value
+                              -> ids of the choices of settings that it makes itself
     metric                    the metric with which a printed word is compared
 """
 
@@ -28,17 +30,25 @@ SCREENED = 4
 """The search judges interpretations by one of so many of the runs by which the best are judged."""
 
 FRESH = 1000
-"""With so many runs of each method on each problem, or on all fields drawn together, and other seeds, the best interpretation is judged
-anew.
+"""With so many runs of each method on each problem, or on all fields drawn together, and other
+seeds, the best interpretation is judged anew.
 """
 
 
 def printed_tables(study: Study) -> dict[str, Pivot]:
-    """The tables of runs that have published numbers, except those of nothing but seconds, which no interpretation explains, or of nothing
-    that the paper defines.
+    """The tables of runs that have published numbers, except those of nothing but seconds, which no
+    interpretation explains, or of nothing that the paper defines.
     """
-    printed = {name: table for name, table in study.compared().items() if table.published and any(entry.defined for entry in table.values)}
-    return {name: table for name, table in printed.items() if {row["unit"] for row in _published(study, name)} != {"s"}}
+    printed = {
+        name: table
+        for name, table in study.compared().items()
+        if table.published and any(entry.defined for entry in table.values)
+    }
+    return {
+        name: table
+        for name, table in printed.items()
+        if {row["unit"] for row in _published(study, name)} != {"s"}
+    }
 
 
 def _published(study: Study, table: str) -> list[dict[str, str]]:
@@ -48,70 +58,134 @@ def _published(study: Study, table: str) -> list[dict[str, str]]:
 
 
 def choices(study: Study) -> list[dict[str, Any]]:
-    """All choices: settings that assumptions govern, and worlds between which the tables leave the choice."""
+    """All choices: settings that assumptions govern, and worlds between which the tables leave the
+    choice.
+    """
     tables = printed_tables(study)
     printed = {method for name, table in tables.items() for method in _methods(study, name, table)}
-    compared = {table.reads.get(row["metric"], row["metric"]) for name, table in tables.items() for row in _published(study, name)}
-    compared -= {entry.metric for table in tables.values() for entry in table.values if not entry.defined}
+    compared = {
+        table.reads.get(row["metric"], row["metric"])
+        for name, table in tables.items()
+        for row in _published(study, name)
+    }
+    compared -= {
+        entry.metric for table in tables.values() for entry in table.values if not entry.defined
+    }
     known = []
     for assumption in study.assumptions:
         governs: dict[str, Any] = {}
-        if isinstance(assumption.default, str) and assumption.default in compared and METRICS.keys() >= set(assumption.alternatives):
+        if (
+            isinstance(assumption.default, str)
+            and assumption.default in compared
+            and METRICS.keys() >= set(assumption.alternatives)
+        ):
             governs["metric"] = assumption.default
-        methods = [method for method in alternatives.concerned(study, assumption) if method in printed] if assumption.setting else []
+        methods = (
+            [method for method in alternatives.concerned(study, assumption) if method in printed]
+            if assumption.setting
+            else []
+        )
         if methods:
-            along = {method: assumption.along[method] for method in methods if method in assumption.along}
+            along = {
+                method: assumption.along[method] for method in methods if method in assumption.along
+            }
             governs |= {"setting": assumption.setting, "methods": methods, "along": along}
             governs |= {"problems": assumption.problems} if assumption.problems else {}
         if assumption.workspace:
             governs["workspace"] = assumption.workspace
         if assumption.table:
             governs["table"] = assumption.table
-        values = [value for value in assumption.alternatives if value not in assumption.not_searched]
+        values = [
+            value for value in assumption.alternatives if value not in assumption.not_searched
+        ]
         if governs and values:
-            known.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *values]} | governs)
+            known.append(
+                {"id": assumption.id, "detail": assumption.detail, "values": [None, *values]}
+                | governs
+            )
     worlds: dict[str, list] = {}
     for table in tables.values():
         for column, value in table.primary.items():
             values = worlds.setdefault(column, [value])
-            values += [other for other in one_or_list(table.where.get(column, [])) if other not in values]
-    governed = {"workspace"} if any(assumption.workspace for assumption in study.assumptions) else set()
+            values += [
+                other for other in one_or_list(table.where.get(column, [])) if other not in values
+            ]
+    governed = (
+        {"workspace"} if any(assumption.workspace for assumption in study.assumptions) else set()
+    )
     # Workspaces of which a key is varied already are not exchanged as well.
-    open_worlds = {column: values for column, values in worlds.items() if column not in governed and len(values) > 1}
+    open_worlds = {
+        column: values
+        for column, values in worlds.items()
+        if column not in governed and len(values) > 1
+    }
     return known + [_world(study, column, values, known) for column, values in open_worlds.items()]
 
 
-def _world(study: Study, column: str, values: list, settings: list[dict[str, Any]]) -> dict[str, Any]:
+def _world(
+    study: Study, column: str, values: list, settings: list[dict[str, Any]]
+) -> dict[str, Any]:
     """The choice between worlds, the default first. settings: the choices of settings."""
-    made = {str(value): study.presets.get(column, {}).get(str(value).lower(), {}) for value in values[1:]}
-    overrules = {value: [choice["id"] for choice in settings if choice.get("setting") in own] for value, own in made.items()}
+    made = {
+        str(value): study.presets.get(column, {}).get(str(value).lower(), {})
+        for value in values[1:]
+    }
+    overrules = {
+        value: [choice["id"] for choice in settings if choice.get("setting") in own]
+        for value, own in made.items()
+    }
     detail = f"Which {column} the tables show"
-    return {"id": column, "detail": detail, "values": [None, *values[1:]], "column": column, "overrules": overrules}
+    return {
+        "id": column,
+        "detail": detail,
+        "values": [None, *values[1:]],
+        "column": column,
+        "overrules": overrules,
+    }
 
 
 def _methods(study: Study, name: str, table: Pivot) -> list[str]:
-    """Methods of a table that are the paper's own: no baselines, no variants, none without a printed number unless all are compared."""
+    """Methods of a table that are the paper's own: no baselines, no variants, none without a
+    printed number unless all are compared.
+    """
     methods = one_or_list(table.where.get("method", study.experiments[table.experiment].methods))
-    own = [method for method in methods if method not in study.baselines and not study.methods[method].variant_of]
+    own = [
+        method
+        for method in methods
+        if method not in study.baselines and not study.methods[method].variant_of
+    ]
     rows = _published(study, name)
-    return [method for method in own if method in {row["method"] for row in rows}] if _apart(table, rows) else own
+    return (
+        [method for method in own if method in {row["method"] for row in rows}]
+        if _apart(table, rows)
+        else own
+    )
 
 
 def _apart(table: Pivot, rows: list[dict[str, str]]) -> bool:
     """Whether each published number is one method's alone, whatever the others do."""
-    compared = any(METRICS[table.reads.get(row["metric"], row["metric"])].among_rows for row in rows)
+    compared = any(
+        METRICS[table.reads.get(row["metric"], row["metric"])].among_rows for row in rows
+    )
     return "method" in rows[0] and not compared
 
 
 def search_job(study: Study) -> dict[str, Any]:
-    """What the search for an interpretation depends on, in addition to the files of maps and published numbers.
+    """What the search for an interpretation depends on, in addition to the files of maps and
+    published numbers.
 
-    screened, confirmed, fresh: `interpretations_job` for the search, for the best that it finds, and for the very best. parts: as
-    `analysis.search.Part`. along: of some tables, the column along which the paper says that its numbers rise or fall.
+    screened, confirmed, fresh: `interpretations_job` for the search, for the best that it finds,
+    and for the very best. parts: as `analysis.search.Part`. along: of some tables, the column along
+    which the paper says that its numbers rise or fall.
     """
     tables = printed_tables(study)
     along = {name: table.monotone[0].along for name, table in tables.items() if table.monotone}
-    found = {"study": study.key, "most": study.interpretations_tried, "parts": _parts(study), "along": along}
+    found = {
+        "study": study.key,
+        "most": study.interpretations_tried,
+        "parts": _parts(study),
+        "along": along,
+    }
     return found | {
         "screened": interpretations_job(study, SCREENED),
         "confirmed": interpretations_job(study, 1),
@@ -122,44 +196,72 @@ def search_job(study: Study) -> dict[str, Any]:
 def interpretations_job(study: Study, share: int = 1, fresh: bool = False) -> dict[str, Any]:
     """What interpretations are judged by: the jobs of their runs, and the problems of these.
 
-    share: a share of 1 / share of the runs that judge an interpretation, though at least as many as are judged at all. Where there is one
-    run in each layout, it is a share of the layouts, of which twice those of scale full judge an interpretation. fresh: `FRESH` runs
-    instead, whose repeats, and layouts where there are more, come after all those.
+    share: a share of 1 / share of the runs that judge an interpretation, though at least as many as
+    are judged at all. Where there is one run in each layout, it is a share of the layouts, of which
+    twice those of scale full judge an interpretation. fresh: `FRESH` runs instead, whose repeats,
+    and layouts where there are more, come after all those.
     """
     tables, worlds = {}, {}
     for name, table in printed_tables(study).items():
         content = study.experiments[table.experiment]
-        drawn = next((study.problems[each].layouts for each in content.problems if study.problems[each].layouts), None)
+        drawn = next(
+            (
+                study.problems[each].layouts
+                for each in content.problems
+                if study.problems[each].layouts
+            ),
+            None,
+        )
         by_layout = drawn is not None and content.interpretations is None
         repeats = content.interpretations or content.repeats["full"]
         scale = "extended" if by_layout else "full"
         layouts = _layouts(drawn, share, fresh) if by_layout else None
         methods = _methods(study, name, table)
-        chunk_jobs = {method: jobs.job(study, table.experiment, method, scale, 0) for method in methods}
+        chunk_jobs = {
+            method: jobs.job(study, table.experiment, method, scale, 0) for method in methods
+        }
         world = jobs.problems_job(study, table.experiment, scale)
         for given in (world, *chunk_jobs.values()):
             given["problems"] = {
-                key: place for key, place in given["problems"].items() if layouts is None or place.get("layout") in layouts
+                key: place
+                for key, place in given["problems"].items()
+                if layouts is None or place.get("layout") in layouts
             }
         for job in chunk_jobs.values():
             if fresh:
-                job["repeats"] = [repeats, repeats + (-(-FRESH // len(job["problems"])) if drawn else FRESH)]
+                job["repeats"] = [
+                    repeats,
+                    repeats + (-(-FRESH // len(job["problems"])) if drawn else FRESH),
+                ]
             else:
-                job["repeats"] = [0, repeats if by_layout else _share(repeats, share, 1 if drawn else LEAST_RUNS)]
+                job["repeats"] = [
+                    0,
+                    repeats if by_layout else _share(repeats, share, 1 if drawn else LEAST_RUNS),
+                ]
         # What the paper does not define has no vote.
         voting = [entry.plain() for entry in table.values if entry.defined]
         spec = table.plain() | {"where": table.where | {"method": methods}, "values": voting}
         tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
         worlds[table.experiment] = world
-    return {"study": study.key, "tables": tables, "choices": choices(study), "worlds": worlds, "maps": content_digest(*maps(study))}
+    return {
+        "study": study.key,
+        "tables": tables,
+        "choices": choices(study),
+        "worlds": worlds,
+        "maps": content_digest(*maps(study)),
+    }
 
 
 def _layouts(drawn: dict[str, int], share: int, fresh: bool) -> range:
-    """Numbers of the fields on which interpretations are judged; the fresh ones are those that no other interpretation met, if there are
-    such.
+    """Numbers of the fields on which interpretations are judged; the fresh ones are those that no
+    other interpretation met, if there are such.
     """
     judged, most = min(2 * drawn["full"], drawn["extended"]), drawn["extended"]
-    return range(judged if judged < most else 0, most) if fresh else range(_share(judged, share, LEAST_RUNS))
+    return (
+        range(judged if judged < most else 0, most)
+        if fresh
+        else range(_share(judged, share, LEAST_RUNS))
+    )
 
 
 def _share(whole: int, share: int, least: int) -> int:
@@ -169,7 +271,11 @@ def _share(whole: int, share: int, least: int) -> int:
 def maps(study: Study) -> list[str]:
     """Map files of the problems on which interpretations are judged, under any of them."""
     experiments = {table.experiment for table in printed_tables(study).values()}
-    names = {problem["workspace"] for name in sorted(experiments) for problem in study.problems_of(name, "full").values()}
+    names = {
+        problem["workspace"]
+        for name in sorted(experiments)
+        for problem in study.problems_of(name, "full").values()
+    }
     workspaces = [
         relative(study.folder / value)
         for assumption in study.assumptions
@@ -181,11 +287,17 @@ def maps(study: Study) -> list[str]:
 
 
 def _parts(study: Study) -> list[dict[str, list[str]]]:
-    """Methods that no metric of a table compares with each other, and for each such part the choices that it depends on."""
+    """Methods that no metric of a table compares with each other, and for each such part the
+    choices that it depends on.
+    """
     groups: list[set[str]] = []
     for name, table in printed_tables(study).items():
         methods = _methods(study, name, table)
-        for group in [{method} for method in methods] if _apart(table, _published(study, name)) else [set(methods)]:
+        for group in (
+            [{method} for method in methods]
+            if _apart(table, _published(study, name))
+            else [set(methods)]
+        ):
             joined = [other for other in groups if other & group]
             groups = [other for other in groups if not other & group] + [group.union(*joined)]
     known = choices(study)
@@ -193,7 +305,9 @@ def _parts(study: Study) -> list[dict[str, list[str]]]:
     return [
         {
             "methods": sorted(group, key=order.index),
-            "choices": [choice["id"] for choice in known if group & set(choice.get("methods", group))],
+            "choices": [
+                choice["id"] for choice in known if group & set(choice.get("methods", group))
+            ],
         }
         for group in sorted(groups, key=lambda group: min(map(order.index, group)))
     ]

@@ -1,6 +1,8 @@
-"""Models of `claims.yaml` and `assumptions.yaml`: sentences of a paper as checks, and what a paper leaves open.
+"""Models of `claims.yaml` and `assumptions.yaml`: sentences of a paper as checks, and what a paper
+leaves open.
 
-A claim is defined next to the code that judges it (`analysis.claims.claim`), and so are the keys of each kind of check.
+A claim is defined next to the code that judges it (`analysis.claims.claim`), and so are the keys of
+each kind of check.
 """
 
 import re
@@ -33,7 +35,9 @@ MOST_ALTERNATIVES = 100
 class ClaimsFile(Model):
     """The file."""
 
-    claims: Annotated[list[Claim], at_most(MOST_ENTRIES)] = Field(description="a list of claims", min_length=1)
+    claims: Annotated[list[Claim], at_most(MOST_ENTRIES)] = Field(
+        description="a list of claims", min_length=1
+    )
 
 
 class Assumption(Model):
@@ -44,57 +48,88 @@ class Assumption(Model):
     )
     detail: Line = Field(description="what the paper leaves open, one line")
     default: Annotated[Any, mapping_or(Annotated[dict[Name, Setting], MinLen(1)], Setting)] = Field(
-        description="the value in force; or method → value, and then the alternatives are for these methods alone"
+        description="the value in force; or method → value, and then the alternatives are for "
+        "these methods alone"
     )
     alternatives: listed(Setting, least=0, most=MOST_ALTERNATIVES) = Field(
         description="a list of the other values that the setting can take; [] for none"
     )
     reason: Line = Field(description="why the default was chosen, one or two lines")
-    source: Literal["published", "inferred", "assumed"] = Field(description="where the default comes from: published, inferred or assumed")
+    source: Literal["published", "inferred", "assumed"] = Field(
+        description="where the default comes from: published, inferred or assumed"
+    )
     setting: Name = Field(None, description="the planner's setting that it governs")
-    problems: listed(ProblemName) = Field([], description="the problems on which alone the alternatives of a setting are tried")
+    problems: listed(ProblemName) = Field(
+        [], description="the problems on which alone the alternatives of a setting are tried"
+    )
     workspace: dict[Name, Name] = Field(
         {},
-        description="workspace → its key that it governs, instead of a setting: `snakemake interpretations` draws the workspace anew",
+        description="workspace → its key that it governs, instead of a setting: `snakemake "
+        "interpretations` draws the workspace anew",
         min_length=1,
     )
     table: Literal["within"] = Field(
         None,
-        description="within: it governs this key of tables, instead of a setting; the default is then `all`, and each alternative a column",
+        description="within: it governs this key of tables, instead of a setting; the default is "
+        "then `all`, and each alternative a column",
     )
     along: dict[Name, dict[Name, Setting]] = Field(
-        {}, alias="with", description="method → further settings that go along with every alternative", min_length=1
+        {},
+        alias="with",
+        description="method → further settings that go along with every alternative",
+        min_length=1,
     )
     claims: listed(ClaimId) = Field(
-        [], description="ids of the claims on which `snakemake alternatives` tries each alternative, one at a time (`sensitivity.csv`)"
+        [],
+        description="ids of the claims on which `snakemake alternatives` tries each alternative, "
+        "one at a time (`sensitivity.csv`)",
     )
 
     not_searched: listed(Setting) = Field(
-        [], description="alternatives that `snakemake interpretations` leaves out because they take too long"
+        [],
+        description="alternatives that `snakemake interpretations` leaves out because they take "
+        "too long",
     )
 
     @model_validator(mode="after")
     def _check_setting(self) -> "Assumption":
         if unknown := [value for value in self.not_searched if value not in self.alternatives]:
             raise wrong(f"not_searched: {shown(unknown[0])}: not among the alternatives")
-        defaults = {identity(value) for value in (self.default.values() if isinstance(self.default, dict) else [self.default])}
+        defaults = {
+            identity(value)
+            for value in (
+                self.default.values() if isinstance(self.default, dict) else [self.default]
+            )
+        }
         for value in self.alternatives:
             if {identity(value)} == defaults:
                 raise wrong(f"alternatives: {value}: is the default; expected the other values")
             if self.setting is not None and not re.fullmatch(PART, str(value)):
-                raise wrong(f"alternatives: {value!r}: is part of a file's name; expected {PART_EXPECTED}, or a number")
+                raise wrong(
+                    f"alternatives: {value!r}: is part of a file's name; expected "
+                    f"{PART_EXPECTED}, or a number"
+                )
         if self.setting and (self.workspace or self.table):
             raise wrong("setting: beside workspace or table; expected one of them")
         if self.table and self.default != "all":
-            raise wrong(f"default: {shown(self.default)}: expected all, since table: {self.table} is not in force")
+            raise wrong(
+                f"default: {shown(self.default)}: expected all, since table: {self.table} is not "
+                f"in force"
+            )
         if self.setting is None and self.problems:
-            raise wrong("problems: without setting; expected the planner's setting that is governed there")
+            raise wrong(
+                "problems: without setting; expected the planner's setting that is governed there"
+            )
         if self.setting is None and self.model_fields_set & {"along", "claims"}:
-            raise wrong("setting: missing key; with and claims need the planner's setting that is governed")
+            raise wrong(
+                "setting: missing key; with and claims need the planner's setting that is governed"
+            )
         return self
 
 
 class AssumptionsFile(Model):
     """The file."""
 
-    assumptions: Annotated[list[Assumption], at_most(MOST_ENTRIES)] = Field(description="a list of assumptions", min_length=1)
+    assumptions: Annotated[list[Assumption], at_most(MOST_ENTRIES)] = Field(
+        description="a list of assumptions", min_length=1
+    )

@@ -19,10 +19,12 @@ from bezierplan.workspaces.kinds import Workspace, file_keys
 
 @dataclass(frozen=True)
 class Study:
-    """A study as defined by its files: a paper of this project or a user's own folder of the same form (config/README.md).
+    """A study as defined by its files: a paper of this project or a user's own folder of the same
+    form (config/README.md).
 
-    key: its name; folder: its location; the others: experiments.yaml, artefacts.yaml, claims.yaml and assumptions.yaml. methods:
-    includes baselines; baselines: their names. settings: of all methods; planner_settings: planner -> settings of its methods only.
+    key: its name; folder: its location; the others: experiments.yaml, artefacts.yaml, claims.yaml
+    and assumptions.yaml. methods: includes baselines; baselines: their names. settings: of all
+    methods; planner_settings: planner -> settings of its methods only.
     """
 
     key: str
@@ -51,10 +53,16 @@ class Study:
         return planner_settings(planner_module(self.planner(method)))
 
     def resolved(self, method: str) -> dict[str, Any]:
-        """All settings of a method, by name: the study's that its planner accepts, those of its planner, and its own."""
+        """All settings of a method, by name: the study's that its planner accepts, those of its
+        planner, and its own.
+        """
         accepted = self.accepted(method)
         common = {name: value for name, value in self.settings.items() if name in accepted}
-        return common | self.planner_settings.get(self.methods[method].planner, {}) | self.methods[method].settings
+        return (
+            common
+            | self.planner_settings.get(self.methods[method].planner, {})
+            | self.methods[method].settings
+        )
 
     def planner(self, method: str) -> str:
         """The planner of a method: a name, or the path of a file relative to the working folder."""
@@ -65,10 +73,16 @@ class Study:
         """Methods of an experiment, followed by the baselines that support all its workspaces."""
         content = self.experiments[experiment]
         kinds = {self.kind_of(problem) for problem in content.problems}
-        return content.methods + [name for name in self.methods if name in self.baselines and self._serves(name, kinds, content)]
+        return content.methods + [
+            name
+            for name in self.methods
+            if name in self.baselines and self._serves(name, kinds, content)
+        ]
 
     def _serves(self, baseline: str, kinds: set[str], experiment: Experiment) -> bool:
-        """Whether a baseline can join: its planner supports these kinds of workspace, and has no setting that the experiment varies."""
+        """Whether a baseline can join: its planner supports these kinds of workspace, and has no
+        setting that the experiment varies.
+        """
         module = planner_module(self.planner(baseline))
         varied = set(experiment.vary) & set(planner_settings(module))
         drives = any(self.workspace_of(problem).moves for problem in experiment.problems)
@@ -82,7 +96,9 @@ class Study:
 
     def moves(self, experiment: str) -> bool:
         """Whether the runs of an experiment are simulated drives."""
-        return any(self.workspace_of(problem).moves for problem in self.experiments[experiment].problems)
+        return any(
+            self.workspace_of(problem).moves for problem in self.experiments[experiment].problems
+        )
 
     def kind_of(self, problem: str) -> str:
         """The kind of workspace that planners see in a problem."""
@@ -90,8 +106,8 @@ class Study:
         return workspace.drawn or workspace.made or workspace.kind
 
     def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
-        """Descriptions of an experiment's problems, by name, as plain values. One with layouts expands to a problem for each layout and
-        number of obstacles.
+        """Descriptions of an experiment's problems, by name, as plain values. One with layouts
+        expands to a problem for each layout and number of obstacles.
         """
         described = {}
         for name in self.experiments[experiment].problems:
@@ -100,16 +116,27 @@ class Study:
                 described[name] = problem.plain()
                 continue
             same = problem.plain("layouts", "obstacles")
-            for layout, obstacles in itertools.product(range(problem.layouts[scale]), problem.obstacles):
-                described[f"{name}_{layout}_{obstacles}"] = same | {"layout": layout, "obstacles": obstacles}
+            for layout, obstacles in itertools.product(
+                range(problem.layouts[scale]), problem.obstacles
+            ):
+                described[f"{name}_{layout}_{obstacles}"] = same | {
+                    "layout": layout,
+                    "obstacles": obstacles,
+                }
         return described
 
     def home(self, experiment: str, scale: str) -> str:
-        """The scale under which an experiment's runs for a scale are kept: `full` for `extended` if that has the same runs."""
+        """The scale under which an experiment's runs for a scale are kept: `full` for `extended` if
+        that has the same runs.
+        """
         content = self.experiments[experiment]
         layouts = [self.problems[name].layouts for name in content.problems]
         sizes = [content.repeats, content.chunk, *filter(None, layouts)]
-        return "full" if scale == "extended" and all(size["extended"] == size["full"] for size in sizes) else scale
+        return (
+            "full"
+            if scale == "extended" and all(size["extended"] == size["full"] for size in sizes)
+            else scale
+        )
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
@@ -117,7 +144,9 @@ class Study:
         return sorted({relative(file) for each in named for file in each})
 
     def compared(self) -> dict[str, Pivot]:
-        """The tables of runs, which are compared with published numbers; for the others see `listing_job`."""
+        """The tables of runs, which are compared with published numbers; for the others see
+        `listing_job`.
+        """
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
     def published_file(self, table: str) -> str | None:
@@ -131,7 +160,9 @@ class Study:
 
     def variants(self) -> dict[str, str]:
         """Method -> the method whose published numbers it is compared with."""
-        return {name: method.variant_of for name, method in self.methods.items() if method.variant_of}
+        return {
+            name: method.variant_of for name, method in self.methods.items() if method.variant_of
+        }
 
     def module(self) -> str | None:
         """The study's own module, or None."""
@@ -141,11 +172,20 @@ class Study:
 
 def files_of(workspace: Workspace) -> dict[str, str]:
     """Files that a workspace is read from, by key."""
-    changes = {f"changes: {number}: file": change.file for number, change in enumerate(getattr(workspace, "changes", []))}
-    return {key: getattr(workspace, key) for key in file_keys(type(workspace)) if getattr(workspace, key)} | changes
+    changes = {
+        f"changes: {number}: file": change.file
+        for number, change in enumerate(getattr(workspace, "changes", []))
+    }
+    return {
+        key: getattr(workspace, key)
+        for key in file_keys(type(workspace))
+        if getattr(workspace, key)
+    } | changes
 
 
 def relative(path: Path) -> str:
-    """A path relative to the working folder if it lies inside, so that a moved tree still finds its results; otherwise unchanged."""
+    """A path relative to the working folder if it lies inside, so that a moved tree still finds its
+    results; otherwise unchanged.
+    """
     here = os.path.relpath(path)
     return str(path) if here.startswith("..") else here

@@ -41,7 +41,9 @@ Settings = dict[Name, Setting]
 PART = r"[A-Za-z0-9_.+-]+"
 """What a value must be like to be part of the name of a run or of a folder."""
 PART_EXPECTED = "a word of letters, digits, _, ., + and -"
-ProblemName = Annotated[str, matching(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")]
+ProblemName = Annotated[
+    str, matching(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")
+]
 Point = Annotated[list[Number], of_length(2, "[x, y]")]
 
 
@@ -59,16 +61,29 @@ class Scales(Model):
 class Method(Model):
     """A planner with its settings."""
 
-    planner: File = Field(description="the name of a file in `src/bezierplan/planners`, or of a file `.py` in the study's folder")
-    settings: Settings = Field({}, description="settings of this method alone, by name; the strongest")
-    policy: Name = Field(None, description="the name of a policy, in experiments in worlds that move and only there")
-    variant_of: Name = Field(None, description="the method whose published numbers this one is compared with")
+    planner: File = Field(
+        description="the name of a file in `src/bezierplan/planners`, or of a file `.py` in the "
+        "study's folder"
+    )
+    settings: Settings = Field(
+        {}, description="settings of this method alone, by name; the strongest"
+    )
+    policy: Name = Field(
+        None, description="the name of a policy, in experiments in worlds that move and only there"
+    )
+    variant_of: Name = Field(
+        None, description="the method whose published numbers this one is compared with"
+    )
 
 
 Margins = Annotated[
     list[float],
     value(
-        lambda given: isinstance(given, list) and 0 < len(given) <= 100 and all(is_number(each) and 0 <= each <= LARGEST for each in given),
+        lambda given: (
+            isinstance(given, list)
+            and 0 < len(given) <= 100
+            and all(is_number(each) and 0 <= each <= LARGEST for each in given)
+        ),
         "",
     ),
 ]
@@ -78,38 +93,69 @@ class Policy(Model):
     """What a robot does when its world changes."""
 
     replan: Literal["never", "every_step", "when_blocked", "when_changed"] = Field(
-        description="when the robot plans again: never, at every `every`-th step, when_blocked, that is when the rest of its way is, or "
-        "when_changed, that is when the world has changed: cells at some moments, circles that move at every step"
+        description="when the robot plans again: never, at every `every`-th step, when_blocked, "
+        "that is when the rest of its way is, or "
+        "when_changed, that is when the world has changed: cells at some moments, circles that "
+        "move at every step"
     )
-    every: Count = Field(1, description="of every_step: after how many steps, a whole number of at least 1; left out: 1")
+    every: Count = Field(
+        1,
+        description="of every_step: after how many steps, a whole number of at least 1; left out: 1",
+    )
     warm: Flag = Field(
         False,
-        description="whether a plan starts from the last one, for planners with a function `resume`; left out: false",
+        description="whether a plan starts from the last one, for planners with a function "
+        "`resume`; left out: false",
     )
-    waits: Flag = Field(True, description="whether the robot stops in front of what is in its way, true or false; left out: true")
+    waits: Flag = Field(
+        True,
+        description="whether the robot stops in front of what is in its way, true or false; left "
+        "out: true",
+    )
     sees: Literal["before", "after"] = Field(
-        "before", description="whether it sees circles as they are before or after they move in a step; left out: before"
+        "before",
+        description="whether it sees circles as they are before or after they move in a step; "
+        "left out: before",
     )
     knows: Literal["positions", "velocities"] = Field(
-        "positions", description="whether it knows positions alone or also velocities, and looks ahead; left out: positions"
+        "positions",
+        description="whether it knows positions alone or also velocities, and looks ahead; left "
+        "out: positions",
     )
-    check_margin: NotNegative = Field(0.0, description="how far circles must stay away from the rest of its way, in units; left out: 0")
+    check_margin: NotNegative = Field(
+        0.0,
+        description="how far circles must stay away from the rest of its way, in units; left out: 0",
+    )
     plan_margins: Margins = Field(
         [0.0],
-        description="by how much circles grow for a plan: a list of numbers, tried in this order until there is a plan; left out: [0]",
+        description="by how much circles grow for a plan: a list of numbers, tried in this order "
+        "until there is a plan; left out: [0]",
     )
-    brake: NotNegative = Field(0.0, description="how far ahead its way must be clear for it to move, in units; left out: 0")
-    horizon: Positive = Field(math.inf, description="how far ahead along its way it checks, in units; left out: all of it")
+    brake: NotNegative = Field(
+        0.0, description="how far ahead its way must be clear for it to move, in units; left out: 0"
+    )
+    horizon: Positive = Field(
+        math.inf, description="how far ahead along its way it checks, in units; left out: all of it"
+    )
     evades: Flag = Field(
-        False, description="among circles, whether it steps aside where it would stop and one is about to come there; left out: false"
+        False,
+        description="among circles, whether it steps aside where it would stop and one is about "
+        "to come there; left out: false",
     )
-    spacing: Positive = Field(0.5, description="mean length of the chords that it drives along a curve, in units; left out: 0.5")
+    spacing: Positive = Field(
+        0.5,
+        description="mean length of the chords that it drives along a curve, in units; left out: "
+        "0.5",
+    )
     start: Literal["position", "centre"] = Field(
         "position",
-        description="whether a plan begins at the robot's position, or at the centre of its cell, to which it drives first",
+        description="whether a plan begins at the robot's position, or at the centre of its cell, "
+        "to which it drives first",
     )
     step_seconds: Positive = Field(
-        0.05, description="how long a step lasts, in seconds: metric `replans_late` counts the plans that take longer; left out: 0.05"
+        0.05,
+        description="how long a step lasts, in seconds: metric `replans_late` counts the plans "
+        "that take longer; left out: 0.05",
     )
 
 
@@ -119,31 +165,56 @@ class Problem(Model):
     workspace: Name = Field(description="the name of a workspace")
     start: Point = Field(None, description="[x, y] in units")
     target: Point = Field(None, description="[x, y] in units")
-    start_cell: Whole = Field(None, description="on grids, the number of a cell: from 0, row by row from the bottom left")
+    start_cell: Whole = Field(
+        None, description="on grids, the number of a cell: from 0, row by row from the bottom left"
+    )
     target_cell: Whole = Field(None, description="likewise")
-    scenario: Count = Field(None, description="in a workspace of kind `moving_ai`, the number of a scenario, from 1")
+    scenario: Count = Field(
+        None, description="in a workspace of kind `moving_ai`, the number of a scenario, from 1"
+    )
     settings: Settings = Field(
-        {}, description="settings that go with this problem, stronger than the study's and weaker than a method's own"
+        {},
+        description="settings that go with this problem, stronger than the study's and weaker "
+        "than a method's own",
     )
     reference: Positive = Field(
         None,
-        description="the length of the best known path of the methods' own kind, a number above 0; metrics `gap_reference`, "
+        description="the length of the best known path of the methods' own kind, a number above "
+        "0; metrics `gap_reference`, "
         "`excess_reference`",
     )
-    layouts: Scales = Field(None, description="in a workspace drawn at random: how many are drawn, for each scale; column `layout`")
+    layouts: Scales = Field(
+        None,
+        description="in a workspace drawn at random: how many are drawn, for each scale; column "
+        "`layout`",
+    )
     obstacles: listed(
-        Annotated[int, value(lambda given: type(given) is int and 0 <= given <= 100_000, "a whole number from 0 to 100000")]
+        Annotated[
+            int,
+            value(
+                lambda given: type(given) is int and 0 <= given <= 100_000,
+                "a whole number from 0 to 100000",
+            ),
+        ]
     ) = Field(
         None,
-        description="in a workspace drawn at random, a list of whole numbers: how many circles (of `random_circles` the first so many of a "
-        "layout), or how many occupied cells (`random_blocks`), or how many cells change at a time (`random_changing_cells`); one problem "
+        description="in a workspace drawn at random, a list of whole numbers: how many circles "
+        "(of `random_circles` the first so many of a "
+        "layout), or how many occupied cells (`random_blocks`), or how many cells change at a "
+        "time (`random_changing_cells`); one problem "
         "for each of them and each layout; column `obstacles`",
     )
-    side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = Field(
-        None, description="the side of a random field or of a map of blocks in cells, a whole number from 1 to 5000"
+    side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = (
+        Field(
+            None,
+            description="the side of a random field or of a map of blocks in cells, a whole "
+            "number from 1 to 5000",
+        )
     )
     route: Annotated[str, matching(PART, PART_EXPECTED)] = Field(
-        None, description=f"a name for start and target together, a column of the runs table: {PART_EXPECTED}"
+        None,
+        description=f"a name for start and target together, a column of the runs table: "
+        f"{PART_EXPECTED}",
     )
 
     @model_validator(mode="after")
@@ -151,7 +222,10 @@ class Problem(Model):
         ends = self.model_fields_set & {"start", "target", "start_cell", "target_cell", "scenario"}
         if ends not in ({"start", "target"}, {"start_cell", "target_cell"}, {"scenario"}):
             given = " and ".join(sorted(ends)) or "neither"
-            raise wrong(f"{given}: expected either start and target, or start_cell and target_cell, or scenario")
+            raise wrong(
+                f"{given}: expected either start and target, or start_cell and target_cell, or "
+                f"scenario"
+            )
         if ("layouts" in self.model_fields_set) != ("obstacles" in self.model_fields_set):
             raise wrong("layouts and obstacles go together")
         return self
@@ -162,32 +236,59 @@ class Experiment(Model):
 
     problems: listed(ProblemName) = Field(description="a list of problems")
     methods: listed(Name) = Field(description="a list of methods")
-    vary: dict[Name, listed(Setting)] = Field({}, description="setting or preset → list of values; every combination is run")
+    vary: dict[Name, listed(Setting)] = Field(
+        {}, description="setting or preset → list of values; every combination is run"
+    )
     seeds: Literal["own", "shared", "common"] = Field(
-        "own", description="whether a run's seed is its `own`, `shared` by all methods, or `common` to all methods and conditions"
+        "own",
+        description="whether a run's seed is its `own`, `shared` by all methods, or `common` to "
+        "all methods and conditions",
     )
-    time_limit: Annotated[float, value(lambda given: is_number(given) and 1 <= given <= 1_000_000, "")] = Field(
-        600, description="seconds after which a single run, compiling included, is ended with its job, a number from 1 to 1000000"
+    time_limit: Annotated[
+        float, value(lambda given: is_number(given) and 1 <= given <= 1_000_000, "")
+    ] = Field(
+        600,
+        description="seconds after which a single run, compiling included, is ended with its job, "
+        "a number from 1 to 1000000",
     )
-    repeats: Scales = Field(description="runs of each method under each condition, for smoke, full and extended")
-    chunk: Scales = Field(description="how many repeats one job runs, for smoke, full and extended, at most all of them")
+    repeats: Scales = Field(
+        description="runs of each method under each condition, for smoke, full and extended"
+    )
+    chunk: Scales = Field(
+        description="how many repeats one job runs, for smoke, full and extended, at most all of "
+        "them"
+    )
     interpretations: Count = Field(
-        None, description="repeats from which `snakemake interpretations` judges an interpretation; by default those of full"
+        None,
+        description="repeats from which `snakemake interpretations` judges an interpretation; by "
+        "default those of full",
     )
 
     @model_validator(mode="after")
     def _check_size(self) -> "Experiment":
         for scale in SCALES:
             if self.chunk[scale] > self.repeats[scale]:
-                most = f"expected at most {self.repeats[scale]}, the repeats, since a chunk always runs whole"
+                most = (
+                    f"expected at most {self.repeats[scale]}, the repeats, since a chunk "
+                    f"always runs whole"
+                )
                 raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {most}")
             if self.repeats[scale] > self.chunk[scale] * MOST_CHUNKS:
-                raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {self.repeats[scale]} repeats are more than {MOST_CHUNKS} chunks")
+                raise wrong(
+                    f"chunk: {scale}: {self.chunk[scale]}: {self.repeats[scale]} repeats are more "
+                    f"than {MOST_CHUNKS} chunks"
+                )
         if math.prod(map(len, self.vary.values())) * len(self.problems) > MOST_CONDITIONS:
-            raise wrong(f"vary: expected at most {MOST_CONDITIONS} conditions: problems times combinations of values")
+            raise wrong(
+                f"vary: expected at most {MOST_CONDITIONS} conditions: problems times "
+                f"combinations of values"
+            )
         for setting, values in self.vary.items():
             if odd := [each for each in values if not re.fullmatch(PART, str(each))]:
-                raise wrong(f"vary: {setting}: {odd[0]!r}: is part of a run's name; expected {PART_EXPECTED}, or a number")
+                raise wrong(
+                    f"vary: {setting}: {odd[0]!r}: is part of a run's name; expected "
+                    f"{PART_EXPECTED}, or a number"
+                )
         return self
 
     @property
@@ -200,39 +301,56 @@ class Worth(Model):
     """What the summary measures the study's methods against."""
 
     baseline: Name = Field(description="a baseline")
-    experiments: listed(Name) = Field(description="the experiments in which the methods are compared with it; it must join each of them")
+    experiments: listed(Name) = Field(
+        description="the experiments in which the methods are compared with it; it must join each "
+        "of them"
+    )
 
 
 class ExperimentsFile(Model):
     """The file."""
 
     title: Line = Field(description="one line that names the study")
-    methods: Annotated[dict[Name, Method], at_most(MOST_ENTRIES)] = Field(description="name → planner and settings", min_length=1)
+    methods: Annotated[dict[Name, Method], at_most(MOST_ENTRIES)] = Field(
+        description="name → planner and settings", min_length=1
+    )
     baselines: Annotated[dict[Name, Method], at_most(MOST_ENTRIES)] = Field(
         {},
-        description="the same; each joins every experiment whose workspaces its planner serves, unless the experiment varies one of "
+        description="the same; each joins every experiment whose workspaces its planner serves, "
+        "unless the experiment varies one of "
         "its settings. "
         "Baselines appear in comparisons, not in the tables laid out like the paper's",
     )
     settings: dict[Name, Annotated[Any, mapping_or(Settings, Setting)]] = Field(
-        description="settings of all methods. A planner's settings are the keyword-only arguments of its function `plan`; each "
+        description="settings of all methods. A planner's settings are the keyword-only arguments "
+        "of its function `plan`; each "
         "needs a value, there "
-        "are no defaults. The name of a planner holds settings of its methods alone, stronger than the others: `prm: {samples: 50}`"
+        "are no defaults. The name of a planner holds settings of its methods alone, stronger "
+        "than the others: `prm: {samples: 50}`"
     )
     presets: dict[Name, dict[Annotated[str, matching(PART, PART_EXPECTED)], Settings]] = Field(
         {},
-        description="name → value → settings that go with it: a bundle that an experiment can vary like a setting, such as "
+        description="name → value → settings that go with it: a bundle that an experiment can "
+        "vary like a setting, such as "
         "`profile: {default: {}, tuned: {...}}`",
     )
-    policies: dict[Name, Policy] = Field({}, description="name → what a robot does in a world that moves")
-    workspaces: Annotated[dict[Name, Annotated[Workspace, one_of("kind", kinds())]], at_most(MOST_ENTRIES)] = Field(
-        description="name → kind, unit, and the keys of the kind"
+    policies: dict[Name, Policy] = Field(
+        {}, description="name → what a robot does in a world that moves"
     )
+    workspaces: Annotated[
+        dict[Name, Annotated[Workspace, one_of("kind", kinds())]], at_most(MOST_ENTRIES)
+    ] = Field(description="name → kind, unit, and the keys of the kind")
     problems: Annotated[dict[ProblemName, Problem], at_most(MOST_ENTRIES)] = Field(
         description="name → workspace, start and target", min_length=1
     )
     experiments: Annotated[dict[Name, Experiment], at_most(MOST_ENTRIES)] = Field(
         description="name → problems × varied settings × methods × repeats", min_length=1
     )
-    worth: Worth = Field(None, description="what the summary measures the study's methods against: a row of `worth.csv` for each method")
-    interpretations_tried: Count = Field(60, description="how many interpretations `snakemake interpretations` tries at most")
+    worth: Worth = Field(
+        None,
+        description="what the summary measures the study's methods against: a row of `worth.csv` "
+        "for each method",
+    )
+    interpretations_tried: Count = Field(
+        60, description="how many interpretations `snakemake interpretations` tries at most"
+    )

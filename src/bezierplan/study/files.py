@@ -6,8 +6,9 @@ from bezierplan.schema.checked import LONGEST_FILE, Fault
 
 
 def inside(folder: Path, name: str, location: str) -> Path:
-    """A file in a study's folder. Raises Fault, beginning with a location, if it is missing, lies outside the folder (also through a link),
-    is not a regular file, or has more than `LONGEST_FILE` bytes.
+    """A file in a study's folder. Raises Fault, beginning with a location, if it is missing, lies
+    outside the folder (also through a link), is not a regular file, or has more than `LONGEST_FILE`
+    bytes.
     """
     file = folder / name
     try:

@@ -23,12 +23,17 @@ def problems_job(study: Study, experiment: str, scale: str) -> dict:
         name: {key: value for key, value in problem.items() if key != "settings"}
         for name, problem in study.problems_of(experiment, scale).items()
     }
-    workspaces = {name: study.workspaces[name].plain() for name in sorted({problem["workspace"] for problem in described.values()})}
+    workspaces = {
+        name: study.workspaces[name].plain()
+        for name in sorted({problem["workspace"] for problem in described.values()})
+    }
     return {"study": study.key, "problems": described, "workspaces": workspaces}
 
 
 def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> dict:
-    """A chunk of runs, as `execution.run_chunk` takes it. A chunk always runs whole, whatever the number of requested repeats."""
+    """A chunk of runs, as `execution.run_chunk` takes it. A chunk always runs whole, whatever the
+    number of requested repeats.
+    """
     content = study.experiments[experiment]
     size = content.chunk[scale]
     return {
@@ -36,22 +41,34 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
         "experiment": experiment,
         "method": method,
         "planner": study.planner(method),
-        "settings": {name: value for name, value in study.resolved(method).items() if name not in content.vary},
+        "settings": {
+            name: value
+            for name, value in study.resolved(method).items()
+            if name not in content.vary
+        },
         "problems": _problems_met(study, experiment, method, scale),
         "vary": content.vary,
         "presets": {name: preset for name, preset in study.presets.items() if name in content.vary},
         "seeds": content.seeds,
         "time_limit": content.time_limit,
         "repeats": [chunk * size, (chunk + 1) * size],
-    } | ({"policy": study.policies[study.methods[method].policy].model_dump()} if study.moves(experiment) else {})
+    } | (
+        {"policy": study.policies[study.methods[method].policy].model_dump()}
+        if study.moves(experiment)
+        else {}
+    )
 
 
 def _problems_met(study: Study, experiment: str, method: str, scale: str) -> dict[str, dict]:
-    """Places of an experiment's problems, by name, with those of their settings that a method leaves open."""
+    """Places of an experiment's problems, by name, with those of their settings that a method
+    leaves open.
+    """
     accepted = study.accepted(method).keys() - study.methods[method].settings.keys()
     met = {}
     for name, problem in study.problems_of(experiment, scale).items():
-        settings = {key: value for key, value in problem.get("settings", {}).items() if key in accepted}
+        settings = {
+            key: value for key, value in problem.get("settings", {}).items() if key in accepted
+        }
         met[name] = _place(problem) | ({"settings": settings} if settings else {})
     return met
 
@@ -68,17 +85,24 @@ def chunks(study: Study, experiment: str, scale: str) -> range:
 
 
 def table_job(study: Study, table: str, scale: str) -> dict:
-    """What a table depends on in addition to runs, problems, bounds and the file of published numbers."""
+    """What a table depends on in addition to runs, problems, bounds and the file of published
+    numbers.
+    """
     spec = study.compared()[table]
     experiment = study.experiments[spec.experiment]
-    # The experiment's own methods unless the table selects some: baselines appear only in the comparison.
+    # The experiment's own methods unless the table selects some: baselines appear only in the
+    # comparison.
     where = {"method": experiment.methods} | spec.where
     return {
         "name": f"{study.key}/{table}",
         "spec": spec.plain("monotone", "fitted") | {"where": where},
         "labels": study.labels,
-        "variants": {name: method for name, method in study.variants().items() if name in experiment.methods},
-        "baselines": [name for name in study.methods_of(spec.experiment) if name in study.baselines],
+        "variants": {
+            name: method for name, method in study.variants().items() if name in experiment.methods
+        },
+        "baselines": [
+            name for name in study.methods_of(spec.experiment) if name in study.baselines
+        ],
         "repeats": experiment.repeats[scale],
         "unit": _unit(study, spec.experiment),
     }
@@ -90,20 +114,25 @@ def listing_job(study: Study, table: str) -> dict:
 
 
 def figure_job(study: Study, figure: str, scale: str) -> dict:
-    """What a figure depends on in addition to runs, problems and bounds, and to map files if it draws a workspace without runs."""
+    """What a figure depends on in addition to runs, problems and bounds, and to map files if it
+    draws a workspace without runs.
+    """
     spec = study.figures[figure]
     experiments = experiments_of(study, figure)
     bare = sorted({panel.workspace for panel in spec.panels if getattr(panel, "workspace", None)})
     return {
         "study": study.key,
-        "spec": spec.plain() | {"panels": [_planned(study, panel).plain() for panel in spec.panels]},
+        "spec": spec.plain()
+        | {"panels": [_planned(study, panel).plain() for panel in spec.panels]},
         "module": study.module(),
         "labels": study.labels,
         "looks": looks(study),
         "workspaces": {name: study.workspaces[name].plain() for name in bare},
         "repeats": {name: study.experiments[name].repeats[scale] for name in experiments},
         "jobs": _jobs_rerun(study, figure, scale),
-        "unit": _unit(study, experiments[0]) if experiments else study.workspaces[bare[0] if bare else next(iter(study.workspaces))].unit,
+        "unit": _unit(study, experiments[0])
+        if experiments
+        else study.workspaces[bare[0] if bare else next(iter(study.workspaces))].unit,
     }
 
 
@@ -114,13 +143,22 @@ def looks(study: Study) -> dict[str, str]:
 
 def _planned(study: Study, panel: Panel) -> Panel:
     """A panel with all settings in force, if it plans by itself."""
-    return panel.but(settings=study.resolved(panel.method) | panel.settings) if panel.plans else panel
+    return (
+        panel.but(settings=study.resolved(panel.method) | panel.settings) if panel.plans else panel
+    )
 
 
 def _jobs_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:
-    """The jobs whose runs a figure reruns, to draw what no table keeps: experiment -> method -> job."""
+    """The jobs whose runs a figure reruns, to draw what no table keeps: experiment -> method ->
+    job.
+    """
     again = {panel.experiment for panel in study.figures[figure].panels if panel.rerun}
-    return {name: {method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)} for name in sorted(again)}
+    return {
+        name: {
+            method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)
+        }
+        for name in sorted(again)
+    }
 
 
 def _unit(study: Study, experiment: str) -> str:
@@ -137,8 +175,8 @@ def experiments_of(study: Study, artefact: str) -> list[str]:
 
 
 def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
-    """Methods of an experiment whose runs an artefact needs: all for a table (the comparison shows them), for a figure those it selects,
-    including baselines if named.
+    """Methods of an experiment whose runs an artefact needs: all for a table (the comparison shows
+    them), for a figure those it selects, including baselines if named.
     """
     if artefact in study.tables:
         return study.methods_of(experiment)
@@ -151,7 +189,8 @@ def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
 
 
 def claims_job(study: Study, claims: list[Claim], primary_alone: bool) -> dict:
-    """What claims depend on in addition to runs, problems, bounds and the files of published numbers.
+    """What claims depend on in addition to runs, problems, bounds and the files of published
+    numbers.
 
     primary_alone: whether they are judged in their primary variant only.
     """
@@ -162,16 +201,22 @@ def claims_job(study: Study, claims: list[Claim], primary_alone: bool) -> dict:
         "module": study.module(),
         "claims": [claim.plain() for claim in claims],
         "primary_alone": primary_alone,
-        "artefacts": {name: artefact.plain() for name, artefact in (study.tables | study.figures).items()},
+        "artefacts": {
+            name: artefact.plain() for name, artefact in (study.tables | study.figures).items()
+        },
         "variant_of": study.variants(),
         "paired": {name: experiment.paired for name, experiment in experiments.items()},
-        "paper_repeats": {name: experiment.repeats["full"] for name, experiment in experiments.items()},
+        "paper_repeats": {
+            name: experiment.repeats["full"] for name, experiment in experiments.items()
+        },
         "labels": study.labels,
     }
 
 
 def kind_of(study: Study, artefact: str) -> str:
-    """The kind of a table, or of the first panel of a figure; for a comparison, the kind of its tables."""
+    """The kind of a table, or of the first panel of a figure; for a comparison, the kind of its
+    tables.
+    """
     if artefact in study.figures:
         return study.figures[artefact].panels[0].kind
     table = study.tables[artefact]
@@ -179,8 +224,8 @@ def kind_of(study: Study, artefact: str) -> str:
 
 
 def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[str, str, str]]]:
-    """The small subset: the first artefact of each kind, as (study, artefact), and one method of each planner that none of them runs, as
-    (study, experiment, method).
+    """The small subset: the first artefact of each kind, as (study, artefact), and one method of
+    each planner that none of them runs, as (study, experiment, method).
     """
     artefacts, kinds, planners = [], set(), set()
     for key, study in studies.items():
@@ -189,7 +234,9 @@ def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[
                 kinds.add(kind_of(study, artefact))
                 artefacts.append((key, artefact))
                 for experiment in experiments_of(study, artefact):
-                    planners.update(study.planner(method) for method in methods_of(study, artefact, experiment))
+                    planners.update(
+                        study.planner(method) for method in methods_of(study, artefact, experiment)
+                    )
     methods = []
     for key, study in studies.items():
         for experiment in study.experiments:
@@ -201,17 +248,27 @@ def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[
 
 
 def leaders(studies: dict[str, Study], scale: str) -> dict[tuple[str, str, str], int]:
-    """The first method of each planner among the runs of a scale, as (study, experiment, method), numbered within its study."""
+    """The first method of each planner among the runs of a scale, as (study, experiment, method),
+    numbered within its study.
+    """
     made = []
     if scale == "smoke":
         artefacts, alone = smoke(studies)
         for key, artefact in artefacts:
             study = studies[key]
-            made += [(key, name, method) for name in experiments_of(study, artefact) for method in methods_of(study, artefact, name)]
+            made += [
+                (key, name, method)
+                for name in experiments_of(study, artefact)
+                for method in methods_of(study, artefact, name)
+            ]
         made += alone
     else:
         for key, study in studies.items():
-            made += [(key, name, method) for name in study.experiments for method in study.methods_of(name)]
+            made += [
+                (key, name, method)
+                for name in study.experiments
+                for method in study.methods_of(name)
+            ]
     first: dict[str, tuple[str, str, str]] = {}
     for key, experiment, method in made:
         first.setdefault(studies[key].planner(method), (key, experiment, method))
@@ -224,31 +281,63 @@ def leaders(studies: dict[str, Study], scale: str) -> dict[tuple[str, str, str],
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
-    """The caption of a table or figure: its title, and the methods, settings and repeats in force."""
+    """The caption of a table or figure: its title, and the methods, settings and repeats in
+    force.
+    """
     sentences = [(study.tables.get(artefact) or study.figures[artefact]).title]
     for experiment in experiments_of(study, artefact):
         content = study.experiments[experiment]
-        methods = [method for method in methods_of(study, artefact, experiment) if method not in study.baselines]
+        methods = [
+            method
+            for method in methods_of(study, artefact, experiment)
+            if method not in study.baselines
+        ]
         settings = {method: study.resolved(method) for method in methods}
         first = settings[methods[0]] if methods else {}
-        shared = {name: value for name, value in first.items() if all(own.get(name) == value for own in settings.values())}
+        shared = {
+            name: value
+            for name, value in first.items()
+            if all(own.get(name) == value for own in settings.values())
+        }
         for method, own in settings.items():
-            apart = {name: value for name, value in own.items() if name not in shared and name not in content.vary}
-            driven = f", policy {study.methods[method].policy}" if study.methods[method].policy else ""
-            sentences.append(f"{study.labels.get(method, method)}: {study.planner(method)}{_listed(apart, ' with ')}{driven}")
+            apart = {
+                name: value
+                for name, value in own.items()
+                if name not in shared and name not in content.vary
+            }
+            driven = (
+                f", policy {study.methods[method].policy}" if study.methods[method].policy else ""
+            )
+            sentences.append(
+                f"{study.labels.get(method, method)}: "
+                f"{study.planner(method)}{_listed(apart, ' with ')}{driven}"
+            )
         if shared:
-            sentences.append(f"All:{_listed(shared, ' ')}" if len(methods) > 1 else f"Settings:{_listed(shared, ' ')}")
+            sentences.append(
+                f"All:{_listed(shared, ' ')}"
+                if len(methods) > 1
+                else f"Settings:{_listed(shared, ' ')}"
+            )
         for problem in content.problems:
             if settings := study.problems[problem].settings:
-                sentences.append(f"On {study.labels.get(problem, problem)}:{_listed(settings, ' ')}")
+                sentences.append(
+                    f"On {study.labels.get(problem, problem)}:{_listed(settings, ' ')}"
+                )
         sentences.append(f"{content.repeats[scale]} runs of each method on each problem")
     return ". ".join(sentences) + "."
 
 
 def _listed(settings: dict[str, Any], before: str) -> str:
-    return before + ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in settings.items()) if settings else ""
+    return (
+        before + ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in settings.items())
+        if settings
+        else ""
+    )
 
 
 def published_drawn(study: Study, figure: str) -> bool:
     """Whether a figure shows published numbers."""
-    return any(panel.published_drawn or getattr(panel, "published", False) for panel in study.figures[figure].panels)
+    return any(
+        panel.published_drawn or getattr(panel, "published", False)
+        for panel in study.figures[figure].panels
+    )

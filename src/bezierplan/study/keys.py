@@ -1,5 +1,6 @@
-"""The tables of keys in config/README.md, generated from the models, and those of columns in results/README.md, from their declarations:
-`python -m bezierplan.study.keys` updates them, and a test ensures that they are up to date.
+"""The tables of keys in config/README.md, generated from the models, and those of columns in
+results/README.md, from their declarations: `python -m bezierplan.study.keys` updates them, and a
+test ensures that they are up to date.
 """
 
 import re
@@ -53,12 +54,17 @@ _ABOVE = ("kind", "test")
 
 def described(name: str) -> str:
     """The tables of a file's keys, as Markdown."""
-    return "\n\n".join(f"{above}:\n\n{_by_kind(of) if isinstance(of, dict) else _table(of)}" for above, of in GROUPS[name])
+    return "\n\n".join(
+        f"{above}:\n\n{_by_kind(of) if isinstance(of, dict) else _table(of)}"
+        for above, of in GROUPS[name]
+    )
 
 
 def _table(model: type[Model]) -> str:
     """A row for each key."""
-    rows = [f"| {_name(name, field)} | {field.description} |" for name, field in keys(model).items()]
+    rows = [
+        f"| {_name(name, field)} | {field.description} |" for name, field in keys(model).items()
+    ]
     return "\n".join(["| key | means |", "| --- | --- |", *rows])
 
 
@@ -69,12 +75,17 @@ def _by_kind(models: dict[str, type[Model]]) -> str:
         for name, field in keys(model).items():
             if name not in _ABOVE:
                 rows.setdefault((_name(name, field), field.description), []).append(f"`{kind}`")
-    shared = sorted(rows.items(), key=lambda row: -len(row[1]) if len(row[1]) > len(models) / 2 else 0)
+    shared = sorted(
+        rows.items(), key=lambda row: -len(row[1]) if len(row[1]) > len(models) / 2 else 0
+    )
     return "\n".join(
         [
             "| kind | key | means |",
             "| --- | --- | --- |",
-            *(f"| {', '.join(kinds) if len(kinds) < len(models) else 'all'} | {name} | {text} |" for (name, text), kinds in shared),
+            *(
+                f"| {', '.join(kinds) if len(kinds) < len(models) else 'all'} | {name} | {text} |"
+                for (name, text), kinds in shared
+            ),
         ]
     )
 
@@ -85,24 +96,41 @@ def _name(name: str, field: FieldInfo) -> str:
 
 
 # How the type of a column's values is printed.
-_PRINTED = {columns.RunName: "word", str: "word", int: "whole number", float: "number", bool: "flag", list[float]: "numbers"}
+_PRINTED = {
+    columns.RunName: "word",
+    str: "word",
+    int: "whole number",
+    float: "number",
+    bool: "flag",
+    list[float]: "numbers",
+}
 
 
 def columns_of(table: columns.Table) -> str:
     """The table of columns of a kind of file, as Markdown."""
-    return _columns([(name, kind, about.unit, about.meaning) for name, (kind, about) in columns.declared(*table.every).items()])
+    return _columns(
+        [
+            (name, kind, about.unit, about.meaning)
+            for name, (kind, about) in columns.declared(*table.every).items()
+        ]
+    )
 
 
 def columns_of_drives(table: columns.Table) -> str:
     """Likewise of drives: columns that mean something else, and those that only drives have."""
     every, own = columns.declared(*table.every), columns.declared(table.drives)
     other = [(name, kind, "", about.drive) for name, (kind, about) in every.items() if about.drive]
-    return _columns([*other, *((name, kind, about.unit, about.meaning) for name, (kind, about) in own.items())])
+    return _columns(
+        [*other, *((name, kind, about.unit, about.meaning) for name, (kind, about) in own.items())]
+    )
 
 
 def _columns(rows: list[tuple[str, type, str, str]]) -> str:
     """Name, type, unit and meaning of each column."""
-    lines = [f"| `{name}` | {_PRINTED[kind]} | {unit} | {meaning} |" for name, kind, unit, meaning in rows]
+    lines = [
+        f"| `{name}` | {_PRINTED[kind]} | {unit} | {meaning} |"
+        for name, kind, unit, meaning in rows
+    ]
     return "\n".join(["| column | values | unit | meaning |", "| --- | --- | --- | --- |", *lines])
 
 
@@ -118,14 +146,20 @@ def renewed(text: str) -> str:
 def renewed_columns(text: str) -> str:
     """The text of results/README.md with tables that match the current declarations."""
     every = {name: columns_of(table) for name, table in columns.TABLES.items()}
-    drives = {f"{name} of drives": columns_of_drives(table) for name, table in columns.TABLES.items()}
+    drives = {
+        f"{name} of drives": columns_of_drives(table) for name, table in columns.TABLES.items()
+    }
     return _renewed(text, every | drives, "columns")
 
 
 def _renewed(text: str, tables: dict[str, str], what: str) -> str:
-    """A text with other tables between marks, such as `<!-- keys of claims.yaml -->` and `<!-- /keys -->`."""
+    """A text with other tables between marks, such as `<!-- keys of claims.yaml -->` and `<!--
+    /keys -->`.
+    """
     for name, table in tables.items():
-        marked = re.compile(rf"(<!-- {what} of {re.escape(name)} -->\n).*?(<!-- /{what} -->)", re.DOTALL)
+        marked = re.compile(
+            rf"(<!-- {what} of {re.escape(name)} -->\n).*?(<!-- /{what} -->)", re.DOTALL
+        )
         text = marked.sub(partial(_between, table), text)
     return text
 

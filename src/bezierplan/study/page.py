@@ -26,7 +26,9 @@ def file(scale: str) -> str:
 
 
 def is_whole(page_file: Path) -> bool:
-    """Whether a page ends as it should: one that was cut short is as new as its inputs, and would never be made again."""
+    """Whether a page ends as it should: one that was cut short is as new as its inputs, and would
+    never be made again.
+    """
     with page_file.open("rb") as content:
         content.seek(max(0, page_file.stat().st_size - len(_END) - 2))
         return content.read().strip().endswith(_END)
@@ -35,8 +37,16 @@ def is_whole(page_file: Path) -> bool:
 def inputs(studies: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
     made = _made(studies, scale, _artefacts(studies, scale))
-    tables = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if _summary(scale) in made else []
-    return {"made": made, "summary": tables, "verified": [f"results/{scale}/verified.json"]} | _shown(studies, scale)
+    tables = (
+        [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")]
+        if _summary(scale) in made
+        else []
+    )
+    return {
+        "made": made,
+        "summary": tables,
+        "verified": [f"results/{scale}/verified.json"],
+    } | _shown(studies, scale)
 
 
 def _shown(studies: Studies, scale: str) -> dict[str, list[str]]:
@@ -52,36 +62,62 @@ def _shown(studies: Studies, scale: str) -> dict[str, list[str]]:
 
 
 def verified_inputs(studies: Studies, scale: str) -> dict[str, list[str]]:
-    """Input files of the check of all runs and bounds that the page shows. drives: those behind the bounds of worlds that move."""
-    return _shown(studies, scale) | {"drives": list(dict.fromkeys(drive for *_, drives in _verified(studies, scale) for drive in drives))}
+    """Input files of the check of all runs and bounds that the page shows. drives: those behind the
+    bounds of worlds that move.
+    """
+    return _shown(studies, scale) | {
+        "drives": list(
+            dict.fromkeys(drive for *_, drives in _verified(studies, scale) for drive in drives)
+        )
+    }
 
 
 def verified_params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
-    """Params of the check: `job`, for each experiment its files of problems, of bounds, of runs, of all drives. root: as in `params`."""
+    """Params of the check: `job`, for each experiment its files of problems, of bounds, of runs, of
+    all drives. root: as in `params`.
+    """
     job = [
-        [root + problems, root + bounds, *([root + file for file in files] for files in (runs, drives))]
+        [
+            root + problems,
+            root + bounds,
+            *([root + file for file in files] for files in (runs, drives)),
+        ]
         for problems, bounds, runs, drives in _verified(studies, scale)
     ]
     return {"job": job, "code": versioned_digest(str(targets.SCRIPTS / "verified.py"))}
 
 
 def _verified(studies: Studies, scale: str) -> Iterator[tuple[str, str, list[str], list[str]]]:
-    """The files of problems, of bounds, of the runs that the page shows, and of all drives, of each experiment."""
+    """The files of problems, of bounds, of the runs that the page shows, and of all drives, of each
+    experiment.
+    """
     for key, names in _artefacts(studies, scale).items():
         for experiment, files in _experiments_behind(studies, scale, key, names).items():
-            drives = targets.drives(studies, scale, key, experiment) if studies[key].moves(experiment) else []
+            drives = (
+                targets.drives(studies, scale, key, experiment)
+                if studies[key].moves(experiment)
+                else []
+            )
             yield files.problems, files.bounds, files.chunks, drives
 
 
 def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
-    """Params of the page. Alternatives and interpretations are shown if they have been tried: the page does not ask for them.
+    """Params of the page. Alternatives and interpretations are shown if they have been tried: the
+    page does not ask for them.
 
-    root: what stands before the paths of results, with the slash at its end, in a workflow of which this one is a module.
+    root: what stands before the paths of results, with the slash at its end, in a workflow of which
+    this one is a module.
     """
     tried = {key: _tried(f"{root}results/{scale}/{key}") for key in studies}
     shown = _artefacts(studies, scale)
     return {
-        "job": {"scale": scale, "studies": {key: _study(studies, scale, key, names, tried[key], root) for key, names in shown.items()}},
+        "job": {
+            "scale": scale,
+            "studies": {
+                key: _study(studies, scale, key, names, tried[key], root)
+                for key, names in shown.items()
+            },
+        },
         "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
         "code": versioned_digest(str(targets.SCRIPTS / "page.py")),
@@ -89,23 +125,38 @@ def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
 
 
 def _tried(folder: str) -> dict[str, str]:
-    """Tables in the folder of a study that are made only if asked for; those of interpretations are made together."""
+    """Tables in the folder of a study that are made only if asked for; those of interpretations are
+    made together.
+    """
     files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", *SEARCHED)}
     there = {name: file for name, file in files.items() if Path(file).is_file()}
-    return there if there.keys() >= set(SEARCHED) else {name: file for name, file in there.items() if name not in SEARCHED}
+    return (
+        there
+        if there.keys() >= set(SEARCHED)
+        else {name: file for name, file in there.items() if name not in SEARCHED}
+    )
 
 
 def _artefacts(studies: Studies, scale: str) -> dict[str, list[str]]:
-    """By study, the names of the tables and figures of a scale, also of a table that is as at `full` if the summary counts it."""
+    """By study, the names of the tables and figures of a scale, also of a table that is as at
+    `full` if the summary counts it.
+    """
     if scale == "smoke":
         made = jobs.smoke(studies)[0]
-        return {key: in_printed_order([name for study, name in made if study == key]) for key in studies}
-    counted = set(targets.comparison_files(studies, scale).values()) if _summary(scale) in targets.files_of_scale(studies, scale) else set()
+        return {
+            key: in_printed_order([name for study, name in made if study == key]) for key in studies
+        }
+    counted = (
+        set(targets.comparison_files(studies, scale).values())
+        if _summary(scale) in targets.files_of_scale(studies, scale)
+        else set()
+    )
     return {
         key: [
             name
             for name in in_printed_order([*study.tables, *study.figures])
-            if name in targets.artefacts_of(study, scale) or counted.intersection(targets.files_of(studies, scale, key, name))
+            if name in targets.artefacts_of(study, scale)
+            or counted.intersection(targets.files_of(studies, scale, key, name))
         ]
         for key, study in studies.items()
     }
@@ -116,47 +167,88 @@ def _summary(scale: str) -> str:
 
 
 def _made(studies: Studies, scale: str, shown: dict[str, list[str]]) -> list[str]:
-    own = [each for study, names in shown.items() for name in names for each in targets.files_of(studies, scale, study, name)]
-    return own if scale == "smoke" else list(dict.fromkeys([*targets.files_of_scale(studies, scale), *own]))
+    own = [
+        each
+        for study, names in shown.items()
+        for name in names
+        for each in targets.files_of(studies, scale, study, name)
+    ]
+    return (
+        own
+        if scale == "smoke"
+        else list(dict.fromkeys([*targets.files_of_scale(studies, scale), *own]))
+    )
 
 
-def _experiments_behind(studies: Studies, scale: str, key: str, names: list[str]) -> dict[str, Files]:
-    """Files of the experiments behind some tables and figures of a study and its claims, with the methods that these show."""
+def _experiments_behind(
+    studies: Studies, scale: str, key: str, names: list[str]
+) -> dict[str, Files]:
+    """Files of the experiments behind some tables and figures of a study and its claims, with the
+    methods that these show.
+    """
     shown = [targets.shown_by(studies[key], scale, name) for name in names]
     if scale != "smoke" and studies[key].claims:
         shown.append(targets.judged_by_claims(studies[key], scale))
     behind: dict[str, Files] = {}
     for experiments in shown:
         for name, files in experiments.items():
-            behind[name] = files._replace(runs=(behind[name].runs if name in behind else {}) | files.runs)
+            behind[name] = files._replace(
+                runs=(behind[name].runs if name in behind else {}) | files.runs
+            )
     return behind
 
 
 def _traces(study: Study, experiment: str, files: Files) -> list[str]:
     """Traces of the runs of an experiment, if these are drives."""
-    return [str(Path(chunk).with_suffix(".traces.parquet")) for chunk in files.chunks] if study.moves(experiment) else []
+    return (
+        [str(Path(chunk).with_suffix(".traces.parquet")) for chunk in files.chunks]
+        if study.moves(experiment)
+        else []
+    )
 
 
-def _study(studies: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str) -> dict[str, Any]:
-    """What the page needs to know of a study beside its results. made: the names of its tables and figures."""
+def _study(
+    studies: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str
+) -> dict[str, Any]:
+    """What the page needs to know of a study beside its results. made: the names of its tables and
+    figures.
+    """
     study, folder = studies[key], f"{root}results/{scale}/{key}"
     judged = scale != "smoke" and study.claims
-    files = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"} if judged else {}
+    files = (
+        {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"} if judged else {}
+    )
     audit = f"{folder}/audit.csv"
-    files |= {"audit": audit} if scale != "smoke" and audit in targets.files_of_study(studies, scale, key) else {}
-    described = {name: {"title": spec.title, "caption": jobs.caption(study, name, scale)} for name, spec in _specs(study, made).items()}
+    files |= (
+        {"audit": audit}
+        if scale != "smoke" and audit in targets.files_of_study(studies, scale, key)
+        else {}
+    )
+    described = {
+        name: {"title": spec.title, "caption": jobs.caption(study, name, scale)}
+        for name, spec in _specs(study, made).items()
+    }
     return {
         "title": study.title,
         "paper": _paper(key),
         "labels": study.labels,
-        "methods": {name: {"planner": study.planner(name), "settings": study.resolved(name)} for name in study.methods},
+        "methods": {
+            name: {"planner": study.planner(name), "settings": study.resolved(name)}
+            for name in study.methods
+        },
         "checks": {claim.id: claim.plain()["checks"] for claim in study.claims} if judged else {},
         "repeats": {each: _repeats(study, each) for each in (scale, "extended")},
-        "tables": {name: described[name] | {"spec": study.tables[name].plain()} for name in made if name in study.tables},
+        "tables": {
+            name: described[name] | {"spec": study.tables[name].plain()}
+            for name in made
+            if name in study.tables
+        },
         "figures": {name: described[name] for name in made if name in study.figures},
         "assumptions": [each.plain() for each in study.assumptions],
         "files": files | (tried if judged else {}),
-        "latex": f"{key}/tables.tex" if scale != "smoke" and targets.tables_of(study, scale) else "",
+        "latex": f"{key}/tables.tex"
+        if scale != "smoke" and targets.tables_of(study, scale)
+        else "",
         "experiments": _experiments(studies, scale, key, made, root),
     }
 
@@ -168,10 +260,14 @@ def _repeats(study: Any, scale: str) -> list[int]:
 
 
 def _paper(key: str) -> dict[str, Any] | None:
-    """The paper of a study, as CITATION.cff cites it: its entry's notes begin with the study's name. None for any other study."""
+    """The paper of a study, as CITATION.cff cites it: its entry's notes begin with the study's
+    name. None for any other study.
+    """
     file = TREE / "CITATION.cff"
     cited = checked.read(file)["references"] if file.is_file() else []
-    entry = next((each for each in cited if each.get("notes", "").split(":")[0].strip() == key), None)
+    entry = next(
+        (each for each in cited if each.get("notes", "").split(":")[0].strip() == key), None
+    )
     if entry is None:
         return None
     where = ", ".join(str(entry[name]) for name in ("journal", "year") if name in entry)
@@ -182,13 +278,19 @@ def _specs(study: Any, names: list[str]) -> dict[str, Any]:
     return {name: study.tables.get(name) or study.figures[name] for name in names}
 
 
-def _experiments(studies: Studies, scale: str, key: str, made: list[str], root: str) -> dict[str, dict[str, Any]]:
-    """The experiments whose runs the page shows: methods other than baselines, repeats, and files."""
+def _experiments(
+    studies: Studies, scale: str, key: str, made: list[str], root: str
+) -> dict[str, dict[str, Any]]:
+    """The experiments whose runs the page shows: methods other than baselines, repeats, and
+    files.
+    """
     study, experiments = studies[key], {}
     for name, files in _experiments_behind(studies, scale, key, made).items():
         if files.chunks:
             experiments[name] = {
-                "methods": [method for method in study.methods_of(name) if method not in study.baselines],
+                "methods": [
+                    method for method in study.methods_of(name) if method not in study.baselines
+                ],
                 "repeats": study.experiments[name].repeats[scale],
                 "runs": [f"{root}{chunk}" for chunk in files.chunks],
                 "problems": f"{root}{files.problems}",

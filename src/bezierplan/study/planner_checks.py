@@ -11,30 +11,42 @@ from bezierplan.study.files import inside
 
 
 def loaded(study: Study, method: str, location: str) -> ModuleType:
-    """The module of a method's planner. Raises Fault, beginning with a location, unless it has the interface of a planner and no
-    setting named like a column of the runs table."""
+    """The module of a method's planner. Raises Fault, beginning with a location, unless it has the
+    interface of a planner and no setting named like a column of the runs table.
+    """
     name = study.methods[method].planner
     location = f"{location}: planner: {name}"
     if name.endswith(".py"):
         inside(study.folder, name, location)
     elif name not in known_planners():
-        raise Fault(f"{location}: unknown{closest(name, known_planners())}; one of your own is a file, {name}.py")
+        raise Fault(
+            f"{location}: unknown{closest(name, known_planners())}; one of your own is a file, "
+            f"{name}.py"
+        )
     module = interface.loaded(study.planner(method), location)
     for setting in planner_settings(module):
-        # The column `generations` holds the number actually performed, so a setting of that name adds nothing.
+        # The column `generations` holds the number actually performed, so a setting of that name
+        # adds nothing.
         if setting in TAKEN and setting != "generations":
-            raise Fault(f"{location}: its setting {setting} is a column of the runs table, or joined to it; give it another name")
+            raise Fault(
+                f"{location}: its setting {setting} is a column of the runs table, or joined to "
+                f"it; give it another name"
+            )
     return module
 
 
 def check_complete(study: Study, location: str) -> None:
-    """Every method has a value for each of its settings. Raises Fault, which names all missing ones, by planner."""
+    """Every method has a value for each of its settings. Raises Fault, which names all missing
+    ones, by planner.
+    """
     missing: dict[str, dict[str, None]] = {}
     for method in study.methods:
         lacking = [name for name in study.accepted(method) if name not in study.resolved(method)]
         missing.setdefault(study.methods[method].planner, {}).update(dict.fromkeys(lacking))
     told = [
-        f"{', '.join(names)}: missing; {planner} needs {'it' if len(names) == 1 else 'them'}" for planner, names in missing.items() if names
+        f"{', '.join(names)}: missing; {planner} needs {'it' if len(names) == 1 else 'them'}"
+        for planner, names in missing.items()
+        if names
     ]
     if told:
         raise Fault(f"{location}: settings: {'; '.join(told)}")

@@ -1,5 +1,5 @@
-"""Files of published numbers: checks that they are tables, and that their columns, names and numbers fit the table that they are compared
-with.
+"""Files of published numbers: checks that they are tables, and that their columns, names and
+numbers fit the table that they are compared with.
 """
 
 import csv
@@ -41,7 +41,9 @@ class Rows(NamedTuple):
 
 
 def check_files(study: Study) -> None:
-    """Raise Fault unless each file of a study's folder `published` is a table: a header of different names, and rows as long as it."""
+    """Raise Fault unless each file of a study's folder `published` is a table: a header of
+    different names, and rows as long as it.
+    """
     for file in study.published_files():
         name = Path(file).name
         inside(study.folder, f"published/{name}", f"{relative(study.folder / 'published')}: {name}")
@@ -54,19 +56,27 @@ def read(file: Path) -> Rows:
     location = relative(file)
     text = text_of(file, location)
     if odd := next((char for char in text if not char.isprintable() and char not in "\r\n"), None):
-        raise Fault(f"{location}: line {text[: text.index(odd)].count(chr(10)) + 1}: has the character {odd!r}; expected csv")
+        raise Fault(
+            f"{location}: line {text[: text.index(odd)].count(chr(10)) + 1}: has the character "
+            f"{odd!r}; expected csv"
+        )
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     lines: list[tuple[int, list[str]]] = []
     try:
         for row in reader:
             lines += [(reader.line_num, row)] if row else []
             if len(lines) > MOST_ROWS + 1:
-                raise Fault(f"{location}: line {reader.line_num}: expected at most {MOST_ROWS} rows")
+                raise Fault(
+                    f"{location}: line {reader.line_num}: expected at most {MOST_ROWS} rows"
+                )
     except csv.Error as error:
         raise Fault(f"{location}: line {reader.line_num}: not csv ({error})") from None
     (_, header), *rows = lines or [(1, [])]
     if not lines:
-        raise Fault(f"{location}: line 1: the file is empty; expected a header of columns, and rows below it")
+        raise Fault(
+            f"{location}: line 1: the file is empty; expected a header of columns, and rows below "
+            f"it"
+        )
     if len(header) > MOST_COLUMNS:
         raise Fault(f"{location}: line 1: {len(header)} columns; expected at most {MOST_COLUMNS}")
     for number, column in enumerate(header):
@@ -78,7 +88,10 @@ def read(file: Path) -> Rows:
         raise Fault(f"{location}: line 1: has no rows below it; expected at least one")
     for number, row in rows:
         if len(row) != len(header):
-            raise Fault(f"{location}: line {number}: {len(row)} values; expected {len(header)} values, one a column")
+            raise Fault(
+                f"{location}: line {number}: {len(row)} values; expected {len(header)} values, "
+                f"one a column"
+            )
     tidy = Rows(header, [(number, dict(zip(header, row))) for number, row in rows])
     if set(header) >= TIDY:
         for number, row in tidy.rows:
@@ -94,12 +107,15 @@ def rows_of(study: Study, name: str) -> list[dict[str, str]]:
 def keys(study: Study, table: Pivot) -> list[str]:
     """The columns that tell the rows of a table's comparison apart."""
     given = read(study.folder / "published" / table.published).header if table.published else []
-    levels = [level for level in (*table.index, *table.columns) if level not in ("value", "statistic")]
+    levels = [
+        level for level in (*table.index, *table.columns) if level not in ("value", "statistic")
+    ]
     return list(dict.fromkeys([*(column for column in given if column not in COLUMNS), *levels]))
 
 
 def check(design: Design, table: Pivot, told: str) -> None:
-    """Raise Fault, with file, line, column and what would be right, for a file of published numbers that does not fit its table.
+    """Raise Fault, with file, line, column and what would be right, for a file of published numbers
+    that does not fit its table.
 
     told: where the table's description stands, for its keys that do not fit the file.
     """
@@ -109,13 +125,19 @@ def check(design: Design, table: Pivot, told: str) -> None:
     header, rows = read(file)
     for column in COLUMNS:
         if column not in header:
-            raise Fault(f"{location}: line 1: column {column} is missing; expected key columns, {', '.join(COLUMNS)}")
+            raise Fault(
+                f"{location}: line 1: column {column} is missing; expected key columns, "
+                f"{', '.join(COLUMNS)}"
+            )
     by_name = [column for column in header if column not in COLUMNS]
     for column in by_name:
         design.check_column([experiment], column, "column", f"{location}: line 1: column")
     for rule in table.monotone:
         if rule.along not in by_name:
-            raise Fault(f"{location}: line 1: column {rule.along} is missing; the table's key monotone has numbers in order along it")
+            raise Fault(
+                f"{location}: line 1: column {rule.along} is missing; the table's key monotone "
+                f"has numbers in order along it"
+            )
     known = {
         "metric": metrics.METRICS,
         "statistic": statistics.STATISTICS,
@@ -129,31 +151,62 @@ def check(design: Design, table: Pivot, told: str) -> None:
         where = f"{location}: line {number}"
         for column in (name for name in known if name in row):
             if row[column] not in known[column]:
-                raise Fault(f"{where}: {column}: {row[column]}: unknown{closest(row[column], known[column])}")
+                raise Fault(
+                    f"{where}: {column}: {row[column]}: "
+                    f"unknown{closest(row[column], known[column])}"
+                )
         for column in by_name:
             _check_key(design, experiment, column, row[column], chosen, where)
         _check_numbers(row, where)
-        design.check_metric([experiment], table.reads.get(row["metric"], row["metric"]), f"{where}: metric")
+        design.check_metric(
+            [experiment], table.reads.get(row["metric"], row["metric"]), f"{where}: metric"
+        )
         own = metrics.unit(row["metric"], unit)
         if row["unit"] != own:
-            raise Fault(f"{where}: unit: {row['unit']!r}; expected {own}, the unit of {row['metric']}")
-        shown = {name for entry in table.values if entry.metric == row["metric"] for name in entry.statistics}
+            raise Fault(
+                f"{where}: unit: {row['unit']!r}; expected {own}, the unit of {row['metric']}"
+            )
+        shown = {
+            name
+            for entry in table.values
+            if entry.metric == row["metric"]
+            for name in entry.statistics
+        }
         if shown and row["statistic"] != "unstated" and row["statistic"] not in shown:
-            raise Fault(f"{where}: statistic: {row['statistic']}: the table has none of {row['metric']}{closest(row['statistic'], shown)}")
+            raise Fault(
+                f"{where}: statistic: {row['statistic']}: the table has none of "
+                f"{row['metric']}{closest(row['statistic'], shown)}"
+            )
         name = (*(row[key] for key in by_name), row["metric"], row["statistic"])
         if name in lines:
-            raise Fault(f"{where}: the same keys, metric and statistic as line {lines[name]}; expected each once")
+            raise Fault(
+                f"{where}: the same keys, metric and statistic as line {lines[name]}; expected "
+                f"each once"
+            )
         lines[name] = number
     printed = {(row["metric"], row["statistic"]) for _, row in rows}
     for metric in table.reads:
         if metric not in {name for name, _ in printed}:
-            raise Fault(f"{told}: reads: {metric}: unknown{closest(metric, {name for name, _ in printed})}, metrics in {location}")
+            raise Fault(
+                f"{told}: reads: {metric}: "
+                f"unknown{closest(metric, {name for name, _ in printed})}, metrics in {location}"
+            )
     for number, rule in enumerate(table.monotone):
         if (rule.metric, rule.statistic) not in printed:
-            raise Fault(f"{told}: monotone: {number}: {location} has no {rule.statistic} of {rule.metric}, which must rise or fall")
+            raise Fault(
+                f"{told}: monotone: {number}: {location} has no {rule.statistic} of "
+                f"{rule.metric}, which must rise or fall"
+            )
 
 
-def _check_key(design: Design, experiment: str, column: str, text: str, rows: list[dict[str, Any]], location: str) -> None:
+def _check_key(
+    design: Design,
+    experiment: str,
+    column: str,
+    text: str,
+    rows: list[dict[str, Any]],
+    location: str,
+) -> None:
     """A text names a value of a key column."""
     if column == "repeat":
         values: list[Any] = list(range(design.study.experiments[experiment].repeats["full"]))
@@ -173,33 +226,58 @@ def _is_same(text: str, value: Any) -> bool:
 def _check_numbers(row: dict[str, str], location: str) -> None:
     _check_value(row["value"], location)
     n = row["n"]
-    if n and not (n.isascii() and n.isdecimal() and len(n) <= MOST_DIGITS and 1 <= int(n) <= MOST_RUNS):
+    if n and not (
+        n.isascii() and n.isdecimal() and len(n) <= MOST_DIGITS and 1 <= int(n) <= MOST_RUNS
+    ):
         wanted = f"a whole number from 1 to {MOST_RUNS}, or nothing"
-        raise Fault(f"{location}: n: {n[:MOST_DIGITS]!r}; expected how many runs the paper made, {wanted}")
+        raise Fault(
+            f"{location}: n: {n[:MOST_DIGITS]!r}; expected how many runs the paper made, {wanted}"
+        )
     value, metric, statistic = float(row["value"]), metrics.METRICS[row["metric"]], row["statistic"]
-    # What no paper can mean. A number that contradicts a map, the paper's own rule or another number is a matter of the audit.
+    # What no paper can mean. A number that contradicts a map, the paper's own rule or another
+    # number is a matter of the audit.
     spread = statistic in ("std", "iqr", "range")
-    signed = not spread and not isinstance(metric.least, str) and metric.least < 0 and statistic not in ("count", "share")
+    signed = (
+        not spread
+        and not isinstance(metric.least, str)
+        and metric.least < 0
+        and statistic not in ("count", "share")
+    )
     least = -LARGEST if signed else 0.0
     most = {"share": 1.0, "count": float(n or MOST_RUNS)}.get(statistic, LARGEST)
     if not least <= value <= most:
-        limits = f"a number of at least {least:g}" + (f", at most {most:g}" if most < LARGEST else "")
-        raise Fault(f"{location}: value: {row['value']}: expected {limits}, as the {statistic} of {row['metric']} is")
+        limits = f"a number of at least {least:g}" + (
+            f", at most {most:g}" if most < LARGEST else ""
+        )
+        raise Fault(
+            f"{location}: value: {row['value']}: expected {limits}, as the {statistic} of "
+            f"{row['metric']} is"
+        )
     if statistic == "count" and not value.is_integer():
-        raise Fault(f"{location}: value: {row['value']}: expected a whole number, as the count of {row['metric']} is")
+        raise Fault(
+            f"{location}: value: {row['value']}: expected a whole number, as the count of "
+            f"{row['metric']} is"
+        )
 
 
 def _check_value(text: str, location: str, empty: bool = False) -> None:
-    """A text is a number as papers print it. An exponent of three digits is no measurement, and exact arithmetic with it never ends."""
+    """A text is a number as papers print it. An exponent of three digits is no measurement, and
+    exact arithmetic with it never ends.
+    """
     if empty and not text:
         return
     if len(text) > MOST_DIGITS or not _NUMBER.fullmatch(text) or abs(float(text)) > LARGEST:
-        wanted = f"a number in ASCII digits, of at most {MOST_DIGITS} characters, at most {LARGEST:g} in absolute value"
+        wanted = (
+            f"a number in ASCII digits, of at most {MOST_DIGITS} characters, at most "
+            f"{LARGEST:g} in absolute value"
+        )
         raise Fault(f"{location}: value: {text[:MOST_DIGITS]!r}; expected {wanted}")
 
 
 def check_arithmetic(study: Study, arithmetic: Check, location: str) -> None:
-    """The printed cells of a check of the kind `published_arithmetic` exist and are numbers. Raises Fault, beginning with a location."""
+    """The printed cells of a check of the kind `published_arithmetic` exist and are numbers. Raises
+    Fault, beginning with a location.
+    """
     selectors = [(f"of: {number}", selector) for number, selector in enumerate(arithmetic.of)]
     if isinstance(arithmetic.equals, dict):
         selectors.append(("equals", arithmetic.equals))
@@ -207,8 +285,15 @@ def check_arithmetic(study: Study, arithmetic: Check, location: str) -> None:
         cells = _cells(study, selector, f"{location}: {key}")
         for cell in cells:
             _check_value(cell["value"], f"{location}: {key}: {_told(selector)}", empty=True)
-        if arithmetic.form == "increase_percent" and key == "of: 0" and any(cell["value"] and not float(cell["value"]) for cell in cells):
-            raise Fault(f"{location}: {key}: {_told(selector)}: is 0; expected another number, of which the increase is a share")
+        if (
+            arithmetic.form == "increase_percent"
+            and key == "of: 0"
+            and any(cell["value"] and not float(cell["value"]) for cell in cells)
+        ):
+            raise Fault(
+                f"{location}: {key}: {_told(selector)}: is 0; expected another number, of which "
+                f"the increase is a share"
+            )
 
 
 def _cells(study: Study, selector: dict[str, Any], location: str) -> list[dict[str, str]]:
@@ -218,10 +303,15 @@ def _cells(study: Study, selector: dict[str, Any], location: str) -> list[dict[s
     header: set[str] = set()
     for table in one_or_list(selector["table"]):
         if table not in known:
-            raise Fault(f"{location}: table: {table}: unknown{closest(table, known)}, files of the folder published")
+            raise Fault(
+                f"{location}: table: {table}: unknown{closest(table, known)}, files of the folder "
+                f"published"
+            )
         content = read(study.folder / "published" / f"{table}.csv")
         if "value" not in content.header:
-            raise Fault(f"{location}: table: {table}: has no column value; expected a table of numbers")
+            raise Fault(
+                f"{location}: table: {table}: has no column value; expected a table of numbers"
+            )
         header.update(content.header)
         rows += [row for _, row in content.rows]
     for column, wanted in selector.items():
@@ -229,11 +319,17 @@ def _cells(study: Study, selector: dict[str, Any], location: str) -> list[dict[s
             continue
         if column not in header:
             raise Fault(f"{location}: {column}: unknown{closest(column, header)}")
-        rows = [row for row in rows if any(_is_same(row.get(column, ""), value) for value in one_or_list(wanted))]
+        rows = [
+            row
+            for row in rows
+            if any(_is_same(row.get(column, ""), value) for value in one_or_list(wanted))
+        ]
     if not rows:
         raise Fault(f"{location}: {_told(selector)}: no such cell is printed")
     return rows
 
 
 def _told(selector: dict[str, Any]) -> str:
-    return ", ".join(f"{column}={' '.join(map(str, one_or_list(wanted)))}" for column, wanted in selector.items())
+    return ", ".join(
+        f"{column}={' '.join(map(str, one_or_list(wanted)))}" for column, wanted in selector.items()
+    )

@@ -1,5 +1,5 @@
-"""Read studies from their folders and check them: every possible fault is found here, before the first job starts, and reported in
-one line (`checked.Fault`).
+"""Read studies from their folders and check them: every possible fault is found here, before the
+first job starts, and reported in one line (`checked.Fault`).
 """
 
 import json
@@ -28,29 +28,43 @@ Folders = dict[Path, dict[str, Any]]
 
 
 def read_config(config: Mapping[str, Any], alone: bool = False) -> Folders:
-    """The studies that a configuration names: config/config.yaml in the working folder, updated with the given values, or these alone.
+    """The studies that a configuration names: config/config.yaml in the working folder, updated
+    with the given values, or these alone.
 
-    Alone they count in a workflow that includes this one: config/config.yaml is its own there. Raises Fault.
+    Alone they count in a workflow that includes this one: config/config.yaml is its own there.
+    Raises Fault.
     """
     file = Path("config/config.yaml")
     location = "config of the module" if alone else f"{file} or --config"
-    content = parsed(ConfigFile, (checked.read(file) if file.is_file() and not alone else {}) | dict(config), location)
+    content = parsed(
+        ConfigFile,
+        (checked.read(file) if file.is_file() and not alone else {}) | dict(config),
+        location,
+    )
     folders: Folders = {}
     for name in content.studies:
         folder = STUDIES / name if "/" not in name else Path(name)
         if not (folder / "experiments.yaml").exists():
             known = [location.parent.name for location in STUDIES.glob("*/experiments.yaml")]
-            raise Fault(f"{location}: studies: {name}: no experiments.yaml in {relative(folder)}{closest(name, known)}")
+            raise Fault(
+                f"{location}: studies: {name}: no experiments.yaml in "
+                f"{relative(folder)}{closest(name, known)}"
+            )
         folders[folder] = content.settings.get(folder.resolve().name, {})
     names = [folder.resolve().name for folder in folders]
     for name in content.settings:
         if name not in names:
-            raise Fault(f"{location}: settings: {name}: not one of the studies to run{closest(name, names)}")
+            raise Fault(
+                f"{location}: settings: {name}: not one of the studies to run{closest(name, names)}"
+            )
     return folders
 
 
-def load(folders: Iterable[Path] | Folders, at_changes: Callable[[], object] = lambda: None) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked, unless the same content was before. Raises Fault.
+def load(
+    folders: Iterable[Path] | Folders, at_changes: Callable[[], object] = lambda: None
+) -> dict[str, Study]:
+    """The studies in folders, by name, read and checked, unless the same content was before. Raises
+    Fault.
 
     at_changes: called before each check, which takes seconds.
     """
@@ -62,9 +76,13 @@ def load(folders: Iterable[Path] | Folders, at_changes: Callable[[], object] = l
             before = stamps.remembered(stamp, folder)
             study = before or read_study(folder, changed)
             if study.key in studies:
-                raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
+                raise Fault(
+                    f"{relative(folder)}: a study of the name {study.key} is there already; "
+                    f"rename the folder"
+                )
             if not before:
-                # What checks need takes long to import, and most starts find nothing that has changed.
+                # What checks need takes long to import, and most starts find nothing that has
+                # changed.
                 at_changes()
                 from bezierplan.study.checks import check
 
@@ -73,7 +91,9 @@ def load(folders: Iterable[Path] | Folders, at_changes: Callable[[], object] = l
         except Fault as fault:
             if not changed:
                 raise
-            raise Fault(f"{fault} (with the configuration's settings: {json.dumps(changed)[:300]})") from None
+            raise Fault(
+                f"{fault} (with the configuration's settings: {json.dumps(changed)[:300]})"
+            ) from None
         studies[study.key] = study
     return studies
 
@@ -81,25 +101,40 @@ def load(folders: Iterable[Path] | Folders, at_changes: Callable[[], object] = l
 def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
     """The study in a folder, with each of its files checked on its own. Raises Fault.
 
-    changed: settings that take the place of those of the same name in experiments.yaml; those of one planner are taken one by one.
+    changed: settings that take the place of those of the same name in experiments.yaml; those of
+    one planner are taken one by one.
     """
     experiments = _read(folder, "experiments", ExperimentsFile)
     for name, value in (changed or {}).items():
         own = experiments.settings.get(name)
-        experiments.settings[name] = own | value if isinstance(own, dict) and isinstance(value, dict) else value
+        experiments.settings[name] = (
+            own | value if isinstance(own, dict) and isinstance(value, dict) else value
+        )
     artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
-    claims, assumptions = _read(folder, "claims", ClaimsFile), _read(folder, "assumptions", AssumptionsFile)
+    claims, assumptions = (
+        _read(folder, "claims", ClaimsFile),
+        _read(folder, "assumptions", AssumptionsFile),
+    )
     for name in experiments.baselines:
         if name in experiments.methods:
-            raise Fault(f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this name already")
+            raise Fault(
+                f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this "
+                f"name already"
+            )
     return Study(
         key=folder.resolve().name,
         folder=folder,
         title=experiments.title,
         methods=experiments.methods | experiments.baselines,
         baselines=frozenset(experiments.baselines),
-        settings={name: value for name, value in experiments.settings.items() if not isinstance(value, dict)},
-        planner_settings={name: value for name, value in experiments.settings.items() if isinstance(value, dict)},
+        settings={
+            name: value
+            for name, value in experiments.settings.items()
+            if not isinstance(value, dict)
+        },
+        planner_settings={
+            name: value for name, value in experiments.settings.items() if isinstance(value, dict)
+        },
         presets=experiments.presets,
         policies=experiments.policies,
         workspaces=experiments.workspaces,
@@ -127,32 +162,58 @@ def _read(folder: Path, name: str, model: type[M]) -> M | None:
 
 
 def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
-    """Raise Fault for a study whose results or targets would clash with others. taken: names of rules and other targets."""
+    """Raise Fault for a study whose results or targets would clash with others. taken: names of
+    rules and other targets.
+    """
     owners = dict.fromkeys(taken, "the workflow")
     for key, study in given.items():
         location = relative(study.folder)
         check_name(key, f"{location}: {key}")
         if {"{", "}"} & set(location):
-            raise Fault(f"{location}: Snakemake reads braces as a pattern; expected a folder without them; rename it")
+            raise Fault(
+                f"{location}: Snakemake reads braces as a pattern; expected a folder without "
+                f"them; rename it"
+            )
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
-            raise Fault(f"{location}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
+            raise Fault(
+                f"{location}: config/studies has a study {key} already, whose results this one "
+                f"would overwrite; rename the folder"
+            )
         for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
             if target in owners:
-                raise Fault(f"{location}: {target}: {owners[target]} has a target of this name already; rename the folder")
+                raise Fault(
+                    f"{location}: {target}: {owners[target]} has a target of this name already; "
+                    f"rename the folder"
+                )
             owners[target] = f"study {key}"
 
 
 def check_name(key: str, location: str) -> None:
     """Raise Fault, beginning with a location, unless a study can have this name."""
-    if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key) or len(key) > LONGEST_NAME or key.lower() in DEVICES:
-        wanted = f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the name of a device"
-        raise Fault(f"{location}: not a name of a study; expected {wanted}; choose another name for its folder")
+    if (
+        not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key)
+        or len(key) > LONGEST_NAME
+        or key.lower() in DEVICES
+    ):
+        wanted = (
+            f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the "
+            f"name of a device"
+        )
+        raise Fault(
+            f"{location}: not a name of a study; expected {wanted}; choose another name for its "
+            f"folder"
+        )
 
 
 def check_start(cores: int | None) -> None:
-    """Raise Fault unless there is a core to work on, if their number is given, and results can be written below the working folder."""
+    """Raise Fault unless there is a core to work on, if their number is given, and results can be
+    written below the working folder.
+    """
     if cores is not None and cores < 1:
         raise Fault(f"--cores: {cores}; expected a number of at least 1")
     for location in (Path(), Path("results")):
         if location.exists() and not (location.is_dir() and os.access(location, os.W_OK | os.X_OK)):
-            raise Fault(f"{location.resolve()}: cannot be written; the workflow writes its results into results/ of the working folder")
+            raise Fault(
+                f"{location.resolve()}: cannot be written; the workflow writes its results into "
+                f"results/ of the working folder"
+            )

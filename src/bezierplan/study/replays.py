@@ -15,20 +15,26 @@ from bezierplan.workspaces.worlds import from_json, to_json
 
 
 def replay(name: str, studies: dict[str, Study]) -> results.Results:
-    """Reproduce the run named `study/experiment/condition/method/repeat`: one row, with its problem and bound.
+    """Reproduce the run named `study/experiment/condition/method/repeat`: one row, with its problem
+    and bound.
 
     Raises Fault, which states the unknown part of the name.
     """
     parts = name.split("/")
     if len(parts) != 5:
-        raise Fault(f"{name}: not the name of a run; expected study/experiment/condition/method/repeat")
+        raise Fault(
+            f"{name}: not the name of a run; expected study/experiment/condition/method/repeat"
+        )
     key, experiment, condition_name, method, repeat = parts
     study = _named(key, studies, f"{name}: study")
     _named(experiment, study.experiments, f"{name}: experiment")
     _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
     # Neither the seed nor the settings of a run depend on scale or chunk.
     described = job(study, experiment, method, "full", 0)
-    conditions = {each.name: each for each in execution.conditions(list(described["problems"]), described["vary"])}
+    conditions = {
+        each.name: each
+        for each in execution.conditions(list(described["problems"]), described["vary"])
+    }
     condition = _named(condition_name, conditions, f"{name}: condition")
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
@@ -40,7 +46,9 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
         raise Fault(str(error)) from None
 
 
-def _rerun(described: dict, condition: execution.Condition, repeat: int, study: Study) -> results.Results:
+def _rerun(
+    described: dict, condition: execution.Condition, repeat: int, study: Study
+) -> results.Results:
     """A run where nothing moves."""
     made, _ = problems.build_all(problems_job(study, described["experiment"], "full"), study.folder)
     problem = made[condition.problem]
@@ -50,15 +58,21 @@ def _rerun(described: dict, condition: execution.Condition, repeat: int, study: 
     return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())
 
 
-def _redriven(described: dict, condition: execution.Condition, repeat: int, study: Study) -> results.Results:
+def _redriven(
+    described: dict, condition: execution.Condition, repeat: int, study: Study
+) -> results.Results:
     """A run in a world that moves."""
-    made, _, found = worlds.build_all(problems_job(study, described["experiment"], "full"), study.folder)
+    made, _, found = worlds.build_all(
+        problems_job(study, described["experiment"], "full"), study.folder
+    )
     problem, world = made[condition.problem], found[condition.problem]
     ride = rides.run(described, condition, repeat, problem, from_json(to_json(world)))
     row, _ = rides.row(described, condition, repeat, ride, problem, world)
     named, moving = {condition.problem: problem}, {condition.problem: world}
     arrivals = {condition.problem: row["arrival"]} if row["feasible"] else {}
-    joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving, arrivals).to_pandas())
+    joined = results.joined(
+        pd.DataFrame([row]), named, rides.bounds_of(named, moving, arrivals).to_pandas()
+    )
     return joined._replace(worlds=moving, jobs={described["method"]: described})
 
 

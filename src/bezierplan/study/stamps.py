@@ -1,11 +1,13 @@
-"""Studies that were checked before: one file for each content, with the study as it was read, so that a start reads and checks only what
-has changed.
+"""Studies that were checked before: one file for each content, with the study as it was read, so
+that a start reads and checks only what has changed.
 
-Most of a start would otherwise be spent on YAML, and on building every problem of every study. The name of a stamp is a digest of all files
-in the study's folder and of this package, so nothing can be stale.
+Most of a start would otherwise be spent on YAML, and on building every problem of every study. The
+name of a stamp is a digest of all files in the study's folder and of this package, so nothing can
+be stale.
 
-A stamp is a pickle, from which models come back five times as fast as from JSON through their checks. It is read only if nobody else can
-have written it, and only what a study consists of is made from it: no stamp can call a function.
+A stamp is a pickle, from which models come back five times as fast as from JSON through their
+checks. It is read only if nobody else can have written it, and only what a study consists of is
+made from it: no stamp can call a function.
 """
 
 import contextlib
@@ -33,7 +35,8 @@ MOST_READ = 100_000_000
 
 
 def stamp_of(folder: Path, changed: str = "") -> Path | None:
-    """Where the stamp of a study's folder lies; None if its content cannot be known: links, other special files, or too much of it.
+    """Where the stamp of a study's folder lies; None if its content cannot be known: links, other
+    special files, or too much of it.
 
     changed: what a configuration puts in the place of the study's own, as text.
     """
@@ -50,7 +53,10 @@ def stamp_of(folder: Path, changed: str = "") -> Path | None:
                     read += path.stat().st_size
                     if read > MOST_READ:
                         return None
-                    digest.update(f"\0{path.relative_to(folder)}\0".encode() + hashlib.sha256(path.read_bytes()).digest())
+                    digest.update(
+                        f"\0{path.relative_to(folder)}\0".encode()
+                        + hashlib.sha256(path.read_bytes()).digest()
+                    )
     except OSError:
         return None
     return STAMPS / digest.hexdigest()[:32]
@@ -60,11 +66,26 @@ class _Unpickler(pickle.Unpickler):
     """Makes models of this package, studies, and plain values."""
 
     def find_class(self, module: str, name: str) -> type:
-        """The class of a name. Raises UnpicklingError for anything else that a pickle could call."""
-        if (module, name) in (("builtins", "frozenset"), ("builtins", "set"), ("pathlib", "PosixPath"), ("pathlib", "WindowsPath")):
+        """The class of a name. Raises UnpicklingError for anything else that a pickle could
+        call.
+        """
+        if (module, name) in (
+            ("builtins", "frozenset"),
+            ("builtins", "set"),
+            ("pathlib", "PosixPath"),
+            ("pathlib", "WindowsPath"),
+        ):
             return super().find_class(module, name)
-        found = super().find_class(module, name) if module.split(".")[0] == ROOT and "." not in name else None
-        if isinstance(found, type) and issubclass(found, Model | Study) and found.__module__ == module:
+        found = (
+            super().find_class(module, name)
+            if module.split(".")[0] == ROOT and "." not in name
+            else None
+        )
+        if (
+            isinstance(found, type)
+            and issubclass(found, Model | Study)
+            and found.__module__ == module
+        ):
             return found
         raise pickle.UnpicklingError(f"{module}.{name}: no part of a study")
 
@@ -76,7 +97,9 @@ def _is_ours(path: Path) -> bool:
 
 
 def remembered(stamp: Path | None, folder: Path) -> Study | None:
-    """The study of a stamp, which now lies in a folder; None if there is none, or the stamp is damaged, or others could have written it."""
+    """The study of a stamp, which now lies in a folder; None if there is none, or the stamp is
+    damaged, or others could have written it.
+    """
     try:
         if stamp and _is_ours(stamp.parent) and _is_ours(stamp):
             return replace(_Unpickler(io.BytesIO(stamp.read_bytes())).load(), folder=folder)
@@ -90,7 +113,8 @@ def remember(stamp: Path | None, study: Study) -> None:
     if stamp:
         with contextlib.suppress(OSError):
             stamp.parent.mkdir(parents=True, exist_ok=True)
-            # Whatever the user's mask says, others may not write here; in a folder that another user made, nothing is kept.
+            # Whatever the user's mask says, others may not write here; in a folder that another
+            # user made, nothing is kept.
             stamp.parent.chmod(0o700)
             part = stamp.with_suffix(f".{os.getpid()}")
             part.write_bytes(pickle.dumps(study))
@@ -100,8 +124,11 @@ def remember(stamp: Path | None, study: Study) -> None:
 
 @cache
 def _package() -> str:
-    """The versions of Python and of pydantic, whose models a study consists of, and a digest of all files of this package."""
+    """The versions of Python and of pydantic, whose models a study consists of, and a digest of all
+    files of this package.
+    """
     files = sorted(PACKAGE.rglob("*.py"))
     return f"{sys.version} {pydantic.VERSION}" + "".join(
-        f"{file.relative_to(PACKAGE)} {hashlib.sha256(file.read_bytes()).hexdigest()}" for file in files
+        f"{file.relative_to(PACKAGE)} {hashlib.sha256(file.read_bytes()).hexdigest()}"
+        for file in files
     )

@@ -1,10 +1,12 @@
 """What Snakemake needs for a job: its input files, its params, and the files that make up a target.
 
-Each function takes the studies by name, and the parts of a job's output path as keyword arguments: scale, study, experiment, method, chunk,
-table, listing, figure, alternative. Paths are relative to the working folder.
+Each function takes the studies by name, and the parts of a job's output path as keyword arguments:
+scale, study, experiment, method, chunk, table, listing, figure, alternative. Paths are relative to
+the working folder.
 
-Params hold everything that determines what a job writes, and nothing else: names and values (`study`), digests of the code that it
-calls, and digests of the content of maps and published numbers. So timestamps of sources do not matter.
+Params hold everything that determines what a job writes, and nothing else: names and values
+(`study`), digests of the code that it calls, and digests of the content of maps and published
+numbers. So timestamps of sources do not matter.
 """
 
 from collections.abc import Iterable
@@ -25,13 +27,15 @@ SCRIPTS = TREE / "workflow" / "scripts"
 
 
 _HIDDEN = {ord(sign): chr(0xE000 + ord(sign)) for sign in "<>&"}
-"""Signs of markup -> characters for private use, which no text of a study contains: they cannot be printed."""
+"""Signs of markup -> characters for private use, which no text of a study contains: they cannot be
+printed.
+"""
 _SHOWN = {ord(hidden): chr(sign) for sign, hidden in _HIDDEN.items()}
 
 
 def hidden(param: Any) -> Any:
-    """A param without signs of markup in its words: Snakemake prints params into the script of its report as they are, and a browser would
-    run what they say.
+    """A param without signs of markup in its words: Snakemake prints params into the script of its
+    report as they are, and a browser would run what they say.
     """
     return _translated(param, _HIDDEN)
 
@@ -46,7 +50,11 @@ def _translated(value: Any, table: dict[int, str]) -> Any:
         return value.translate(table)
     if isinstance(value, dict):
         return {_translated(key, table): _translated(each, table) for key, each in value.items()}
-    return type(value)(_translated(each, table) for each in value) if isinstance(value, list | tuple) else value
+    return (
+        type(value)(_translated(each, table) for each in value)
+        if isinstance(value, list | tuple)
+        else value
+    )
 
 
 def _folder(scale: str, study: str, alternative: str | None = None) -> str:
@@ -54,10 +62,22 @@ def _folder(scale: str, study: str, alternative: str | None = None) -> str:
 
 
 def _files(study: Study, scale: str, experiment: str, methods: Iterable[str] = ()) -> Files:
-    """Files of an experiment: chunks of methods as configured, whatever else the folder contains, problems and bounds."""
-    folder, chunks = _folder(study.home(experiment, scale), study.key), jobs.chunks(study, experiment, scale)
-    runs = {method: [f"{folder}/runs/{experiment}/{method}/{chunk}.parquet" for chunk in chunks] for method in methods}
-    return Files(runs, f"{folder}/problems/{experiment}.parquet", f"{folder}/problems/{experiment}.bounds.parquet")
+    """Files of an experiment: chunks of methods as configured, whatever else the folder contains,
+    problems and bounds.
+    """
+    folder, chunks = (
+        _folder(study.home(experiment, scale), study.key),
+        jobs.chunks(study, experiment, scale),
+    )
+    runs = {
+        method: [f"{folder}/runs/{experiment}/{method}/{chunk}.parquet" for chunk in chunks]
+        for method in methods
+    }
+    return Files(
+        runs,
+        f"{folder}/problems/{experiment}.parquet",
+        f"{folder}/problems/{experiment}.bounds.parquet",
+    )
 
 
 def _published(study: Study, table: str) -> dict[str, str]:
@@ -72,7 +92,9 @@ def _all_published(study: Study) -> dict[str, str]:
 
 
 def _code(script: str, *modules: str | None) -> str:
-    """Digest of a script with everything that it imports, and of modules that it imports by name, with versions of what computes."""
+    """Digest of a script with everything that it imports, and of modules that it imports by name,
+    with versions of what computes.
+    """
     return versioned_digest(str(SCRIPTS / f"{script}.py"), *filter(None, modules))
 
 
@@ -81,7 +103,7 @@ def _planner(planner: str) -> str:
     return planner if planner.endswith(".py") else f"bezierplan.planners.{planner}"
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Problems and runs
 
 
@@ -92,13 +114,20 @@ def problems_params(studies: Studies, scale: str, study: str, experiment: str) -
         "job": job,
         "folder": definition.relative(studies[study].folder),
         "maps": content_digest(*problem_maps(studies, scale, study, experiment)),
-        "code": _code("worlds" if studies[study].moves(experiment) else "problems", *_kinds_of_workspace(job)),
+        "code": _code(
+            "worlds" if studies[study].moves(experiment) else "problems", *_kinds_of_workspace(job)
+        ),
     }
 
 
 def _kinds_of_workspace(job: dict) -> list[str]:
     """Modules of the kinds of a job's workspaces, which are imported by name."""
-    return sorted({f"bezierplan.workspaces.kinds.{described['kind']}" for described in job["workspaces"].values()})
+    return sorted(
+        {
+            f"bezierplan.workspaces.kinds.{described['kind']}"
+            for described in job["workspaces"].values()
+        }
+    )
 
 
 def problem_maps(studies: Studies, scale: str, study: str, experiment: str) -> list[str]:
@@ -111,11 +140,16 @@ def bounds_params(script: str) -> dict:
     return {"code": _code(script)}
 
 
-def run_params(studies: Studies, scale: str, study: str, experiment: str, method: str, chunk: str) -> dict:
+def run_params(
+    studies: Studies, scale: str, study: str, experiment: str, method: str, chunk: str
+) -> dict:
     """Params of a chunk of runs."""
     return {
         "job": jobs.job(studies[study], experiment, method, scale, int(chunk)),
-        "code": _code("drives" if studies[study].moves(experiment) else "runs", _planner(studies[study].planner(method))),
+        "code": _code(
+            "drives" if studies[study].moves(experiment) else "runs",
+            _planner(studies[study].planner(method)),
+        ),
     }
 
 
@@ -126,27 +160,38 @@ def drives(studies: Studies, scale: str, study: str, experiment: str) -> list[st
 
 def clairvoyant_params(studies: Studies, scale: str, study: str, experiment: str) -> dict:
     """Params of the job that computes the bounds of problems whose worlds move."""
-    return {"repeats": studies[study].experiments[experiment].repeats[scale], "code": _code("clairvoyant")}
+    return {
+        "repeats": studies[study].experiments[experiment].repeats[scale],
+        "code": _code("clairvoyant"),
+    }
 
 
 def moving(studies: Studies, moves: bool) -> dict[str, list[str]]:
     """The experiments whose runs are simulated drives, or the others, by study."""
-    return {key: [name for name in study.experiments if study.moves(name) == moves] for key, study in studies.items()}
+    return {
+        key: [name for name in study.experiments if study.moves(name) == moves]
+        for key, study in studies.items()
+    }
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Tables and figures
 
 
 def shown_by(study: Study, scale: str, artefact: str) -> dict[str, Files]:
     """Files of the experiments that a table or figure shows."""
-    methods = {name: jobs.methods_of(study, artefact, name) for name in jobs.experiments_of(study, artefact)}
+    methods = {
+        name: jobs.methods_of(study, artefact, name)
+        for name in jobs.experiments_of(study, artefact)
+    }
     return {name: _files(study, scale, name, shown) for name, shown in methods.items()}
 
 
 def table_inputs(studies: Studies, scale: str, study: str, table: str) -> dict[str, Any]:
     """Input files of a table of runs."""
-    return of_experiments(shown_by(studies[study], scale, table)) | _published(studies[study], table)
+    return of_experiments(shown_by(studies[study], scale, table)) | _published(
+        studies[study], table
+    )
 
 
 def table_params(studies: Studies, scale: str, study: str, table: str) -> dict:
@@ -159,7 +204,9 @@ def table_params(studies: Studies, scale: str, study: str, table: str) -> dict:
 
 
 def listing_inputs(studies: Studies, scale: str, study: str, listing: str) -> dict[str, str]:
-    """The file that a transcribed table shows, the comparison files of a comparison table, or all published files for a function."""
+    """The file that a transcribed table shows, the comparison files of a comparison table, or all
+    published files for a function.
+    """
     spec, own = studies[study].tables[listing], studies[study]
     if isinstance(spec, Comparison):
         return named("published", {name: _comparison_file(scale, study, name) for name in spec.of})
@@ -173,7 +220,9 @@ def _comparison_file(scale: str, study: str, table: str) -> str:
 def listing_params(studies: Studies, scale: str, study: str, listing: str) -> dict:
     """Params of a table without runs."""
     job, kind = jobs.listing_job(studies[study], listing), studies[study].tables[listing].kind
-    sources = [] if kind == "comparison" else listing_inputs(studies, scale, study, listing).values()
+    sources = (
+        [] if kind == "comparison" else listing_inputs(studies, scale, study, listing).values()
+    )
     return {
         "job": _shown(studies[study], listing, job),
         "published": content_digest(*sources),
@@ -183,7 +232,13 @@ def listing_params(studies: Studies, scale: str, study: str, listing: str) -> di
 
 def latex_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """The tables of a study that are made at a scale."""
-    return named("tables", {name: f"{_folder(scale, study)}/tables/{name}.csv" for name in tables_of(studies[study], scale)})
+    return named(
+        "tables",
+        {
+            name: f"{_folder(scale, study)}/tables/{name}.csv"
+            for name in tables_of(studies[study], scale)
+        },
+    )
 
 
 def tables_of(study: Study, scale: str) -> list[str]:
@@ -194,14 +249,21 @@ def tables_of(study: Study, scale: str) -> list[str]:
 def latex_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the tables of a study as LaTeX."""
     return {
-        "captions": {name: jobs.caption(studies[study], name, scale) for name in tables_of(studies[study], scale)},
+        "captions": {
+            name: jobs.caption(studies[study], name, scale)
+            for name in tables_of(studies[study], scale)
+        },
         "code": _code("latex"),
     }
 
 
 def figure_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
-    """Input files of a figure: published numbers only for the kinds that draw them and the functions that ask for them."""
-    published = _all_published(studies[study]) if jobs.published_drawn(studies[study], figure) else {}
+    """Input files of a figure: published numbers only for the kinds that draw them and the
+    functions that ask for them.
+    """
+    published = (
+        _all_published(studies[study]) if jobs.published_drawn(studies[study], figure) else {}
+    )
     maps = {"maps": _maps_of_figure(studies[study], scale, figure)}
     return of_experiments(shown_by(studies[study], scale, figure)) | maps | published
 
@@ -211,19 +273,33 @@ def _maps_of_figure(study: Study, scale: str, figure: str) -> list[str]:
 
 
 def narrow_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
-    """Input files of a figure on a sheet of one text column: what it draws, and the problems and map files that it is drawn on."""
-    problems = {name: files.problems for name, files in shown_by(studies[study], scale, figure).items()}
-    wide = {"data": f"{_folder(scale, study)}/figures/{figure}.csv", "maps": _maps_of_figure(studies[study], scale, figure)}
+    """Input files of a figure on a sheet of one text column: what it draws, and the problems and
+    map files that it is drawn on.
+    """
+    problems = {
+        name: files.problems for name, files in shown_by(studies[study], scale, figure).items()
+    }
+    wide = {
+        "data": f"{_folder(scale, study)}/figures/{figure}.csv",
+        "maps": _maps_of_figure(studies[study], scale, figure),
+    }
     return wide | named(PROBLEMS, problems)
 
 
 def figure_params(studies: Studies, scale: str, study: str, figure: str) -> dict:
     """Params of a figure."""
-    job, inputs = jobs.figure_job(studies[study], figure, scale), figure_inputs(studies, scale, study, figure)
+    job, inputs = (
+        jobs.figure_job(studies[study], figure, scale),
+        figure_inputs(studies, scale, study, figure),
+    )
     panels = studies[study].figures[figure].panels
     kinds = {f"bezierplan.figures.panels.{panel.kind}" for panel in panels}
-    module = studies[study].module() if any(getattr(panel, "data", None) for panel in panels) else None
-    again = {_planner(each["planner"]) for methods in job["jobs"].values() for each in methods.values()}
+    module = (
+        studies[study].module() if any(getattr(panel, "data", None) for panel in panels) else None
+    )
+    again = {
+        _planner(each["planner"]) for methods in job["jobs"].values() for each in methods.values()
+    }
     return {
         "job": _shown(studies[study], figure, job),
         "folder": definition.relative(studies[study].folder),
@@ -232,19 +308,26 @@ def figure_params(studies: Studies, scale: str, study: str, figure: str) -> dict
     }
 
 
-def caption(studies: Studies, scale: str, study: str, table: str = "", listing: str = "", figure: str = "") -> str:
-    """The report's caption of a table or figure, as reStructuredText; nothing from a study's files acts as markup."""
+def caption(
+    studies: Studies, scale: str, study: str, table: str = "", listing: str = "", figure: str = ""
+) -> str:
+    """The report's caption of a table or figure, as reStructuredText; nothing from a study's files
+    acts as markup.
+    """
     return escaped(jobs.caption(studies[study], table or listing or figure, scale))
 
 
 def escaped(text: str) -> str:
     """Text as one line of literal reStructuredText: no markup, no directive, no HTML."""
-    return "".join(f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign for sign in " ".join(text.split()))
+    return "".join(
+        f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign
+        for sign in " ".join(text.split())
+    )
 
 
 def _shown(study: Study, artefact: str, job: dict) -> dict:
-    """The job of a table or figure with the words that it prints: without its title, which is in the caption, and without labels of items
-    that it does not show.
+    """The job of a table or figure with the words that it prints: without its title, which is in
+    the caption, and without labels of items that it does not show.
     """
     spec = {key: value for key, value in job["spec"].items() if key != "title"}
     shown = job | {"spec": spec, "labels": _labels(study, artefact)}
@@ -255,36 +338,54 @@ def _shown(study: Study, artefact: str, job: dict) -> dict:
 
 
 def _shown_methods(study: Study, artefact: str) -> set[str]:
-    """Methods that a figure can show: those of its experiments; all if it shows the table of a function, which may name any."""
+    """Methods that a figure can show: those of its experiments; all if it shows the table of a
+    function, which may name any.
+    """
     if any(hasattr(panel, "data") and panel.data for panel in study.figures[artefact].panels):
         return set(study.methods)
-    return {method for experiment in jobs.experiments_of(study, artefact) for method in study.methods_of(experiment)}
+    return {
+        method
+        for experiment in jobs.experiments_of(study, artefact)
+        for method in study.methods_of(experiment)
+    }
 
 
 def _labels(study: Study, artefact: str) -> dict[str, str]:
-    """Labels, except those of methods, problems and workspaces that a table or figure cannot show. A function may name any."""
+    """Labels, except those of methods, problems and workspaces that a table or figure cannot show.
+    A function may name any.
+    """
     spec = (study.tables.get(artefact) or study.figures[artefact]).plain()
-    if spec.get("kind") in ("function", "comparison") or any("data" in panel for panel in spec.get("panels", [])):
+    if spec.get("kind") in ("function", "comparison") or any(
+        "data" in panel for panel in spec.get("panels", [])
+    ):
         return study.labels
     shown = {panel["method"] for panel in spec.get("panels", []) if "method" in panel}
     for experiment in jobs.experiments_of(study, artefact):
         content = study.experiments[experiment]
         described = [study.problems[name] for name in content.problems]
-        shown |= {*study.methods_of(experiment), *content.problems, *(problem.workspace for problem in described)}
+        shown |= {
+            *study.methods_of(experiment),
+            *content.problems,
+            *(problem.workspace for problem in described),
+        }
         shown |= {problem.route for problem in described if problem.route}
         shown |= {str(value) for values in content.vary.values() for value in values}
     names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
-    return {name: label for name, label in study.labels.items() if name in shown or name not in names}
+    return {
+        name: label for name, label in study.labels.items() if name in shown or name not in names
+    }
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Claims, audit, alternatives
 
 
 def judged_by_claims(study: Study, scale: str) -> dict[str, Files]:
     """Files of the experiments that claims judge."""
     experiments = alternatives.experiments_of_claims(study.claims)
-    return {name: _files(study, scale, name, study.experiments[name].methods) for name in experiments}
+    return {
+        name: _files(study, scale, name, study.experiments[name].methods) for name in experiments
+    }
 
 
 def claims_inputs(studies: Studies, scale: str, study: str) -> dict[str, Any]:
@@ -304,28 +405,56 @@ def claims_params(studies: Studies, scale: str, study: str) -> dict:
 
 def _kinds(claims: list[Claim]) -> list[str]:
     """Modules of the kinds of check used in claims, which are imported by name."""
-    return sorted({f"bezierplan.analysis.claims.kinds.{check.test}" for claim in claims for check in claim.checks})
+    return sorted(
+        {
+            f"bezierplan.analysis.claims.kinds.{check.test}"
+            for claim in claims
+            for check in claim.checks
+        }
+    )
 
 
 def _claims_job(study: Study, scale: str, claims: list[Claim], primary_alone: bool) -> dict:
     job = jobs.claims_job(study, claims, primary_alone)
-    artefacts = {name: {key: value for key, value in spec.items() if key != "title"} for name, spec in job["artefacts"].items()}
-    return job | {"artefacts": artefacts, "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]}}
+    artefacts = {
+        name: {key: value for key, value in spec.items() if key != "title"}
+        for name, spec in job["artefacts"].items()
+    }
+    return job | {
+        "artefacts": artefacts,
+        "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]},
+    }
 
 
-def alternative_inputs(studies: Studies, scale: str, study: str, alternative: str) -> dict[str, Any]:
+def alternative_inputs(
+    studies: Studies, scale: str, study: str, alternative: str
+) -> dict[str, Any]:
     """Input files of an alternative: runs of the methods that it does not change."""
     own = studies[study]
-    claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
-    methods = {name: alternatives.methods_of_claims(own, claims, name) for name in alternatives.experiments_of_claims(claims)}
-    files = {name: _files(own, scale, name, [method for method in known if method not in changed]) for name, known in methods.items()}
+    claims, changed = (
+        alternatives.headline_claims(own, alternative),
+        alternatives.methods_changed(own, alternative),
+    )
+    methods = {
+        name: alternatives.methods_of_claims(own, claims, name)
+        for name in alternatives.experiments_of_claims(claims)
+    }
+    files = {
+        name: _files(own, scale, name, [method for method in known if method not in changed])
+        for name, known in methods.items()
+    }
     return of_experiments(files) | _all_published(own)
 
 
 def alternative_params(studies: Studies, scale: str, study: str, alternative: str) -> dict:
-    """Params of an alternative: `chunks`, the numbers and jobs of the chunks of runs that it changes."""
+    """Params of an alternative: `chunks`, the numbers and jobs of the chunks of runs that it
+    changes.
+    """
     content, tried = studies[study], alternatives.with_alternative(studies[study], alternative)
-    claims, changed = alternatives.headline_claims(content, alternative), alternatives.methods_changed(content, alternative)
+    claims, changed = (
+        alternatives.headline_claims(content, alternative),
+        alternatives.methods_changed(content, alternative),
+    )
     chunks = [
         [chunk, design.judged_only(jobs.job(tried, experiment, method, scale, chunk), claims)]
         for experiment in alternatives.experiments_of_claims(claims)
@@ -336,7 +465,9 @@ def alternative_params(studies: Studies, scale: str, study: str, alternative: st
     planners = sorted({_planner(job["planner"]) for _, job in chunks})
     return {
         "chunks": chunks,
-        "job": _claims_job(content, scale, alternatives.claims_tried(content, alternative), primary_alone=True),
+        "job": _claims_job(
+            content, scale, alternatives.claims_tried(content, alternative), primary_alone=True
+        ),
         "published": content_digest(*content.published_files()),
         "code": _code("alternative", content.module(), *_kinds(claims), *planners),
     }
@@ -344,12 +475,14 @@ def alternative_params(studies: Studies, scale: str, study: str, alternative: st
 
 def _audited(study: Study) -> dict[str, Pivot]:
     """Tables of published numbers, by the name of their file."""
-    return {Path(table.published).stem: table for table in study.compared().values() if table.published}
+    return {
+        Path(table.published).stem: table for table in study.compared().values() if table.published
+    }
 
 
 def _layout(table: Pivot) -> dict:
-    """What the audit needs to know of a table: columns within whose values rows are ranked, metrics of only some runs, required orders,
-    and whether its workspaces were fitted to it.
+    """What the audit needs to know of a table: columns within whose values rows are ranked, metrics
+    of only some runs, required orders, and whether its workspaces were fitted to it.
     """
     return {
         "columns": [name for name in table.columns if name not in ("value", "statistic")],
@@ -369,13 +502,17 @@ def audit_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     own = studies[study]
     files = {name: _files(own, scale, name) for name in _audited_experiments(own)}
     bounds = named(BOUNDS, {name: each.bounds for name, each in files.items()})
-    problems = named(PROBLEMS, {name: each.problems for name, each in files.items() if _identifies(own, name)})
+    problems = named(
+        PROBLEMS, {name: each.problems for name, each in files.items() if _identifies(own, name)}
+    )
     return bounds | problems | _all_published(own)
 
 
 def _identifies(study: Study, experiment: str) -> bool:
     """Whether printed lengths are sought among those of paths of an experiment's problems."""
-    return any(table.identify and table.experiment == experiment for table in _audited(study).values())
+    return any(
+        table.identify and table.experiment == experiment for table in _audited(study).values()
+    )
 
 
 def audit_params(studies: Studies, scale: str, study: str) -> dict:
@@ -396,53 +533,91 @@ def audit_params(studies: Studies, scale: str, study: str) -> dict:
 
 def sensitivity_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the table of alternatives."""
-    tried = {name: f"{_folder(scale, study, name)}/claims.csv" for name in alternatives.tried(studies[study])}
+    tried = {
+        name: f"{_folder(scale, study, name)}/claims.csv"
+        for name in alternatives.tried(studies[study])
+    }
     return {"claims": f"{_folder(scale, study)}/claims.csv"} | named("alternatives", tried)
 
 
 def sensitivity_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the table of alternatives."""
-    return {"described": alternatives.alternatives_described(studies[study]), "code": _code("sensitivity")}
+    return {
+        "described": alternatives.alternatives_described(studies[study]),
+        "code": _code("sensitivity"),
+    }
 
 
 def interpretations_inputs(studies: Studies, scale: str, study: str) -> dict[str, Any]:
     """Input files of the search for an interpretation, which makes problems and runs of its own."""
     own = studies[study]
-    return {"maps": choices.maps(own)} | named("published", {name: own.published_file(name) for name in choices.printed_tables(own)})
+    return {"maps": choices.maps(own)} | named(
+        "published", {name: own.published_file(name) for name in choices.printed_tables(own)}
+    )
 
 
 def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the search for an interpretation."""
     job = choices.search_job(studies[study])
-    planners = {_planner(each["planner"]) for table in job["screened"]["tables"].values() for each in table["jobs"].values()}
-    kinds = {module for world in job["screened"]["worlds"].values() for module in _kinds_of_workspace(world)}
+    planners = {
+        _planner(each["planner"])
+        for table in job["screened"]["tables"].values()
+        for each in table["jobs"].values()
+    }
+    kinds = {
+        module
+        for world in job["screened"]["worlds"].values()
+        for module in _kinds_of_workspace(world)
+    }
     return {
         "job": job,
         "folder": definition.relative(studies[study].folder),
-        "published": content_digest(*(studies[study].published_file(name) for name in choices.printed_tables(studies[study]))),
+        "published": content_digest(
+            *(
+                studies[study].published_file(name)
+                for name in choices.printed_tables(studies[study])
+            )
+        ),
         "code": _code("interpretations", *sorted(planners), *sorted(kinds)),
     }
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # All studies together
 
 
 def _published_tables(studies: Studies) -> dict[tuple[str, str], Pivot]:
     """The tables compared with published numbers, by study and table."""
-    return {(key, name): table for key, study in studies.items() for name, table in study.compared().items() if table.published}
+    return {
+        (key, name): table
+        for key, study in studies.items()
+        for name, table in study.compared().items()
+        if table.published
+    }
 
 
 def comparison_files(studies: Studies, scale: str) -> dict[tuple[str, str], str]:
     """The comparison of each table with published numbers, by study and table."""
-    return {(study, table): _comparison_file(scale, study, table) for study, table in _published_tables(studies)}
+    return {
+        (study, table): _comparison_file(scale, study, table)
+        for study, table in _published_tables(studies)
+    }
 
 
 def summary_inputs(studies: Studies, scale: str) -> dict[str, Any]:
     """Input files of the summary."""
-    claims = {key: f"{_folder(scale, key)}/claims.csv" for key, study in studies.items() if study.claims}
-    comparisons = {f"{study}/{table}": file for (study, table), file in comparison_files(studies, scale).items()}
-    return named("comparisons", comparisons) | named("claims", claims) | {"worth": f"results/{scale}/worth.csv"}
+    claims = {
+        key: f"{_folder(scale, key)}/claims.csv" for key, study in studies.items() if study.claims
+    }
+    comparisons = {
+        f"{study}/{table}": file
+        for (study, table), file in comparison_files(studies, scale).items()
+    }
+    return (
+        named("comparisons", comparisons)
+        | named("claims", claims)
+        | {"worth": f"results/{scale}/worth.csv"}
+    )
 
 
 def summary_params(studies: Studies, scale: str) -> dict:
@@ -475,7 +650,9 @@ def worth_params(studies: Studies, scale: str) -> dict:
     job = {
         key: {
             "baseline": study.worth.baseline,
-            "repeats": {name: study.experiments[name].repeats[scale] for name in study.worth.experiments},
+            "repeats": {
+                name: study.experiments[name].repeats[scale] for name in study.worth.experiments
+            },
         }
         for key, study in studies.items()
         if study.worth
@@ -483,7 +660,7 @@ def worth_params(studies: Studies, scale: str) -> dict:
     return {"job": job, "code": _code("worth")}
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Targets
 
 
@@ -492,19 +669,33 @@ def files_of(studies: Studies, scale: str, study: str, name: str) -> list[str]:
     if name in studies[study].tables:
         endings = (".csv", ".comparison.csv") if name in studies[study].compared() else (".csv",)
         return [f"{_folder(scale, study)}/tables/{name}{ending}" for ending in endings]
-    return [f"{_folder(scale, study)}/figures/{name}{ending}" for ending in (".svg", ".png", ".pdf", ".csv", ".txt")]
+    return [
+        f"{_folder(scale, study)}/figures/{name}{ending}"
+        for ending in (".svg", ".png", ".pdf", ".csv", ".txt")
+    ]
 
 
 def artefacts_of(study: Study, scale: str) -> list[str]:
-    """Tables and figures of a study that are made at a scale: at `extended` those that differ from what they are at `full`."""
+    """Tables and figures of a study that are made at a scale: at `extended` those that differ from
+    what they are at `full`.
+    """
     made = [*study.tables, *study.figures]
     if scale != "extended":
         return made
-    return [name for name in made if any(study.home(experiment, scale) == scale for experiment in _experiments_behind(study, name))]
+    return [
+        name
+        for name in made
+        if any(
+            study.home(experiment, scale) == scale
+            for experiment in _experiments_behind(study, name)
+        )
+    ]
 
 
 def _experiments_behind(study: Study, artefact: str) -> list[str]:
-    """Names of the experiments that a table or figure shows, for a table of comparisons those of the tables that it compares."""
+    """Names of the experiments that a table or figure shows, for a table of comparisons those of
+    the tables that it compares.
+    """
     spec = study.tables.get(artefact)
     if isinstance(spec, Comparison):
         return [experiment for name in spec.of for experiment in jobs.experiments_of(study, name)]
@@ -523,8 +714,14 @@ def files_of_narrow(studies: Studies, scale: str) -> list[str]:
 
 
 def files_of_study(studies: Studies, scale: str, study: str) -> list[str]:
-    """All tables and figures of a study that are made at a scale, its claims, and its audit if it has claims or published numbers."""
-    files = [file for name in artefacts_of(studies[study], scale) for file in files_of(studies, scale, study, name)]
+    """All tables and figures of a study that are made at a scale, its claims, and its audit if it
+    has claims or published numbers.
+    """
+    files = [
+        file
+        for name in artefacts_of(studies[study], scale)
+        for file in files_of(studies, scale, study, name)
+    ]
     if tables_of(studies[study], scale):
         files.append(f"{_folder(scale, study)}/tables.tex")
     if studies[study].claims:
@@ -544,7 +741,11 @@ def files_of_scale(studies: Studies, scale: str) -> list[str]:
 
 def files_of_sensitivity(studies: Studies, scale: str) -> list[str]:
     """The table of alternatives of each study that has any."""
-    return [f"{_folder(scale, key)}/sensitivity.csv" for key, study in studies.items() if alternatives.tried(study)]
+    return [
+        f"{_folder(scale, key)}/sensitivity.csv"
+        for key, study in studies.items()
+        if alternatives.tried(study)
+    ]
 
 
 def files_of_interpretations(studies: Studies, scale: str) -> list[str]:
@@ -560,4 +761,7 @@ def files_of_smoke(studies: Studies) -> list[str]:
     """The small subset."""
     artefacts, methods = jobs.smoke(studies)
     files = [file for study, name in artefacts for file in files_of(studies, "smoke", study, name)]
-    return files + [f"{_folder('smoke', study)}/runs/{experiment}/{method}/0.parquet" for study, experiment, method in methods]
+    return files + [
+        f"{_folder('smoke', study)}/runs/{experiment}/{method}/0.parquet"
+        for study, experiment, method in methods
+    ]

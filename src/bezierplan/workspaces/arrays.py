@@ -5,7 +5,8 @@ from numpy.typing import ArrayLike, DTypeLike
 
 
 def read_only(values: ArrayLike, dtype: DTypeLike) -> np.ndarray:
-    """Values as an array in rows whose memory is immutable, so that no flag makes it writable again; a copy, unless it is one already.
+    """Values as an array in rows whose memory is immutable, so that no flag makes it writable
+    again; a copy, unless it is one already.
 
     >>> centres = read_only([[1, 2]], float)
     >>> centres[0, 0] = 3
@@ -13,7 +14,12 @@ def read_only(values: ArrayLike, dtype: DTypeLike) -> np.ndarray:
     ...
     ValueError: assignment destination is read-only
     """
-    if type(values) is np.ndarray and values.dtype == dtype and isinstance(values.base, bytes) and values.flags.c_contiguous:
+    if (
+        type(values) is np.ndarray
+        and values.dtype == dtype
+        and isinstance(values.base, bytes)
+        and values.flags.c_contiguous
+    ):
         return values
     found = np.ascontiguousarray(values, dtype)
     return np.ndarray(np.shape(values), found.dtype, found.tobytes())

@@ -10,9 +10,11 @@ from bezierplan.workspaces.grown import Grown
 
 @dataclass(frozen=True)
 class Circles:
-    """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units. radii: (n,) in units. unit: its name.
+    """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units.
+    radii: (n,) in units. unit: its name.
 
-    grown: what they were before they grew by a robot's radius, if they did. The arrays are read-only.
+    grown: what they were before they grew by a robot's radius, if they did. The arrays are
+    read-only.
     """
 
     bounds: tuple[float, float, float, float]

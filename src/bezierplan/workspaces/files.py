@@ -1,4 +1,6 @@
-"""Workspaces from their descriptions (`kinds`), with every fault reported in one line; and as JSON text for tables."""
+"""Workspaces from their descriptions (`kinds`), with every fault reported in one line; and as JSON
+text for tables.
+"""
 
 import json
 from dataclasses import replace
@@ -27,7 +29,9 @@ def load(description: dict, folder: Path) -> Workspace:
 
 
 def sources(description: dict, folder: Path) -> list[Path]:
-    """The files from which a workspace is read. Raises ValueError if they cannot be told from the description."""
+    """The files from which a workspace is read. Raises ValueError if they cannot be told from the
+    description.
+    """
     from bezierplan.workspaces.kinds import file_keys, kind_of
 
     kind = kind_of(description)
@@ -37,23 +41,33 @@ def sources(description: dict, folder: Path) -> list[Path]:
 
 
 def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> moving_ai.Scenario:
-    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file and what is expected."""
+    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file
+    and what is expected.
+    """
     if "scenarios" not in description:
-        raise ValueError(f"scenario: {number}: the workspace has no scenarios; expected a .scen file there")
+        raise ValueError(
+            f"scenario: {number}: the workspace has no scenarios; expected a .scen file there"
+        )
     from bezierplan.workspaces.kinds import naming
 
     with naming(description["scenarios"]):
-        return moving_ai.scenario(folder / description["scenarios"], number, workspace, Path(description["file"]).name)
+        return moving_ai.scenario(
+            folder / description["scenarios"], number, workspace, Path(description["file"]).name
+        )
 
 
 def to_json(workspace: Workspace) -> str:
-    """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its circles, whatever the number of its
-    cells.
+    """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its
+    circles, whatever the number of its cells.
     """
     if isinstance(workspace, Grid) and isinstance(workspace.drawn, Circles):
         content = _circles_content(workspace.drawn) | {"kind": "random_field"}
     elif isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
-        cells = {"cell": workspace.cell, "rows": grid.to_lines(workspace), "origin": workspace.origin}
+        cells = {
+            "cell": workspace.cell,
+            "rows": grid.to_lines(workspace),
+            "origin": workspace.origin,
+        }
         content = _polygons_content(workspace.drawn) | cells | {"kind": "raster"}
     elif isinstance(workspace, Grid):
         content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
@@ -71,25 +85,39 @@ def to_json(workspace: Workspace) -> str:
 
 def _polygons_content(polygons: Polygons) -> dict:
     obstacles = [[ring.tolist() for ring in rings] for rings in polygons.obstacles]
-    return {"kind": "polygons", "bounds": polygons.bounds, "obstacles": obstacles} | _grown_content(polygons.grown)
+    return {"kind": "polygons", "bounds": polygons.bounds, "obstacles": obstacles} | _grown_content(
+        polygons.grown
+    )
 
 
 def _circles_content(circles: Circles) -> dict:
     table = np.column_stack([circles.centres, circles.radii]).tolist()
-    return {"kind": "circles", "bounds": circles.bounds, "circles": table} | _grown_content(circles.grown)
+    return {"kind": "circles", "bounds": circles.bounds, "circles": table} | _grown_content(
+        circles.grown
+    )
 
 
 def _grown_content(grown: Grown | None) -> dict:
     if grown is None:
         return {}
-    return {"grown": {"radius": grown.radius, "original": to_json(grown.original), "centres": grown.centres.tolist()}}
+    return {
+        "grown": {
+            "radius": grown.radius,
+            "original": to_json(grown.original),
+            "centres": grown.centres.tolist(),
+        }
+    }
 
 
 def _grown(content: dict) -> Grown | None:
     if "grown" not in content:
         return None
     known = content["grown"]
-    return Grown(known["radius"], from_json(known["original"]), read_only(np.array(known["centres"], dtype=float).reshape(-1, 2), float))
+    return Grown(
+        known["radius"],
+        from_json(known["original"]),
+        read_only(np.array(known["centres"], dtype=float).reshape(-1, 2), float),
+    )
 
 
 def from_json(text: str) -> Workspace:
@@ -98,7 +126,9 @@ def from_json(text: str) -> Workspace:
     unit = content["unit"]
     if content["kind"] == "grid":
         flat = replace(
-            grid.from_lines(content["rows"], content["cell"], unit), origin=tuple(content.get("origin", (0.0, 0.0))), grown=_grown(content)
+            grid.from_lines(content["rows"], content["cell"], unit),
+            origin=tuple(content.get("origin", (0.0, 0.0))),
+            grown=_grown(content),
         )
         return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])

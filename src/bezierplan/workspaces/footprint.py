@@ -1,4 +1,6 @@
-"""The footprint of a robot: a convex polygon around its reference point, which turns with the direction of travel."""
+"""The footprint of a robot: a convex polygon around its reference point, which turns with the
+direction of travel.
+"""
 
 import math
 from collections.abc import Sequence
@@ -25,9 +27,10 @@ _EXPECTED = "expected [[x, y], ...], at least three corners of a convex polygon"
 class Footprint:
     """A footprint, in the unit of the map.
 
-    corners: (n, 2) counterclockwise, x ahead and y to the left of the reference point, which the path is that of; read-only. inscribed,
-    circumscribed: radii of the circles around that point within the polygon, 0 if it is outside, and around it. middle: (2,) the centroid.
-    thickness: distance of the centroid from the nearest side.
+    corners: (n, 2) counterclockwise, x ahead and y to the left of the reference point, which the
+    path is that of; read-only. inscribed, circumscribed: radii of the circles around that point
+    within the polygon, 0 if it is outside, and around it. middle: (2,) the centroid. thickness:
+    distance of the centroid from the nearest side.
     """
 
     corners: np.ndarray
@@ -38,7 +41,9 @@ class Footprint:
 
 
 def footprint(corners: Sequence[Sequence[float]]) -> Footprint:
-    """A footprint with some corners, in one order or the other. Raises ValueError unless they are those of a convex polygon."""
+    """A footprint with some corners, in one order or the other. Raises ValueError unless they are
+    those of a convex polygon.
+    """
     polygon = _simplified(_points(corners))
     if len(polygon) < 3:
         raise ValueError(f"footprint: its corners lie on one line; {_EXPECTED}")
@@ -54,9 +59,17 @@ def footprint(corners: Sequence[Sequence[float]]) -> Footprint:
     middle = _centroid(polygon)
     thickness = float(_to_sides(middle, polygon).min())
     if thickness < SMALLEST_FEATURE:
-        raise ValueError(f"footprint: {2 * thickness:.3g} thick; expected at least {2 * SMALLEST_FEATURE:g}")
+        raise ValueError(
+            f"footprint: {2 * thickness:.3g} thick; expected at least {2 * SMALLEST_FEATURE:g}"
+        )
     inscribed = max(0.0, float(_to_sides(np.zeros(2), polygon).min()))
-    return Footprint(read_only(polygon, float), inscribed, float(np.hypot(*polygon.T).max()), read_only(middle, float), thickness)
+    return Footprint(
+        read_only(polygon, float),
+        inscribed,
+        float(np.hypot(*polygon.T).max()),
+        read_only(middle, float),
+        thickness,
+    )
 
 
 def _points(corners: Sequence[Sequence[float]]) -> np.ndarray:
@@ -68,29 +81,46 @@ def _points(corners: Sequence[Sequence[float]]) -> np.ndarray:
     if points.ndim != 2 or points.shape[1] != 2 or not 3 <= len(points) <= MOST_CORNERS:
         raise ValueError(f"footprint: {str(corners)[:60]}; {_EXPECTED} and at most {MOST_CORNERS}")
     if not np.abs(points).max() <= LARGEST:
-        raise ValueError(f"footprint: {str(corners)[:60]}: expected finite numbers of at most {LARGEST:g} in size")
+        raise ValueError(
+            f"footprint: {str(corners)[:60]}: expected finite numbers of at most {LARGEST:g} in "
+            f"size"
+        )
     return points
 
 
 def _simplified(points: np.ndarray) -> np.ndarray:
-    """The corners of a polygon without repeated ones, such as a last one that is the first again, and without those on straight sides."""
+    """The corners of a polygon without repeated ones, such as a last one that is the first again,
+    and without those on straight sides.
+    """
     points = points[np.any(points != np.roll(points, 1, axis=0), axis=1)]
     return points[np.abs(_turns(points)) > _STRAIGHT] if len(points) else points
 
 
 def _turns(polygon: np.ndarray) -> np.ndarray:
-    """The angle (n,) by which the boundary turns to the left at each corner; at a spike a half turn."""
-    arriving, leaving = polygon - np.roll(polygon, 1, axis=0), np.roll(polygon, -1, axis=0) - polygon
-    return np.arctan2(arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0], (arriving * leaving).sum(axis=1))
+    """The angle (n,) by which the boundary turns to the left at each corner; at a spike a half
+    turn.
+    """
+    arriving, leaving = (
+        polygon - np.roll(polygon, 1, axis=0),
+        np.roll(polygon, -1, axis=0) - polygon,
+    )
+    return np.arctan2(
+        arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
+        (arriving * leaving).sum(axis=1),
+    )
 
 
 def _centroid(polygon: np.ndarray) -> np.ndarray:
     x, y = (polygon - polygon[0]).T
     cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    return polygon[0] + np.array([((v + np.roll(v, -1)) * cross).sum() for v in (x, y)]) / (3 * cross.sum())
+    return polygon[0] + np.array([((v + np.roll(v, -1)) * cross).sum() for v in (x, y)]) / (
+        3 * cross.sum()
+    )
 
 
 def _to_sides(point: np.ndarray, polygon: np.ndarray) -> np.ndarray:
     """Distance (n,) of a point from the line of each side, positive inside."""
     along = np.roll(polygon, -1, axis=0) - polygon
-    return (along[:, 0] * (point[1] - polygon[:, 1]) - along[:, 1] * (point[0] - polygon[:, 0])) / np.hypot(*along.T)
+    return (
+        along[:, 0] * (point[1] - polygon[:, 1]) - along[:, 1] * (point[0] - polygon[:, 0])
+    ) / np.hypot(*along.T)

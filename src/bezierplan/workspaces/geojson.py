@@ -1,10 +1,12 @@
-"""Polygons from GeoJSON (RFC 7946), as studies write it and as GIS programs do: anything not understood is rejected by name, since no
-obstacle may be lost.
+"""Polygons from GeoJSON (RFC 7946), as studies write it and as GIS programs do: anything not
+understood is rejected by name, since no obstacle may be lost.
 
-The file is a collection of features, one feature, or a bare geometry: Polygon, MultiPolygon, or a GeometryCollection of these. What has no
-`properties.role` is an obstacle. The border is the polygon with the role `border`, of any shape; without one, the bounding box of all
-obstacles with a margin, or the file's `bbox`. What lies outside of it is blocked, so obstacles are cut there. Features with the role
-`start` or `target` are ignored: problems define them. A third coordinate, the height, is dropped.
+The file is a collection of features, one feature, or a bare geometry: Polygon, MultiPolygon, or a
+GeometryCollection of these. What has no `properties.role` is an obstacle. The border is the polygon
+with the role `border`, of any shape; without one, the bounding box of all obstacles with a margin,
+or the file's `bbox`. What lies outside of it is blocked, so obstacles are cut there. Features with
+the role `start` or `target` are ignored: problems define them. A third coordinate, the height, is
+dropped.
 """
 
 import json
@@ -38,32 +40,48 @@ Bounds = tuple[float, float, float, float]
 
 
 class Shape(NamedTuple):
-    """A polygon of a file. role: border or obstacle. name: for messages. rings: each (n, 2 or 3), without its last position."""
+    """A polygon of a file. role: border or obstacle. name: for messages. rings: each (n, 2 or 3),
+    without its last position.
+    """
 
     role: str
     name: str
     rings: Rings
 
 
-def polygons_from_geojson(text: str, unit: str, margin: float | None = None, largest: float = LARGEST) -> Polygons:
+def polygons_from_geojson(
+    text: str, unit: str, margin: float | None = None, largest: float = LARGEST
+) -> Polygons:
     """Polygons from the text of a GeoJSON file.
 
-    margin: between obstacles and border, in units, of a file without a border of its own. largest: size of a coordinate. Warns of heights
-    that are dropped, and of obstacles that are cut at the border.
+    margin: between obstacles and border, in units, of a file without a border of its own. largest:
+    size of a coordinate. Warns of heights that are dropped, and of obstacles that are cut at the
+    border.
 
-    Raises ValueError, naming the feature, for text that is not GeoJSON, an unknown role, a geometry without an area, a ring that is not
-    closed, positions that are not [x, y], coordinates out of range, no border, a margin beside a border, an obstacle that is invalid or too
-    thin for the checker, and gaps that are neither closed nor open.
+    Raises ValueError, naming the feature, for text that is not GeoJSON, an unknown role, a geometry
+    without an area, a ring that is not closed, positions that are not [x, y], coordinates out of
+    range, no border, a margin beside a border, an obstacle that is invalid or too thin for the
+    checker, and gaps that are neither closed nor open.
     """
     content = _content(text)
-    shapes = [shape for number, feature in enumerate(_features(content)) for shape in _shapes(number, feature)]
+    shapes = [
+        shape
+        for number, feature in enumerate(_features(content))
+        for shape in _shapes(number, feature)
+    ]
     if sum(len(ring) for shape in shapes for ring in shape.rings) > MOST_POSITIONS:
         raise ValueError(f"more than {MOST_POSITIONS:,} positions; expected at most so many")
     shapes = _flat(shapes)
     for shape in shapes:
         check_numbers(np.concatenate(shape.rings), shape.name, largest)
     obstacles = [shape for shape in shapes if shape.role == "obstacle"]
-    limits, outside = _border([shape for shape in shapes if shape.role == "border"], obstacles, content.get("bbox"), margin, largest)
+    limits, outside = _border(
+        [shape for shape in shapes if shape.role == "border"],
+        obstacles,
+        content.get("bbox"),
+        margin,
+        largest,
+    )
     return Polygons(limits, tuple(within(limits, [*obstacles, *outside])), unit)
 
 
@@ -75,7 +93,9 @@ def _content(text: str) -> dict[str, Any]:
     except RecursionError:
         raise ValueError("not a GeoJSON feature collection: nested too deeply") from None
     if not isinstance(content, dict):
-        raise ValueError("not a GeoJSON feature collection: expected an object with a list of features")
+        raise ValueError(
+            "not a GeoJSON feature collection: expected an object with a list of features"
+        )
     _check_lengths(content)
     return content
 
@@ -87,17 +107,23 @@ def _features(content: dict[str, Any]) -> list[Any]:
     if content.get("type") in _GEOMETRIES and "features" not in content:
         return [{"geometry": content}]
     if not isinstance(content.get("features"), list):
-        raise ValueError("not a GeoJSON feature collection: expected an object with a list of features")
+        raise ValueError(
+            "not a GeoJSON feature collection: expected an object with a list of features"
+        )
     _check_kind("the file", content, "FeatureCollection")
     return content["features"]
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object, in which each key may occur once: of two, json would silently drop the first."""
+    """A JSON object, in which each key may occur once: of two, json would silently drop the
+    first.
+    """
     content = dict(pairs)
     if len(content) < len(pairs):
         names = [name for name, _ in pairs]
-        raise ValueError(f"{next(name for name in names if names.count(name) > 1)!r}: this key is given twice")
+        raise ValueError(
+            f"{next(name for name in names if names.count(name) > 1)!r}: this key is given twice"
+        )
     return content
 
 
@@ -112,10 +138,15 @@ def _check_kind(where: str, content: dict[str, Any], kind: str) -> None:
 
 
 def _check_lengths(content: dict[str, Any]) -> None:
-    """Raise ValueError if a file says that its coordinates are angles: older GeoJSON can name the system of coordinates."""
+    """Raise ValueError if a file says that its coordinates are angles: older GeoJSON can name the
+    system of coordinates.
+    """
     named = str(content.get("crs", "")).upper().replace("::", ":")
     if any(name in named for name in ("CRS84", "EPSG:4326", "WGS84", "WGS 84")):
-        raise ValueError("crs: longitudes and latitudes, in degrees; expected x and y as lengths, in the workspace's unit")
+        raise ValueError(
+            "crs: longitudes and latitudes, in degrees; expected x and y as lengths, in the "
+            "workspace's unit"
+        )
 
 
 _GEOMETRIES = ("Polygon", "MultiPolygon", "GeometryCollection")
@@ -124,14 +155,18 @@ _GEOMETRIES = ("Polygon", "MultiPolygon", "GeometryCollection")
 def _shapes(number: int, feature: Any) -> Iterator[Shape]:
     """The polygons of a feature; none for a role that is not part of a workspace."""
     if not isinstance(feature, dict):
-        raise ValueError(f"feature {number}: {str(feature)[:60]}; expected a feature with a geometry")
+        raise ValueError(
+            f"feature {number}: {str(feature)[:60]}; expected a feature with a geometry"
+        )
     _check_kind(f"feature {number}", feature, "Feature")
     properties = feature.get("properties") or {}
     role = properties.get("role", "obstacle") if isinstance(properties, dict) else properties
     if role not in ROLES:
         from bezierplan.schema.checked import closest
 
-        raise ValueError(f"feature {number}: properties: role: {role!r}: unknown{closest(str(role), ROLES)}")
+        raise ValueError(
+            f"feature {number}: properties: role: {role!r}: unknown{closest(str(role), ROLES)}"
+        )
     if role in ("border", "obstacle"):
         for rings in _polygons(feature.get("geometry"), f"feature {number} ({role})"):
             yield Shape(role, f"feature {number} ({role})", rings)
@@ -141,11 +176,17 @@ def _polygons(geometry: Any, name: str) -> Iterator[Rings]:
     """The rings of each polygon of a geometry."""
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if kind not in _GEOMETRIES:
-        raise ValueError(f"{name}: geometry: {str(kind)[:60]}; expected a Polygon, a MultiPolygon, or a GeometryCollection of these")
+        raise ValueError(
+            f"{name}: geometry: {str(kind)[:60]}; expected a Polygon, a MultiPolygon, or a "
+            f"GeometryCollection of these"
+        )
     key = "geometries" if kind == "GeometryCollection" else "coordinates"
     parts = geometry.get(key)
     if not isinstance(parts, list) or not parts:
-        raise ValueError(f"{name}: geometry: {key}: expected a list of {'rings' if kind == 'Polygon' else 'polygons'}")
+        raise ValueError(
+            f"{name}: geometry: {key}: expected a list of "
+            f"{'rings' if kind == 'Polygon' else 'polygons'}"
+        )
     if kind == "GeometryCollection":
         for part in parts:
             yield from _polygons(part, name)
@@ -159,17 +200,35 @@ def _polygons(geometry: Any, name: str) -> Iterator[Rings]:
 def _ring(positions: Any, where: str) -> np.ndarray:
     """A ring (n, 2), or (n, 3) with heights, without its last position, which repeats the first."""
     if not isinstance(positions, list) or len(positions) < 4:
-        raise ValueError(f"{where}: expected at least four positions, the last one the first again (RFC 7946, 3.1.6)")
+        raise ValueError(
+            f"{where}: expected at least four positions, the last one the first again (RFC 7946, "
+            f"3.1.6)"
+        )
     for position in positions:
-        fits = isinstance(position, list) and len(position) in (2, 3) and len(position) == len(positions[0])
-        if not (fits and all(isinstance(value, int | float) and not isinstance(value, bool) for value in position)):
-            raise ValueError(f"{where}: position {str(position)[:60]}; expected [x, y], or [x, y, height] throughout")
+        fits = (
+            isinstance(position, list)
+            and len(position) in (2, 3)
+            and len(position) == len(positions[0])
+        )
+        if not (
+            fits
+            and all(
+                isinstance(value, int | float) and not isinstance(value, bool) for value in position
+            )
+        ):
+            raise ValueError(
+                f"{where}: position {str(position)[:60]}; expected [x, y], or [x, y, height] "
+                f"throughout"
+            )
     try:
         ring = np.array(positions, dtype=float)
     except OverflowError:
         raise ValueError(f"{where}: a number is too large for a coordinate") from None
     if positions[0] != positions[-1]:
-        raise ValueError(f"{where}: is not closed: begins at {positions[0]}, ends at {positions[-1]}; expected the same (RFC 7946, 3.1.6)")
+        raise ValueError(
+            f"{where}: is not closed: begins at {positions[0]}, ends at {positions[-1]}; expected "
+            f"the same (RFC 7946, 3.1.6)"
+        )
     return ring[:-1]
 
 
@@ -181,12 +240,18 @@ def _flat(shapes: list[Shape]) -> list[Shape]:
     return [shape._replace(rings=tuple(ring[:, :2] for ring in shape.rings)) for shape in shapes]
 
 
-def _border(borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: float | None, largest: float) -> tuple[Bounds, list[Shape]]:
-    """The bounds of a map, and as obstacles what lies within them and yet outside its border, which may have any shape."""
+def _border(
+    borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: float | None, largest: float
+) -> tuple[Bounds, list[Shape]]:
+    """The bounds of a map, and as obstacles what lies within them and yet outside its border, which
+    may have any shape.
+    """
     if len(borders) > 1:
         raise ValueError(f"{len(borders)} polygons with role border; expected one")
     if borders and margin is not None:
-        raise ValueError(f"margin: {margin:g}: the file has a border of its own; expected no margin")
+        raise ValueError(
+            f"margin: {margin:g}: the file has a border of its own; expected no margin"
+        )
     if borders:
         import shapely
 
@@ -195,9 +260,17 @@ def _border(borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: flo
         check_bounds(limits)
         border = shapely.Polygon(outer, holes)
         if not border.is_valid:
-            raise ValueError(f"{name}: {shapely.is_valid_reason(border)}; expected a simple polygon")
-        beyond = [part for part in shapely.get_parts(_frame(limits).difference(border)) if not part.is_empty]
-        return limits, [Shape("obstacle", f"{name}: outside of it", rings_of(part)) for part in beyond]
+            raise ValueError(
+                f"{name}: {shapely.is_valid_reason(border)}; expected a simple polygon"
+            )
+        beyond = [
+            part
+            for part in shapely.get_parts(_frame(limits).difference(border))
+            if not part.is_empty
+        ]
+        return limits, [
+            Shape("obstacle", f"{name}: outside of it", rings_of(part)) for part in beyond
+        ]
     if margin is not None:
         if not obstacles:
             raise ValueError(f"margin: {margin:g}: the file has no obstacle; expected a border")
@@ -206,13 +279,18 @@ def _border(borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: flo
         check_bounds(limits)
         return limits, []
     if bbox is None:
-        raise ValueError("no border; expected a polygon with role border, a bbox, or a margin around the obstacles")
+        raise ValueError(
+            "no border; expected a polygon with role border, a bbox, or a margin around the "
+            "obstacles"
+        )
     return _checked_bbox(bbox, largest), []
 
 
 def _checked_bbox(bbox: Any, largest: float) -> Bounds:
     """The bounds that a file states, with or without heights."""
-    numbers = isinstance(bbox, list) and all(isinstance(value, int | float) and not isinstance(value, bool) for value in bbox)
+    numbers = isinstance(bbox, list) and all(
+        isinstance(value, int | float) and not isinstance(value, bool) for value in bbox
+    )
     if not numbers or len(bbox) not in (4, 6):
         raise ValueError(f"bbox: {str(bbox)[:60]}; expected [x low, y low, x high, y high]")
     low, high = bbox[: len(bbox) // 2], bbox[len(bbox) // 2 :]
@@ -248,16 +326,23 @@ def within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
     import shapely
 
     frame = _frame(limits)
-    shapes = np.array([shapely.Polygon(polygon.rings[0], polygon.rings[1:]) for polygon in obstacles], dtype=object)
+    shapes = np.array(
+        [shapely.Polygon(polygon.rings[0], polygon.rings[1:]) for polygon in obstacles],
+        dtype=object,
+    )
     for polygon, shape in zip(obstacles, shapes):
         if not shape.is_valid:
-            raise ValueError(f"{polygon.name}: {shapely.is_valid_reason(shape)}; expected a simple polygon")
+            raise ValueError(
+                f"{polygon.name}: {shapely.is_valid_reason(shape)}; expected a simple polygon"
+            )
     for polygon, shape in zip(obstacles, shapes):
         _check_thickness(polygon.name, polygon.rings, shape)
     near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=SMALLEST_GAP)
     for i, (polygon, shape) in enumerate(zip(obstacles, shapes)):
         beside = shapes[near[1][(near[0] == i) & (near[1] > i)]]
-        check_gaps(np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), polygon.name)
+        check_gaps(
+            np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), polygon.name
+        )
     covered = shapely.covers(frame, shapes)
     over = [polygon.name for polygon, inside in zip(obstacles, covered) if not inside]
     if over:
@@ -265,37 +350,63 @@ def within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
         logger.warning("%s: beyond the border, and cut there", first)
     kept: list[Rings] = []
     for polygon, shape, inside in zip(obstacles, shapes, covered):
-        parts = [] if inside else [part for part in shapely.get_parts(shape.intersection(frame)) if isinstance(part, shapely.Polygon)]
+        parts = (
+            []
+            if inside
+            else [
+                part
+                for part in shapely.get_parts(shape.intersection(frame))
+                if isinstance(part, shapely.Polygon)
+            ]
+        )
         kept += [polygon.rings] if inside else map(rings_of, parts)
     return kept
 
 
 def _check_thickness(name: str, rings: Rings, shape: Any) -> None:
-    """Raise ValueError, naming the obstacle and a position, for edges, angles, walls and gaps of an obstacle that are too small.
+    """Raise ValueError, naming the obstacle and a position, for edges, angles, walls and gaps of an
+    obstacle that are too small.
 
-    Two edges that do not cross are nearest at an end of one of them. So with edges that are long enough and corners that are wide enough,
-    an obstacle is as thick as its corners are far from the edges that they do not belong to.
+    Two edges that do not cross are nearest at an end of one of them. So with edges that are long
+    enough and corners that are wide enough, an obstacle is as thick as its corners are far from the
+    edges that they do not belong to.
     """
     import shapely
 
     # Repeated positions have no edge.
     rings = tuple(ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)] for ring in rings)
-    corners, ends = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+    corners, ends = (
+        np.concatenate(rings),
+        np.concatenate([np.roll(ring, -1, axis=0) for ring in rings]),
+    )
     before = np.concatenate([np.roll(ring, 1, axis=0) for ring in rings])
     sides = np.hypot(*(ends - corners).T)
     k = int(sides.argmin())
     check_thickness(float(sides[k]), f"{name}: an edge at {corners[k].tolist()} of length")
     forward, back = ends - corners, before - corners
-    angles = np.abs(np.arctan2(forward[:, 0] * back[:, 1] - forward[:, 1] * back[:, 0], (forward * back).sum(axis=1)))
+    angles = np.abs(
+        np.arctan2(
+            forward[:, 0] * back[:, 1] - forward[:, 1] * back[:, 0], (forward * back).sum(axis=1)
+        )
+    )
     k = int(angles.argmin())
     if angles[k] < SMALLEST_ANGLE:
-        raise ValueError(f"{name}: an angle at {corners[k].tolist()} of {angles[k]:.2g} rad; expected at least {SMALLEST_ANGLE:g}")
+        raise ValueError(
+            f"{name}: an angle at {corners[k].tolist()} of {angles[k]:.2g} rad; expected at least "
+            f"{SMALLEST_ANGLE:g}"
+        )
     edges = shapely.linestrings(np.stack([corners, ends], axis=1))
-    corner, edge = shapely.STRtree(edges).query(shapely.points(corners), predicate="dwithin", distance=SMALLEST_FEATURE)
-    own = (corners[corner] == corners[edge]).all(axis=1) | (corners[corner] == ends[edge]).all(axis=1)
+    corner, edge = shapely.STRtree(edges).query(
+        shapely.points(corners), predicate="dwithin", distance=SMALLEST_FEATURE
+    )
+    own = (corners[corner] == corners[edge]).all(axis=1) | (corners[corner] == ends[edge]).all(
+        axis=1
+    )
     for k, e in zip(corner[~own], edge[~own]):
         at, along = corners[k], ends[e] - corners[e]
-        nearest = corners[e] + np.clip((at - corners[e]) @ along / (along @ along), 0.0, 1.0) * along
+        nearest = (
+            corners[e] + np.clip((at - corners[e]) @ along / (along @ along), 0.0, 1.0) * along
+        )
         apart = float(np.hypot(*(nearest - at)))
         if apart > 0 and shape.contains(shapely.Point(0.5 * (at + nearest))):
             check_thickness(apart, f"{name}: at {at.tolist()} a wall of thickness")

@@ -1,7 +1,8 @@
 """A grid of square cells, each free or occupied.
 
-Cells are numbered row by row from the bottom left, from 0: number = column + columns * row (song2016, Section III; code for papers that
-number differently converts where it reads or prints numbers).
+Cells are numbered row by row from the bottom left, from 0: number = column + columns * row
+(song2016, Section III; code for papers that number differently converts where it reads or prints
+numbers).
 """
 
 import math
@@ -16,8 +17,9 @@ from bezierplan.workspaces.grown import Grown
 from bezierplan.workspaces.limits import check_numbers
 from bezierplan.workspaces.polygons import Polygons
 
-# A coordinate this close below a grid line, in cells, counts as on it. Control points at cell centres put many samples of a curve exactly
-# on grid lines, where rounding alone would decide; with this margin every program finds the same cell: the one above or to the right.
+# A coordinate this close below a grid line, in cells, counts as on it. Control points at cell
+# centres put many samples of a curve exactly on grid lines, where rounding alone would decide; with
+# this margin every program finds the same cell: the one above or to the right.
 ON_LINE = 1e-9
 
 MOST_CELLS = 4_000_000
@@ -28,11 +30,13 @@ MOST_CELLS = 4_000_000
 class Grid:
     """Cells of a rectangle.
 
-    occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x, y of
-    the lower left corner, in units. drawn: the shapes from which the cells were drawn, if any: circles, which only pictures show, or
-    polygons, which are then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows, columns) height of the
-    ground in each cell, in units, where it is not flat; only some planners use them. grown: what the grid was before its occupied cells
-    grew by a robot's radius, if they did. The arrays are read-only.
+    occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name
+    of the unit of length. origin: x, y of the lower left corner, in units. drawn: the shapes from
+    which the cells were drawn, if any: circles, which only pictures show, or polygons, which are
+    then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows,
+    columns) height of the ground in each cell, in units, where it is not flat; only some planners
+    use them. grown: what the grid was before its occupied cells grew by a robot's radius, if they
+    did. The arrays are read-only.
     """
 
     occupied: np.ndarray
@@ -56,7 +60,9 @@ class Grid:
         return x, x + columns * self.cell, y, y + rows * self.cell
 
     def in_cells(self, points: np.ndarray) -> np.ndarray:
-        """Points (..., 2) in units as multiples of a cell from the lower left corner: cell i reaches from i to i + 1."""
+        """Points (..., 2) in units as multiples of a cell from the lower left corner: cell i
+        reaches from i to i + 1.
+        """
         return (points - np.array(self.origin)) / self.cell
 
     def in_units(self, points: np.ndarray) -> np.ndarray:
@@ -65,26 +71,37 @@ class Grid:
 
     def cell_of(self, x: float, y: float) -> tuple[int, int] | None:
         """Row and column of a point in units (song2016, eq. 8), or None outside the grid."""
-        # Plain numbers: planners ask for one point after the other, and an array for each takes ten times as long.
+        # Plain numbers: planners ask for one point after the other, and an array for each takes ten
+        # times as long.
         x, y, (x_low, y_low) = float(x), float(y), self.origin
         rows, columns = self.occupied.shape
-        if not (x_low <= x <= x_low + columns * self.cell and y_low <= y <= y_low + rows * self.cell):
+        if not (
+            x_low <= x <= x_low + columns * self.cell and y_low <= y <= y_low + rows * self.cell
+        ):
             return None
-        column, row = math.floor((x - x_low) / self.cell + ON_LINE), math.floor((y - y_low) / self.cell + ON_LINE)
+        column, row = (
+            math.floor((x - x_low) / self.cell + ON_LINE),
+            math.floor((y - y_low) / self.cell + ON_LINE),
+        )
         return min(row, rows - 1), min(column, columns - 1)
 
     def centre(self, number: int) -> tuple[float, float]:
-        """Centre of a cell in units (song2016, eq. 7). Raises ValueError for a number outside the grid."""
+        """Centre of a cell in units (song2016, eq. 7). Raises ValueError for a number outside the
+        grid.
+        """
         rows, columns = self.occupied.shape
         if not 0 <= number < rows * columns:
-            raise ValueError(f"cell {number} is not on the grid; its cells are numbered 0 to {rows * columns - 1}")
+            raise ValueError(
+                f"cell {number} is not on the grid; its cells are numbered 0 to "
+                f"{rows * columns - 1}"
+            )
         row, column = divmod(number, columns)
         return self.origin[0] + (column + 0.5) * self.cell, self.origin[1] + (row + 0.5) * self.cell
 
 
 def embed(occupied: np.ndarray) -> np.ndarray:
-    """The grid embedded in the smallest one whose numbers of rows and columns are powers of two, with the surplus cells occupied (song2016,
-    Remark 1).
+    """The grid embedded in the smallest one whose numbers of rows and columns are powers of two,
+    with the surplus cells occupied (song2016, Remark 1).
 
     occupied: bool (rows, columns) -> bool (2**i, 2**j). Every binary cell number is then a cell.
     """
@@ -97,7 +114,8 @@ def embed(occupied: np.ndarray) -> np.ndarray:
 def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     """A grid from text, top row first: `.` is a free cell, `#` an occupied one.
 
-    Raises ValueError, naming the line, for an empty or ragged map, for any other character, and for more than `MOST_CELLS` cells.
+    Raises ValueError, naming the line, for an empty or ragged map, for any other character, and for
+    more than `MOST_CELLS` cells.
 
     >>> room = from_lines(["....", ".##.", "#..."], cell=0.5, unit="m")
     >>> room.occupied[0].tolist()
@@ -112,20 +130,31 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     for number, line in enumerate(lines, start=1):
         unknown = line.replace(".", "").replace("#", "")
         if unknown:
-            raise ValueError(f"line {number}: unknown character {unknown[0]!r}; a cell is . (free) or # (occupied)")
+            raise ValueError(
+                f"line {number}: unknown character {unknown[0]!r}; a cell is . (free) or # "
+                f"(occupied)"
+            )
         if len(line) != len(lines[0]):
-            raise ValueError(f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all lines need the same number")
+            raise ValueError(
+                f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all "
+                f"lines need the same number"
+            )
     if len(lines) * len(lines[0]) > MOST_CELLS:
-        raise ValueError(f"{len(lines):,} x {len(lines[0]):,} cells; expected at most {MOST_CELLS:,} cells")
-    occupied = np.array([np.frombuffer(line.encode(), dtype=np.uint8) == ord("#") for line in reversed(lines)])
+        raise ValueError(
+            f"{len(lines):,} x {len(lines[0]):,} cells; expected at most {MOST_CELLS:,} cells"
+        )
+    occupied = np.array(
+        [np.frombuffer(line.encode(), dtype=np.uint8) == ord("#") for line in reversed(lines)]
+    )
     return Grid(occupied, cell, unit)
 
 
 def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
-    """Heights (rows, columns) of a grid of that shape from text: one number per cell, separated by spaces, top row first.
+    """Heights (rows, columns) of a grid of that shape from text: one number per cell, separated by
+    spaces, top row first.
 
-    Raises ValueError, naming the line, for a wrong number of rows or cells, and for anything that is not a finite number within the
-    limits of coordinates.
+    Raises ValueError, naming the line, for a wrong number of rows or cells, and for anything that
+    is not a finite number within the limits of coordinates.
     """
     rows, columns = shape
     if len(lines) != rows:
@@ -134,12 +163,17 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
     for number, line in enumerate(lines, start=1):
         words = line.split()
         if len(words) != columns:
-            raise ValueError(f"line {number} has {len(words)} heights; expected {columns}, as many as the map has cells")
+            raise ValueError(
+                f"line {number} has {len(words)} heights; expected {columns}, as many as the map "
+                f"has cells"
+            )
         for column, word in enumerate(words):
             try:
                 heights[rows - number, column] = text_file.number(word)
             except ValueError:
-                raise ValueError(f"line {number}: {word[:40]!r} is not a height; expected a finite number") from None
+                raise ValueError(
+                    f"line {number}: {word[:40]!r} is not a height; expected a finite number"
+                ) from None
         check_numbers(heights[rows - number], f"line {number}")
     return heights
 

@@ -1,10 +1,12 @@
-"""The ground of a grid for paths from cell to cell: which edges meet obstacles, what they cost, and the cheapest path (meledje).
+"""The ground of a grid for paths from cell to cell: which edges meet obstacles, what they cost, and
+the cheapest path (meledje).
 
-An edge is the straight line between the centres of two cells. It meets a cell if it passes through its interior; touching a side or a
-corner does not count, unless corners are closed. This is decided in integer arithmetic.
+An edge is the straight line between the centres of two cells. It meets a cell if it passes through
+its interior; touching a side or a corner does not count, unless corners are closed. This is decided
+in integer arithmetic.
 
-Lengths, heights and energies are in cells. On a map with few cells all edges are measured once, on a larger one when they are needed; the
-numbers are identical to the last bit.
+Lengths, heights and energies are in cells. On a map with few cells all edges are measured once, on
+a larger one when they are needed; the numbers are identical to the last bit.
 """
 
 import math
@@ -16,16 +18,19 @@ import numpy as np
 from bezierplan.kernels import allocation_free, compiled, inlined
 from bezierplan.workspaces.grid import Grid
 
-# For a map with more cells than this no table of all edges is made: it would grow with the square of their number.
+# For a map with more cells than this no table of all edges is made: it would grow with the square
+# of their number.
 TABLE_CELLS = 2048
 
 
 class Ground(NamedTuple):
-    """The ground on which edges are measured, in cells. Cells are numbered row by row from the bottom left.
+    """The ground on which edges are measured, in cells. Cells are numbered row by row from the
+    bottom left.
 
-    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction: that of the ground, at most 1 on most
-    kinds of ground. closed: whether an edge through a common corner of four cells meets the two next to it. met, energy: (cells, cells) for
-    the edge from one cell to another, the number of occupied cells it meets and its cost; or (0, 0).
+    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction:
+    that of the ground, at most 1 on most kinds of ground. closed: whether an edge through a common
+    corner of four cells meets the two next to it. met, energy: (cells, cells) for the edge from one
+    cell to another, the number of occupied cells it meets and its cost; or (0, 0).
     """
 
     occupied: np.ndarray
@@ -37,7 +42,9 @@ class Ground(NamedTuple):
 
 
 def ground_of(grid: Grid, friction: float, closed: bool = False) -> Ground:
-    """The ground of a grid, with all its edges measured if it has at most `TABLE_CELLS` cells. Do not modify the result."""
+    """The ground of a grid, with all its edges measured if it has at most `TABLE_CELLS` cells. Do
+    not modify the result.
+    """
     return _ground(*_key(grid, friction, closed))
 
 
@@ -49,15 +56,35 @@ def least_energy(grid: Grid, friction: float, closed: bool, start: int, target: 
 def _key(grid: Grid, friction: float, closed: bool) -> tuple:
     """What determines the ground of a grid, so that it is built once per map."""
     heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
-    return grid.occupied.shape, grid.occupied.tobytes(), heights, float(friction), closed, TABLE_CELLS
+    return (
+        grid.occupied.shape,
+        grid.occupied.tobytes(),
+        heights,
+        float(friction),
+        closed,
+        TABLE_CELLS,
+    )
 
 
 @lru_cache(maxsize=8)
-def _ground(shape: tuple[int, int], occupied: bytes, heights: bytes, friction: float, closed: bool, table_cells: int) -> Ground:
+def _ground(
+    shape: tuple[int, int],
+    occupied: bytes,
+    heights: bytes,
+    friction: float,
+    closed: bool,
+    table_cells: int,
+) -> Ground:
     cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
     above = np.frombuffer(heights).reshape(shape if heights else (0, 0)).copy()
-    bare = Ground(cells, above, friction, closed, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0)))
-    return bare._replace(**dict(zip(("met", "energy"), _tables(bare)))) if cells.size <= table_cells else bare
+    bare = Ground(
+        cells, above, friction, closed, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0))
+    )
+    return (
+        bare._replace(**dict(zip(("met", "energy"), _tables(bare))))
+        if cells.size <= table_cells
+        else bare
+    )
 
 
 @compiled
@@ -65,7 +92,9 @@ def _tables(ground):
     cells = ground.occupied.size
     met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
     for one in range(cells):
-        for other in range(one + 1):  # back and forth an edge meets the same cells, but climbs differently
+        for other in range(
+            one + 1
+        ):  # back and forth an edge meets the same cells, but climbs differently
             met[one, other] = met[other, one] = obstacles_met(ground, one, other)
             energy[one, other] = energy[other, one] = edge_energy(ground, one, other)
             if ground.heights.size:
@@ -75,7 +104,9 @@ def _tables(ground):
 
 @inlined
 def obstacles_met(ground: Ground, one: int, other: int) -> int:
-    """Number of occupied cells that the edge between two cells meets, including the two (meledje, eq. 3: beta)."""
+    """Number of occupied cells that the edge between two cells meets, including the two (meledje,
+    eq. 3: beta).
+    """
     if ground.met.size:
         return int(ground.met[one, other])
     return _passed(ground, one, other)[0]
@@ -83,7 +114,9 @@ def obstacles_met(ground: Ground, one: int, other: int) -> int:
 
 @allocation_free
 def path_met(path: np.ndarray, ground: Ground) -> int:
-    """Number of occupied cells that the edges of a path of cells (n,) meet; a cell counts once for every edge that meets it."""
+    """Number of occupied cells that the edges of a path of cells (n,) meet; a cell counts once for
+    every edge that meets it.
+    """
     met = 0
     for k in range(len(path) - 1):
         met += obstacles_met(ground, path[k], path[k + 1])
@@ -92,11 +125,15 @@ def path_met(path: np.ndarray, ground: Ground) -> int:
 
 @inlined
 def edge_energy(ground: Ground, one: int, other: int) -> float:
-    """Cost of the edge from one cell to another: its length plus its climb divided by the friction (meledje, eq. 2: epsilon)."""
+    """Cost of the edge from one cell to another: its length plus its climb divided by the friction
+    (meledje, eq. 2: epsilon).
+    """
     if ground.energy.size:
         return ground.energy[one, other]
     length = distance(ground, one, other)
-    return length + _passed(ground, one, other)[1] / ground.friction if ground.heights.size else length
+    return (
+        length + _passed(ground, one, other)[1] / ground.friction if ground.heights.size else length
+    )
 
 
 @allocation_free
@@ -111,8 +148,9 @@ def distance(ground: Ground, one: int, other: int) -> float:
 def _passed(ground, start, end):
     """Number of occupied cells that an edge meets, and the sum of its climbs from cell to cell.
 
-    The edge crosses its next vertical grid line after (2 i + 1) / (2 across) of its length, its next horizontal one after (2 j + 1) / (2
-    up); through a corner it leads from cell to cell without a third, but meets the two next to the corner if corners are closed.
+    The edge crosses its next vertical grid line after (2 i + 1) / (2 across) of its length, its
+    next horizontal one after (2 j + 1) / (2 up); through a corner it leads from cell to cell
+    without a third, but meets the two next to the corner if corners are closed.
     """
     columns = ground.occupied.shape[1]
     row, column = start // columns, start % columns
@@ -125,7 +163,9 @@ def _passed(ground, start, end):
         height = ground.heights[row, column] if ground.heights.size else 0.0
         ahead = (2 * i + 1) * up - (2 * j + 1) * across
         if ahead == 0 and ground.closed:
-            met += int(ground.occupied[row, column + right]) + int(ground.occupied[row + upward, column])
+            met += int(ground.occupied[row, column + right]) + int(
+                ground.occupied[row + upward, column]
+            )
         if ahead <= 0:
             i += 1
             column += right
@@ -144,8 +184,8 @@ def _least_energy(key: tuple, start: int, target: int) -> float:
 
 
 def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
-    """Minimum energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and empty if there is no such
-    path.
+    """Minimum energy, in cells, of a path from cell to cell that meets no obstacle, and its cells;
+    infinite and empty if there is no such path.
     """
     energy, before = _cheapest(ground, start, target)
     if math.isinf(energy):
@@ -158,12 +198,17 @@ def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray
 
 @compiled
 def _cheapest(ground, start, target):
-    """Minimum energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
+    """Minimum energy from start to target, and the cell before each cell on its way, by A* with the
+    straight distance.
 
     An edge is examined only if it would be an improvement: on a large map few are.
     """
     cells = ground.occupied.size
-    energy, before, done = np.full(cells, np.inf), np.full(cells, -1), ground.occupied.ravel().copy()
+    energy, before, done = (
+        np.full(cells, np.inf),
+        np.full(cells, -1),
+        ground.occupied.ravel().copy(),
+    )
     energy[start] = 0.0
     while True:
         here, least = -1, np.inf
@@ -174,7 +219,11 @@ def _cheapest(ground, start, target):
             return energy[target], before
         done[here] = True
         for cell in range(cells):
-            if not done[cell] and energy[here] + distance(ground, here, cell) < energy[cell] and obstacles_met(ground, here, cell) == 0:
+            if (
+                not done[cell]
+                and energy[here] + distance(ground, here, cell) < energy[cell]
+                and obstacles_met(ground, here, cell) == 0
+            ):
                 through = energy[here] + edge_energy(ground, here, cell)
                 if through < energy[cell]:
                     energy[cell], before[cell] = through, here
@@ -187,7 +236,9 @@ def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
 
 @allocation_free
 def free_neighbours(cell: int, ground: Ground, neighbours: np.ndarray) -> int:
-    """Write the free cells among the eight around a cell, row by row from the lower left, to `neighbours` (8,); returns their number."""
+    """Write the free cells among the eight around a cell, row by row from the lower left, to
+    `neighbours` (8,); returns their number.
+    """
     rows, columns = ground.occupied.shape
     count = 0
     for row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):

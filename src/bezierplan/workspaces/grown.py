@@ -1,4 +1,6 @@
-"""What a map that has grown by a robot's radius remembers, so that a path of the robot's centre is also judged on the map itself."""
+"""What a map that has grown by a robot's radius remembers, so that a path of the robot's centre is
+also judged on the map itself.
+"""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -9,8 +11,8 @@ if TYPE_CHECKING:
 
 
 class Grown(NamedTuple):
-    """radius: by how much obstacles grew and the border shrank, in units. original: the map before. centres: (n, 2) the corners of its
-    obstacles around which the grown ones are round, in units.
+    """radius: by how much obstacles grew and the border shrank, in units. original: the map before.
+    centres: (n, 2) the corners of its obstacles around which the grown ones are round, in units.
     """
 
     radius: float

@@ -1,4 +1,5 @@
-"""The 8-connected lattice of a grid: paths from centre to centre of neighbouring free cells, and to start and target inside their cells.
+"""The 8-connected lattice of a grid: paths from centre to centre of neighbouring free cells, and to
+start and target inside their cells.
 
 Cells are numbered as in `grid.Grid`; lengths are in cells.
 """
@@ -21,10 +22,11 @@ STEPS = np.array([(0, -1), (0, 1), (1, 0), (-1, 0), (-1, -1), (1, -1), (-1, 1), 
 class Lattice(NamedTuple):
     """The lattice of a problem, for kernels.
 
-    neighbours: (cells, 8) the number of the cell that each of `STEPS` reaches, -1 where it is not allowed. around: (cells, 8) the same
-    without any corner rule, -1 only outside the grid and for occupied cells. occupied: bool (cells,). row, column: (cells,). start, target:
-    cells. diagonal: length of a diagonal step, others count 1. ends: total distance of start and target from the centres of their cells, 0
-    if they coincide.
+    neighbours: (cells, 8) the number of the cell that each of `STEPS` reaches, -1 where it is not
+    allowed. around: (cells, 8) the same without any corner rule, -1 only outside the grid and for
+    occupied cells. occupied: bool (cells,). row, column: (cells,). start, target: cells. diagonal:
+    length of a diagonal step, others count 1. ends: total distance of start and target from the
+    centres of their cells, 0 if they coincide.
     """
 
     neighbours: np.ndarray
@@ -38,7 +40,9 @@ class Lattice(NamedTuple):
     ends: float
 
 
-def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: str) -> Lattice:
+def lattice(
+    grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: str
+) -> Lattice:
     """The lattice of a grid with the cells of start and target, both (x, y) in units.
 
     Raises ValueError if one of them lies outside the grid, or in an occupied cell.
@@ -48,7 +52,11 @@ def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float],
     for name, point in (("start", start), ("target", target)):
         cell = grid.cell_of(*point)
         if cell is None or grid.occupied[cell]:
-            where = "outside the grid" if cell is None else f"in the occupied cell of row {cell[0]}, column {cell[1]}"
+            where = (
+                "outside the grid"
+                if cell is None
+                else f"in the occupied cell of row {cell[0]}, column {cell[1]}"
+            )
             raise ValueError(f"{name}: {point}: {where}; expected a point of a free cell")
         cells.append(cell[0] * columns + cell[1])
         if start != target:
@@ -56,35 +64,59 @@ def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float],
     row, column = np.divmod(np.arange(rows * columns), columns)
     first, last = cells
     return Lattice(
-        neighbours(grid.occupied, corners), _around(grid.occupied), grid.occupied.ravel(), row, column, first, last, math.sqrt(2), ends
+        neighbours(grid.occupied, corners),
+        _around(grid.occupied),
+        grid.occupied.ravel(),
+        row,
+        column,
+        first,
+        last,
+        math.sqrt(2),
+        ends,
     )
 
 
 def neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
-    """The cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not allowed and from occupied cells.
+    """The cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not allowed
+    and from occupied cells.
 
     occupied: bool (rows, columns). Raises ValueError for an unknown rule.
     """
     if corners not in Corners.__members__:
-        raise ValueError(f"unknown corner rule {corners!r}; known: {', '.join(Corners.__members__)}")
+        raise ValueError(
+            f"unknown corner rule {corners!r}; known: {', '.join(Corners.__members__)}"
+        )
     walled = np.pad(occupied, 1, constant_values=True)
     row, column = np.argwhere(~occupied).T + 1
-    # The two cells next to a step; for a step along an axis these are the cells that it leaves and enters.
-    beside = [walled[row + up, column].astype(int) + walled[row, column + right] for up, right in STEPS]
+    # The two cells next to a step; for a step along an axis these are the cells that it leaves and
+    # enters.
+    beside = [
+        walled[row + up, column].astype(int) + walled[row, column + right] for up, right in STEPS
+    ]
     reached = np.full((occupied.size, len(STEPS)), -1)
     free = np.flatnonzero(~occupied)
-    reached[free] = np.where(np.column_stack(beside) <= Corners[corners], _around(occupied)[free], -1)
+    reached[free] = np.where(
+        np.column_stack(beside) <= Corners[corners], _around(occupied)[free], -1
+    )
     return reached
 
 
 def _around(occupied: np.ndarray) -> np.ndarray:
-    """The free cells around each cell, free or occupied: (cells, 8) numbers, -1 where there is none."""
-    number = np.pad(np.where(occupied, -1, np.arange(occupied.size).reshape(occupied.shape)), 1, constant_values=-1)
+    """The free cells around each cell, free or occupied: (cells, 8) numbers, -1 where there is
+    none.
+    """
+    number = np.pad(
+        np.where(occupied, -1, np.arange(occupied.size).reshape(occupied.shape)),
+        1,
+        constant_values=-1,
+    )
     row, column = np.indices(occupied.shape).reshape(2, -1) + 1
     return np.column_stack([number[row + up, column + right] for up, right in STEPS])
 
 
-def points(grid: Grid, start: tuple[float, float], target: tuple[float, float], cells: np.ndarray) -> np.ndarray:
+def points(
+    grid: Grid, start: tuple[float, float], target: tuple[float, float], cells: np.ndarray
+) -> np.ndarray:
     """Start, the centres of cells (n,), and target, in units: (n + 2, 2).
 
     Fewer where start or target is itself a centre; no cells if start equals target.
@@ -92,4 +124,6 @@ def points(grid: Grid, start: tuple[float, float], target: tuple[float, float], 
     if start == target:
         return np.array([start, target])
     centres = [grid.centre(cell) for cell in cells.tolist()]
-    return np.array([start, *centres[centres[0] == start : len(centres) - (centres[-1] == target)], target])
+    return np.array(
+        [start, *centres[centres[0] == start : len(centres) - (centres[-1] == target)], target]
+    )

@@ -3,42 +3,69 @@
 import numpy as np
 
 LARGEST = 1e5
-"""Largest size of a coordinate, in units: beyond it the certified checker could not keep its tolerance."""
+"""Largest size of a coordinate, in units: beyond it the certified checker could not keep its
+tolerance.
+"""
 
 FARTHEST = 3e7
-"""Largest size of a coordinate of a map that is shifted before anything is computed: beyond all projected coordinates of the earth."""
+"""Largest size of a coordinate of a map that is shifted before anything is computed: beyond all
+projected coordinates of the earth.
+"""
 
 SMALLEST_GAP = 1e-7
-"""Between obstacles, or an obstacle and the border, a smaller gap, in units, is meant to be closed: the checker could not tell."""
+"""Between obstacles, or an obstacle and the border, a smaller gap, in units, is meant to be closed:
+the checker could not tell.
+"""
 
 SMALLEST_FEATURE = 1e-6
-"""Least thickness of an obstacle, side of a cell and radius of a circle, in units: the checker's tolerance passes thinner ones."""
+"""Least thickness of an obstacle, side of a cell and radius of a circle, in units: the checker's
+tolerance passes thinner ones.
+"""
 
 SMALLEST_ANGLE = 1e-3
-"""Least angle at a corner of an obstacle, in radians: the tip of a sharper one is thinner than the checker's tolerance for long."""
+"""Least angle at a corner of an obstacle, in radians: the tip of a sharper one is thinner than the
+checker's tolerance for long.
+"""
 
 
 def check_numbers(values: np.ndarray, where: str, largest: float = LARGEST) -> None:
-    """Raise ValueError, beginning with the location, unless all values are finite and at most `largest` in absolute value."""
+    """Raise ValueError, beginning with the location, unless all values are finite and at most
+    `largest` in absolute value.
+    """
     wrong = values[~(np.abs(values) <= largest)]
     if wrong.size:
-        raise ValueError(f"{where}: {wrong[0]:g} is not a coordinate; expected finite numbers of at most {largest:g} in size")
+        raise ValueError(
+            f"{where}: {wrong[0]:g} is not a coordinate; expected finite numbers of at most "
+            f"{largest:g} in size"
+        )
 
 
 def check_bounds(bounds: tuple[float, float, float, float]) -> None:
-    """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below high by `SMALLEST_FEATURE`."""
+    """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below
+    high by `SMALLEST_FEATURE`.
+    """
     if not (bounds[0] < bounds[1] and bounds[2] < bounds[3]):
-        raise ValueError(f"bounds: {list(bounds)}; expected [x low, x high, y low, y high] with low below high")
-    check_thickness(min(bounds[1] - bounds[0], bounds[3] - bounds[2]), f"bounds: {list(bounds)}: side")
+        raise ValueError(
+            f"bounds: {list(bounds)}; expected [x low, x high, y low, y high] with low below high"
+        )
+    check_thickness(
+        min(bounds[1] - bounds[0], bounds[3] - bounds[2]), f"bounds: {list(bounds)}: side"
+    )
 
 
 def check_thickness(size: float, where: str) -> None:
-    """Raise ValueError, beginning with the location, for a side, radius or thickness, in units, below `SMALLEST_FEATURE`."""
+    """Raise ValueError, beginning with the location, for a side, radius or thickness, in units,
+    below `SMALLEST_FEATURE`.
+    """
     if size < SMALLEST_FEATURE:
         raise ValueError(f"{where} {size:g}; expected at least {SMALLEST_FEATURE:g}")
 
 
 def check_gaps(gaps: np.ndarray, where: str) -> None:
-    """Raise ValueError, beginning with the location, for a gap, in units, that is neither closed nor open."""
+    """Raise ValueError, beginning with the location, for a gap, in units, that is neither closed
+    nor open.
+    """
     if np.any((gaps > 0) & (gaps < SMALLEST_GAP)):
-        raise ValueError(f"{where}: a gap below {SMALLEST_GAP:g} beside it; close it or make it wider")
+        raise ValueError(
+            f"{where}: a gap below {SMALLEST_GAP:g} beside it; close it or make it wider"
+        )

@@ -1,4 +1,6 @@
-"""Maps that people have: which kind of workspace a file is, its description with the options of a command or a call, and the map itself."""
+"""Maps that people have: which kind of workspace a file is, its description with the options of a
+command or a call, and the map itself.
+"""
 
 import math
 from collections.abc import Collection
@@ -27,7 +29,9 @@ KINDS = {
 """Suffix of a map file -> the kind of workspace that it is read as."""
 
 CELLS = 200
-"""Cells along the longer side of a map of polygons, where a planner needs cells and no side of a cell is given."""
+"""Cells along the longer side of a map of polygons, where a planner needs cells and no side of a
+cell is given.
+"""
 
 _APPLIES = {
     "scenario": ("moving_ai",),
@@ -64,15 +68,17 @@ def described(
     scenario: str | None = None,
     cells: bool = False,
 ) -> dict[str, Any]:
-    """The description of a map file as a workspace of a study (config/README.md), which has no kinds `image` and `svg`; None is what is not
-    given.
+    """The description of a map file as a workspace of a study (config/README.md), which has no
+    kinds `image` and `svg`; None is what is not given.
 
-    cells: whether polygons become a grid. Raises ValueError, naming the option, for a value that is wrong or does nothing on this kind of
-    map, and for an unknown kind of file.
+    cells: whether polygons become a grid. Raises ValueError, naming the option, for a value that is
+    wrong or does nothing on this kind of map, and for an unknown kind of file.
     """
     kind = KINDS.get(file.suffix.lower())
     if kind is None:
-        raise ValueError(f"{file}: unknown kind of map; expected a file that ends in {', '.join(KINDS)}")
+        raise ValueError(
+            f"{file}: unknown kind of map; expected a file that ends in {', '.join(KINDS)}"
+        )
     for name, length in {"cell": cell, "resolution": resolution}.items():
         if length is not None and not 0 < length < math.inf:
             raise ValueError(f"{name}: {length:g}; expected a number above 0")
@@ -85,16 +91,32 @@ def described(
     if most_pixels is not None and most_pixels < 1:
         raise ValueError(f"most_pixels: {most_pixels}; expected a whole number of at least 1")
     metres = kind in ("polygons", "ros_map", "image", "svg")
-    description: dict[str, Any] = {"kind": kind, "file": file.name, "unit": unit or ("m" if metres else "cell")}
+    description: dict[str, Any] = {
+        "kind": kind,
+        "file": file.name,
+        "unit": unit or ("m" if metres else "cell"),
+    }
     drawn = kind in ("polygons", "svg") and cells
-    given = {"scenario": scenario, "cell": cell, "rule": rule, "margin": margin, "resolution": resolution, "unknown": unknown}
+    given = {
+        "scenario": scenario,
+        "cell": cell,
+        "rule": rule,
+        "margin": margin,
+        "resolution": resolution,
+        "unknown": unknown,
+    }
     given["most_pixels"] = most_pixels
     for name, kinds in _APPLIES.items():
         if given[name] is not None and kind not in kinds and not (drawn and "raster" in kinds):
             wanted = " or ".join(_KIND_NAMES[each] for each in kinds)
-            raise ValueError(f"{name}: only for {wanted}; {file} is {_KIND_NAMES['raster' if drawn else kind]}")
+            raise ValueError(
+                f"{name}: only for {wanted}; {file} is {_KIND_NAMES['raster' if drawn else kind]}"
+            )
     if kind == "image" and resolution is None:
-        raise ValueError(f"resolution: missing; expected the length of a pixel's side, or the YAML file of {file} as the map")
+        raise ValueError(
+            f"resolution: missing; expected the length of a pixel's side, or the YAML file of "
+            f"{file} as the map"
+        )
     if kind == "grid":
         return description | {"cell": 1.0 if cell is None else cell}
     kept = ("margin", "resolution", "unknown", "most_pixels")
@@ -110,7 +132,8 @@ def described(
 def read(file: Path, description: dict[str, Any], robot_radius: float | None = None) -> Workspace:
     """The map of a file and its description, for a robot of a radius, in units.
 
-    Its coordinates may be as large as projected ones are. Raises ValueError, which names file or option.
+    Its coordinates may be as large as projected ones are. Raises ValueError, which names file or
+    option.
     """
     robot.check_radius(robot_radius or 0.0)
     if description["kind"] != "raster":
@@ -124,7 +147,9 @@ def read(file: Path, description: dict[str, Any], robot_radius: float | None = N
 
 
 def _loaded(file: Path, description: dict[str, Any]) -> Workspace:
-    """The map of a file. Raises ValueError, beginning with the option `margin` or with the file as it was given."""
+    """The map of a file. Raises ValueError, beginning with the option `margin` or with the file as
+    it was given.
+    """
     try:
         workspace = _anywhere(file, description)
         shifted.shift_of(workspace)
@@ -143,7 +168,9 @@ def _anywhere(file: Path, description: dict[str, Any]) -> Workspace:
         from bezierplan.workspaces.svg import polygons_from_svg
 
         return polygons_from_svg(read_text(file), unit, description.get("resolution", 1.0))
-    options = {name: description[name] for name in ("unknown", "most_pixels") if name in description}
+    options = {
+        name: description[name] for name in ("unknown", "most_pixels") if name in description
+    }
     if kind == "image":
         return ros.read_image(file, description["resolution"], unit, **options)
     if kind == "ros_map":
@@ -152,21 +179,30 @@ def _anywhere(file: Path, description: dict[str, Any]) -> Workspace:
 
 
 def needs_cells(served: Collection[str] | None) -> bool:
-    """Whether a planner that serves some kinds of workspace, None for all, does not serve polygons."""
+    """Whether a planner that serves some kinds of workspace, None for all, does not serve
+    polygons.
+    """
     return served is not None and "polygons" not in served
 
 
 def pose(name: str, text: str | None) -> tuple[tuple[float, float], float | None]:
-    """A point from words such as `2.5,10`, and the heading in radians that a third number gives. Raises ValueError, naming the option."""
+    """A point from words such as `2.5,10`, and the heading in radians that a third number gives.
+    Raises ValueError, naming the option.
+    """
     words = (text or "").split(",")
     if len(words) != 3:
         return point(name, text), None
     try:
         x, y, heading = (number(word.strip()) for word in words)
     except ValueError:
-        raise ValueError(f"{name}: {text}; expected X,Y or X,Y,THETA, numbers such as 2.5,10,1.57") from None
+        raise ValueError(
+            f"{name}: {text}; expected X,Y or X,Y,THETA, numbers such as 2.5,10,1.57"
+        ) from None
     if abs(heading) > math.tau:
-        raise ValueError(f"{name}: {text}: a heading of {heading:g}; expected radians, from {-math.tau:.4g} to {math.tau:.4g}")
+        raise ValueError(
+            f"{name}: {text}: a heading of {heading:g}; expected radians, from {-math.tau:.4g} to "
+            f"{math.tau:.4g}"
+        )
     return (x, y), heading
 
 
@@ -175,5 +211,7 @@ def point(name: str, text: str | None) -> tuple[float, float]:
     try:
         x, y = (number(word.strip()) for word in (text or "").split(","))
     except ValueError:
-        raise ValueError(f"{name}: {text or 'missing'}; expected X,Y, two numbers such as 2.5,10") from None
+        raise ValueError(
+            f"{name}: {text or 'missing'}; expected X,Y, two numbers such as 2.5,10"
+        ) from None
     return x, y

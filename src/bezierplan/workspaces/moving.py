@@ -16,26 +16,40 @@ Walls = tuple[float, float, float, float]
 
 
 def walls_of(bounds: list[float]) -> Walls:
-    """The walls of a field, from a description's bounds. Raises ValueError for bounds without room."""
+    """The walls of a field, from a description's bounds. Raises ValueError for bounds without
+    room.
+    """
     x_low, x_high, y_low, y_high = map(float, bounds)
     check_bounds((x_low, x_high, y_low, y_high))
     return x_low, x_high, y_low, y_high
 
 
-def circles(description: dict, walls: Walls, centres: np.ndarray, velocities: np.ndarray, radii: np.ndarray) -> MovingCircles:
-    """Circles that move within walls: centres and velocities (n, 2), radii (n,). Raises ValueError for a radius that is too small."""
+def circles(
+    description: dict, walls: Walls, centres: np.ndarray, velocities: np.ndarray, radii: np.ndarray
+) -> MovingCircles:
+    """Circles that move within walls: centres and velocities (n, 2), radii (n,). Raises ValueError
+    for a radius that is too small.
+    """
     from bezierplan.workspaces.worlds import MovingCircles
 
     for i, radius in enumerate(radii):
         check_thickness(radius, f"circles: circle {i}: radius")
     pace, end = float(description["pace"]), description["steps"]
-    return MovingCircles(walls, walls, centres, velocities, radii, "circles", pace, end, description["unit"])
+    return MovingCircles(
+        walls, walls, centres, velocities, radii, "circles", pace, end, description["unit"]
+    )
 
 
 def drawn(
-    rng: np.random.Generator, description: dict, count: int, walls: Walls, ends: np.ndarray, radius: float
+    rng: np.random.Generator,
+    description: dict,
+    count: int,
+    walls: Walls,
+    ends: np.ndarray,
+    radius: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Centres and velocities (count, 2) of circles of a radius, from random places in random directions. ends: (2, 2).
+    """Centres and velocities (count, 2) of circles of a radius, from random places in random
+    directions. ends: (2, 2).
 
     Raises ValueError if no free place is found.
     """
@@ -44,8 +58,12 @@ def drawn(
     return centres, description["speed"] * np.column_stack([np.cos(heading), np.sin(heading)])
 
 
-def _drawn_centres(rng: np.random.Generator, count: int, walls: Walls, ends: np.ndarray, least: float) -> np.ndarray:
-    """Centres (count, 2) within the walls, none of them closer to an end than the minimum distance."""
+def _drawn_centres(
+    rng: np.random.Generator, count: int, walls: Walls, ends: np.ndarray, least: float
+) -> np.ndarray:
+    """Centres (count, 2) within the walls, none of them closer to an end than the minimum
+    distance.
+    """
     low, high = np.reshape(walls, (2, 2)).T
     centres = np.empty((count, 2))
     for i in range(count):
@@ -54,5 +72,8 @@ def _drawn_centres(rng: np.random.Generator, count: int, walls: Walls, ends: np.
             if np.hypot(*(ends - centres[i]).T).min() >= least:
                 break
         else:
-            raise ValueError(f"radius: no circle keeps {least:g} away from start and target in {MOST_DRAWS} draws")
+            raise ValueError(
+                f"radius: no circle keeps {least:g} away from start and target in {MOST_DRAWS} "
+                f"draws"
+            )
     return centres

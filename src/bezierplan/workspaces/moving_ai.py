@@ -1,8 +1,9 @@
-"""Grids and scenarios of the MovingAI benchmarks: a `.map` file of characters, and `.scen` files with starts, targets and optimal lengths.
+"""Grids and scenarios of the MovingAI benchmarks: a `.map` file of characters, and `.scen` files
+with starts, targets and optimal lengths.
 
-Cells of `.`, `G` and `S` are free, those of `@`, `O`, `T` and `W` are occupied. A scenario counts columns from the left and rows from the
-top; its optimal length is that of the shortest path over the eight neighbours, with diagonal steps of length sqrt 2, that cuts no corner of
-an occupied cell.
+Cells of `.`, `G` and `S` are free, those of `@`, `O`, `T` and `W` are occupied. A scenario counts
+columns from the left and rows from the top; its optimal length is that of the shortest path over
+the eight neighbours, with diagonal steps of length sqrt 2, that cuts no corner of an occupied cell.
 """
 
 from pathlib import Path
@@ -20,7 +21,9 @@ MOST_CELLS = 16_000_000
 
 
 class Scenario(NamedTuple):
-    """One line of a `.scen` file. start, target: (x, y) the centres of their cells, in cells. optimal: length in cells."""
+    """One line of a `.scen` file. start, target: (x, y) the centres of their cells, in cells.
+    optimal: length in cells.
+    """
 
     start: tuple[float, float]
     target: tuple[float, float]
@@ -28,9 +31,14 @@ class Scenario(NamedTuple):
 
 
 def read(file: Path, unit: str) -> Grid:
-    """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line and what is expected."""
+    """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line and what
+    is expected.
+    """
     lines = lines_of(read_text(file, largest=2 * MOST_CELLS))
-    kind, height, width = (_header(lines, number, key) for number, key in enumerate(("type", "height", "width"), start=1))
+    kind, height, width = (
+        _header(lines, number, key)
+        for number, key in enumerate(("type", "height", "width"), start=1)
+    )
     rows, columns = int(height), int(width)
     if kind != "octile":
         raise ValueError(f"line 1: type {kind}; expected type octile")
@@ -46,7 +54,9 @@ def read(file: Path, unit: str) -> Grid:
             raise ValueError(f"line {number} has {len(line)} cells; expected {columns}, the width")
         strange = line.strip(FREE + OCCUPIED)
         if set(strange) - set(FREE + OCCUPIED):
-            raise ValueError(f"line {number}: unknown character {strange[0]!r}; expected one of {FREE}{OCCUPIED}")
+            raise ValueError(
+                f"line {number}: unknown character {strange[0]!r}; expected one of {FREE}{OCCUPIED}"
+            )
     free = np.frombuffer("".join(cells).encode(), dtype=np.uint8).reshape(rows, columns)
     return Grid(~np.isin(free, np.frombuffer(FREE.encode(), dtype=np.uint8))[::-1], 1.0, unit)
 
@@ -55,7 +65,10 @@ def _header(lines: list[str], number: int, key: str) -> str:
     words = lines[number - 1].split() if len(lines) >= number else []
     if len(words) != 2 or words[0] != key or (key != "type" and not is_count(words[1])):
         found = lines[number - 1][:40] if len(lines) >= number else "the file ends"
-        raise ValueError(f"line {number}: {found!r}; expected {key} and {'octile' if key == 'type' else 'a whole number of at least 1'}")
+        raise ValueError(
+            f"line {number}: {found!r}; expected {key} and "
+            f"{'octile' if key == 'type' else 'a whole number of at least 1'}"
+        )
     return words[1]
 
 
@@ -83,11 +96,17 @@ def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
         columns, rows, x, y, target_x, target_y = map(_whole, (width, height, *ends[:4]))
         optimal = number_of(ends[4])
     except (ValueError, IndexError):
-        raise ValueError(f"{line}: expected bucket, map, width, height, start x, start y, target x, target y, optimal length") from None
+        raise ValueError(
+            f"{line}: expected bucket, map, width, height, start x, start y, target x, target y, "
+            f"optimal length"
+        ) from None
     if Path(home).name != name:
         raise ValueError(f"{line}: map {home}; expected a scenario of {name}")
     if (rows, columns) != grid.occupied.shape:
-        raise ValueError(f"{line}: a map of {columns} x {rows} cells; {name} has {grid.occupied.shape[1]} x {grid.occupied.shape[0]}")
+        raise ValueError(
+            f"{line}: a map of {columns} x {rows} cells; {name} has {grid.occupied.shape[1]} x "
+            f"{grid.occupied.shape[0]}"
+        )
     for end, column, row in (("start", x, y), ("target", target_x, target_y)):
         if not (0 <= column < columns and 0 <= row < rows) or grid.occupied[rows - 1 - row, column]:
             raise ValueError(f"{line}: {end} {column} {row}: expected a free cell of {name}")

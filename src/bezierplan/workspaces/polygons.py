@@ -12,8 +12,9 @@ from bezierplan.workspaces.grown import Grown
 class Polygons:
     """bounds: lowest and highest x, lowest and highest y, in units.
 
-    obstacles: one tuple of rings per obstacle, outer ring first, then its holes; a ring is (n, 2) in units, not closed. unit: name of the
-    unit of length. grown: what they were before they grew by a robot's radius, if they did. The arrays are read-only.
+    obstacles: one tuple of rings per obstacle, outer ring first, then its holes; a ring is (n, 2)
+    in units, not closed. unit: name of the unit of length. grown: what they were before they grew
+    by a robot's radius, if they did. The arrays are read-only.
     """
 
     bounds: tuple[float, float, float, float]
@@ -22,5 +23,7 @@ class Polygons:
     grown: Grown | None = None
 
     def __post_init__(self) -> None:
-        obstacles = tuple(tuple(read_only(ring, float) for ring in rings) for rings in self.obstacles)
+        obstacles = tuple(
+            tuple(read_only(ring, float) for ring in rings) for rings in self.obstacles
+        )
         object.__setattr__(self, "obstacles", obstacles)

@@ -16,12 +16,14 @@ MOST_BLOCKS = 4000
 def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
     """Maps for a problem, one after another, drawn from names and numbers alone.
 
-    description: largest_block, the maximum side of a block in cells; clear_ends, how many cells in every direction from start and target
-    stay free, including their own; and unit. problem: side, the width and height of a map in cells; start; target; layout, its number; and
-    obstacles, the number of occupied cells. name: that of study and workspace.
+    description: largest_block, the maximum side of a block in cells; clear_ends, how many cells in
+    every direction from start and target stay free, including their own; and unit. problem: side,
+    the width and height of a map in cells; start; target; layout, its number; and obstacles, the
+    number of occupied cells. name: that of study and workspace.
 
-    Width, height and place of a block are uniform. A block that touches another, even at a corner, comes too close to an end, or would
-    occupy too many cells is left out. Of `MOST_MAPS` draws, those with the required number of occupied cells are maps.
+    Width, height and place of a block are uniform. A block that touches another, even at a corner,
+    comes too close to an end, or would occupy too many cells is left out. Of `MOST_MAPS` draws,
+    those with the required number of occupied cells are maps.
 
     Raises ValueError, naming the key, if start or target is not on the map.
     """
@@ -31,9 +33,21 @@ def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
     for key in ("start", "target"):
         cell = empty.cell_of(*problem[key])
         if cell is None:
-            raise ValueError(f"{key}: {problem[key]}: outside the map; expected x and y from 0 to {side}")
-        ends |= np.abs(np.indices(ends.shape) - np.reshape(cell, (2, 1, 1))).max(axis=0) < description["clear_ends"]
-    parts = [name, side, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]]
+            raise ValueError(
+                f"{key}: {problem[key]}: outside the map; expected x and y from 0 to {side}"
+            )
+        ends |= (
+            np.abs(np.indices(ends.shape) - np.reshape(cell, (2, 1, 1))).max(axis=0)
+            < description["clear_ends"]
+        )
+    parts = [
+        name,
+        side,
+        *problem["start"],
+        *problem["target"],
+        problem["obstacles"],
+        problem["layout"],
+    ]
     rng = generator("/".join(map(str, parts)))
     for _ in range(MOST_MAPS):
         occupied = _blocks(rng, ends, problem["obstacles"], min(description["largest_block"], side))
@@ -42,15 +56,20 @@ def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
 
 
 def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: int) -> np.ndarray:
-    """Occupied cells (side, side), `wanted` of them, or fewer if the blocks run out. ends: bool (side, side), cells to leave free."""
+    """Occupied cells (side, side), `wanted` of them, or fewer if the blocks run out. ends: bool
+    (side, side), cells to leave free.
+    """
     side = len(ends)
     occupied = np.zeros_like(ends)
     count = 0
     sizes = rng.integers(1, largest + 1, size=(MOST_BLOCKS, 2))
     corners = rng.integers(0, side - sizes + 1)
-    # A set of cells is an integer with a bit for each cell of the map and of a frame around it, so that a block is tested in one operation.
+    # A set of cells is an integer with a bit for each cell of the map and of a frame around it, so
+    # that a block is tested in one operation.
     stride = side + 2
-    taken = sum(1 << ((row + 1) * stride + column + 1) for row, column in np.argwhere(ends).tolist())
+    taken = sum(
+        1 << ((row + 1) * stride + column + 1) for row, column in np.argwhere(ends).tolist()
+    )
     for (height, width), (row, column) in zip(sizes.tolist(), corners.tolist()):
         if count == wanted:
             break
@@ -64,5 +83,7 @@ def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: in
 
 @cache
 def _rectangle(height: int, width: int, stride: int) -> int:
-    """The set of the cells of a rectangle whose lower left cell is the first; `stride` cells make a row."""
+    """The set of the cells of a rectangle whose lower left cell is the first; `stride` cells make a
+    row.
+    """
     return sum(((1 << width) - 1) << (row * stride) for row in range(height))

@@ -1,4 +1,6 @@
-"""Circles at random positions: a layout is drawn once, from its names alone, and is used by all methods and experiments."""
+"""Circles at random positions: a layout is drawn once, from its names alone, and is used by all
+methods and experiments.
+"""
 
 import math
 
@@ -14,8 +16,9 @@ MOST_DRAWS = 10_000
 def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
     """One layout of a description with bounds, radius, circles (how many) and unit.
 
-    Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is redrawn (tharwat2018, Section 5.6). name: that
-    of study and workspace; number: that of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
+    Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is redrawn
+    (tharwat2018, Section 5.6). name: that of study and workspace; number: that of the layout.
+    Circles may overlap each other. Raises ValueError if no free place is found.
     """
     rng = generator(f"{name}/{number}")
     x_low, x_high, y_low, y_high = map(float, description["bounds"])
@@ -27,11 +30,20 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
             if all(math.dist(centre, end) > radius for end in ends):
                 break
         else:
-            raise ValueError(f"radius: {radius:g}: no circle leaves start and target free in {MOST_DRAWS} draws")
+            raise ValueError(
+                f"radius: {radius:g}: no circle leaves start and target free in {MOST_DRAWS} draws"
+            )
         centres.append(centre)
-    return Circles((x_low, x_high, y_low, y_high), np.array(centres), np.full(len(centres), radius), description["unit"])
+    return Circles(
+        (x_low, x_high, y_low, y_high),
+        np.array(centres),
+        np.full(len(centres), radius),
+        description["unit"],
+    )
 
 
 def first(circles: Circles, count: int) -> Circles:
-    """The first circles of a layout, so that layouts with different numbers of circles are nested."""
+    """The first circles of a layout, so that layouts with different numbers of circles are
+    nested.
+    """
     return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)

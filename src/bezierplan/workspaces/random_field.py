@@ -1,7 +1,8 @@
 """Square fields of cells with circles at random positions (elhoseny2017, Sections 4.3 and 4.4).
 
-A field of side N has (N + 1) x (N + 1) cells of side 1, whose centres are the points with integer coordinates from 0 to N, so that the
-corners (0, 0) and (N, N), between which the paper plans, are cells. A cell is occupied if its centre lies in a circle.
+A field of side N has (N + 1) x (N + 1) cells of side 1, whose centres are the points with integer
+coordinates from 0 to N, so that the corners (0, 0) and (N, N), between which the paper plans, are
+cells. A cell is occupied if its centre lies in a circle.
 """
 
 import numpy as np
@@ -16,36 +17,62 @@ MOST_DRAWS = 10_000
 
 
 def field(description: dict, problem: dict, name: str) -> Grid:
-    """The field of a problem, drawn from names and numbers alone: problems that differ in any of them get unrelated fields.
+    """The field of a problem, drawn from names and numbers alone: problems that differ in any of
+    them get unrelated fields.
 
-    description: radius, that of all circles as a share of the side; clear_ends, the cells that stay free between a circle and start or
-    target; and unit. problem: side (N); start; target; obstacles, the number of circles; and layout, the number of the field. name: that of
-    study and workspace. Centres are uniform in the square from 0 to N; those too close to start or target are redrawn. Circles may overlap.
-    A field in which no path of free cells leads from start to target is redrawn as a whole.
+    description: radius, that of all circles as a share of the side; clear_ends, the cells that stay
+    free between a circle and start or target; and unit. problem: side (N); start; target;
+    obstacles, the number of circles; and layout, the number of the field. name: that of study and
+    workspace. Centres are uniform in the square from 0 to N; those too close to start or target are
+    redrawn. Circles may overlap. A field in which no path of free cells leads from start to target
+    is redrawn as a whole.
 
-    Raises ValueError, naming the key, if start or target is not a cell of the field, or if no field can be found.
+    Raises ValueError, naming the key, if start or target is not a cell of the field, or if no field
+    can be found.
     """
     side = problem["side"]
-    parts = [name, side, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]]
+    parts = [
+        name,
+        side,
+        *problem["start"],
+        *problem["target"],
+        problem["obstacles"],
+        problem["layout"],
+    ]
     rng = generator("/".join(map(str, parts)))
-    empty = from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"]))
+    empty = from_circles(
+        Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"])
+    )
     ends = np.array([problem["start"], problem["target"]], dtype=float)
     cells = []
     for key, end in zip(("start", "target"), ends):
         cell = empty.cell_of(*end)
         if cell is None:
-            raise ValueError(f"{key}: {problem[key]}: outside the field; expected x and y from 0 to {side}")
+            raise ValueError(
+                f"{key}: {problem[key]}: outside the field; expected x and y from 0 to {side}"
+            )
         cells.append(cell)
     radius = description["radius"] * side
     for _ in range(MOST_FIELDS):
-        centres = _centres(rng, problem["obstacles"], side, ends, radius + description["clear_ends"])
-        grid = from_circles(Circles((0.0, side, 0.0, side), centres, np.full(len(centres), radius), description["unit"]))
+        centres = _centres(
+            rng, problem["obstacles"], side, ends, radius + description["clear_ends"]
+        )
+        grid = from_circles(
+            Circles(
+                (0.0, side, 0.0, side), centres, np.full(len(centres), radius), description["unit"]
+            )
+        )
         if connected(grid.occupied, *cells):
             return grid
-    raise ValueError(f"radius: {description['radius']:g}: start and target are cut off from each other in {MOST_FIELDS} fields")
+    raise ValueError(
+        f"radius: {description['radius']:g}: start and target are cut off from each other in "
+        f"{MOST_FIELDS} fields"
+    )
 
 
-def _centres(rng: np.random.Generator, count: int, side: float, ends: np.ndarray, least: float) -> np.ndarray:
+def _centres(
+    rng: np.random.Generator, count: int, side: float, ends: np.ndarray, least: float
+) -> np.ndarray:
     """Centres (count, 2), none of them closer to an end than the minimum distance."""
     centres = np.empty((count, 2))
     for i in range(count):
@@ -54,7 +81,10 @@ def _centres(rng: np.random.Generator, count: int, side: float, ends: np.ndarray
             if np.hypot(*(ends - centres[i]).T).min() >= least:
                 break
         else:
-            raise ValueError(f"radius: no circle keeps {least:g} cells away from start and target in {MOST_DRAWS} draws")
+            raise ValueError(
+                f"radius: no circle keeps {least:g} cells away from start and target in "
+                f"{MOST_DRAWS} draws"
+            )
     return centres
 
 
@@ -69,7 +99,9 @@ def from_circles(circles: Circles) -> Grid:
 
 
 def connected(occupied: np.ndarray, start: tuple[int, int], target: tuple[int, int]) -> bool:
-    """Whether free cells lead from one cell (row, column) to another; a diagonal step may pass between two occupied cells."""
+    """Whether free cells lead from one cell (row, column) to another; a diagonal step may pass
+    between two occupied cells.
+    """
     from scipy.ndimage import label
 
     names, _ = label(~occupied, structure=np.ones((3, 3)))

@@ -1,8 +1,8 @@
 """The grid that a cell planner needs for a map of polygons (elhoseny2017, Sections 3.2 and 4.5).
 
-As in a random field, the centres of the outermost cells lie on the border: cell i of a row has its centre i cells from the border's left
-side, so that both ends of a map are cells. Only the planner uses the cells: the certified check and the exact shortest path use the
-polygons.
+As in a random field, the centres of the outermost cells lie on the border: cell i of a row has its
+centre i cells from the border's left side, so that both ends of a map are cells. Only the planner
+uses the cells: the certified check and the exact shortest path use the polygons.
 """
 
 import logging
@@ -27,31 +27,42 @@ _SAME_LINE = 1e-6
 def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
     """The cells of a map of polygons. cell: side of a cell, in units.
 
-    rule: a cell is occupied if its inside overlaps an obstacle (`overlap`), so that a path over free cells is free; or if its centre lies
-    in one or on its edge (`centre`), so that a path may cut up to half a cell into a wall. A cell whose centre lies outside the border is
-    always occupied.
+    rule: a cell is occupied if its inside overlaps an obstacle (`overlap`), so that a path over
+    free cells is free; or if its centre lies in one or on its edge (`centre`), so that a path may
+    cut up to half a cell into a wall. A cell whose centre lies outside the border is always
+    occupied.
 
-    Raises ValueError, naming the key, for more than `MOST_CELLS` cells. Warns of obstacles that occupy no cell.
+    Raises ValueError, naming the key, for more than `MOST_CELLS` cells. Warns of obstacles that
+    occupy no cell.
     """
     import shapely
 
     left, right, bottom, top = polygons.bounds
     columns, rows = (round((high - low) / cell) + 1 for low, high in ((left, right), (bottom, top)))
     if rows * columns > MOST_CELLS:
-        raise ValueError(f"cell: {cell:g}: the grid would have {rows} x {columns} cells; expected at most {MOST_CELLS:g}, so a larger cell")
+        raise ValueError(
+            f"cell: {cell:g}: the grid would have {rows} x {columns} cells; expected at most "
+            f"{MOST_CELLS:g}, so a larger cell"
+        )
     x, y = left + cell * np.arange(columns), bottom + cell * np.arange(rows)
     occupied = (y[:, None] > top + _SAME_LINE * cell) | (x > right + _SAME_LINE * cell)
     for number, (outer, *holes) in enumerate(polygons.obstacles):
         shape = shapely.Polygon(outer, holes)
         # The cells within the obstacle's bounds, and one more on each side.
         low, high = outer.min(axis=0) - (left, bottom), outer.max(axis=0) - (left, bottom)
-        first, end = np.maximum(np.floor(low / cell).astype(int) - 1, 0), np.ceil(high / cell).astype(int) + 2
+        first, end = (
+            np.maximum(np.floor(low / cell).astype(int) - 1, 0),
+            np.ceil(high / cell).astype(int) + 2,
+        )
         near = np.s_[first[1] : end[1], first[0] : end[0]]
         centre_x, centre_y = np.meshgrid(x[near[1]], y[near[0]])
         shapely.prepare(shape)
         if rule == "overlap":
             half = (0.5 - _SAME_LINE) * cell
-            met = shapely.intersects(shape, shapely.box(centre_x - half, centre_y - half, centre_x + half, centre_y + half))
+            met = shapely.intersects(
+                shape,
+                shapely.box(centre_x - half, centre_y - half, centre_x + half, centre_y + half),
+            )
         else:
             met = shapely.dwithin(shape, shapely.points(centre_x, centre_y), _SAME_LINE * cell)
         if not met.any():
@@ -61,7 +72,9 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
 
 
 def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
-    """Which cells of a grid overlap an obstacle or the outside of the border of polygons: bool (rows, columns)."""
+    """Which cells of a grid overlap an obstacle or the outside of the border of polygons: bool
+    (rows, columns).
+    """
     import shapely
 
     left, right, bottom, top = polygons.bounds
@@ -70,6 +83,9 @@ def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
     )
     rows, columns = grid.occupied.shape
     x, y = np.meshgrid(np.arange(columns), np.arange(rows))
-    low, high = grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE), grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE)
+    low, high = (
+        grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE),
+        grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE),
+    )
     shapely.prepare(free)
     return ~shapely.covers(free, shapely.box(low[..., 0], low[..., 1], high[..., 0], high[..., 1]))

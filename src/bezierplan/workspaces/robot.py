@@ -1,8 +1,11 @@
-"""Maps for a robot with a width: obstacles grow by its radius and the border shrinks by it, so that the robot's centre moves like a point.
+"""Maps for a robot with a width: obstacles grow by its radius and the border shrinks by it, so that
+the robot's centre moves like a point.
 
-Circles grow exactly. The sides of polygons and cells move outwards by exactly the radius, and at a corner two of them are joined by
-tangents around the arc of the radius, which lie outside it by at most `ARC_EXCESS` of the radius. So every path of the centre that is free
-on the grown map keeps the radius, and none that keeps it by that share more is lost. Maps of cells with many corners grow by whole cells.
+Circles grow exactly. The sides of polygons and cells move outwards by exactly the radius, and at a
+corner two of them are joined by tangents around the arc of the radius, which lie outside it by at
+most `ARC_EXCESS` of the radius. So every path of the centre that is free on the grown map keeps the
+radius, and none that keeps it by that share more is lost. Maps of cells with many corners grow by
+whole cells.
 """
 
 import math
@@ -25,16 +28,24 @@ if TYPE_CHECKING:
     import shapely
 
 ARC_EXCESS = 1e-4
-"""How far the tangents at a corner lie outside the arc at most, as a share of the radius; they are longer by two thirds of that."""
+"""How far the tangents at a corner lie outside the arc at most, as a share of the radius; they are
+longer by two thirds of that.
+"""
 
 SLACK = 1e-9
-"""By how much less than the radius polygons grow, in units, so that a slot exactly as wide as the robot stays open."""
+"""By how much less than the radius polygons grow, in units, so that a slot exactly as wide as the
+robot stays open.
+"""
 
 TOLERANCE = 1e-8
-"""By how much the clearance of a free path may fall short of the radius, in units: `SLACK`, and what the certified checker tolerates."""
+"""By how much the clearance of a free path may fall short of the radius, in units: `SLACK`, and
+what the certified checker tolerates.
+"""
 
 MOST_CORNERS = 1_000
-"""Most corners of the boundary of cells that grow as polygons: with more, the exact shortest path would take minutes."""
+"""Most corners of the boundary of cells that grow as polygons: with more, the exact shortest path
+would take minutes.
+"""
 
 # Points of a boundary this close together, in units, are one.
 _SAME_POINT = 1e-10
@@ -46,10 +57,11 @@ _STRAIGHT = 1e-9
 def grow(workspace: Workspace, radius: float) -> Workspace:
     """The map for the centre of a robot of a radius, in units, with its original as `grown`.
 
-    Of cells it is a grid with the grown polygons as `drawn`, in which the cells that these overlap are occupied.
+    Of cells it is a grid with the grown polygons as `drawn`, in which the cells that these overlap
+    are occupied.
 
-    Raises ValueError for a radius that is no number, 0 < radius < `SMALLEST_FEATURE`, or so large that nothing is free; and for a map that
-    has grown before.
+    Raises ValueError for a radius that is no number, 0 < radius < `SMALLEST_FEATURE`, or so large
+    that nothing is free; and for a map that has grown before.
     """
     check_radius(radius)
     if radius == 0:
@@ -60,7 +72,10 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
 
 def _grow(workspace: Workspace, radius: float) -> Workspace:
     if before := grown_of(workspace):
-        raise ValueError(f"robot_radius: {radius:g}: the map has grown by {before.radius:g} before; expected it once")
+        raise ValueError(
+            f"robot_radius: {radius:g}: the map has grown by {before.radius:g} before; expected "
+            f"it once"
+        )
     if isinstance(workspace, Circles):
         bounds = _shrunk(workspace.bounds, radius)
         grown = Grown(radius, workspace, workspace.centres)
@@ -68,7 +83,9 @@ def _grow(workspace: Workspace, radius: float) -> Workspace:
     if isinstance(workspace, Polygons):
         return _polygons(workspace, _union_of_polygons(workspace), workspace.bounds, radius)
     if isinstance(workspace.drawn, Polygons):
-        polygons = _polygons(workspace, _union_of_polygons(workspace.drawn), workspace.drawn.bounds, radius)
+        polygons = _polygons(
+            workspace, _union_of_polygons(workspace.drawn), workspace.drawn.bounds, radius
+        )
         return raster.from_polygons(polygons, workspace.cell, "overlap")
     shape = _union_of_cells(workspace)
     if shape is None:
@@ -78,8 +95,14 @@ def _grow(workspace: Workspace, radius: float) -> Workspace:
 
 
 def suited(workspace: Workspace, served: Collection[str] | None) -> Workspace:
-    """A grown map for a planner that serves some kinds of workspace, None for all: the polygons themselves, unless it needs cells."""
-    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons) and workspace.drawn.grown:
+    """A grown map for a planner that serves some kinds of workspace, None for all: the polygons
+    themselves, unless it needs cells.
+    """
+    if (
+        isinstance(workspace, Grid)
+        and isinstance(workspace.drawn, Polygons)
+        and workspace.drawn.grown
+    ):
         return workspace.drawn if served is None or "polygons" in served else workspace
     return workspace
 
@@ -87,10 +110,14 @@ def suited(workspace: Workspace, served: Collection[str] | None) -> Workspace:
 def check_radius(radius: float) -> None:
     """Raise ValueError unless a robot can have this radius."""
     if not (0 <= radius < math.inf) or 0 < radius < SMALLEST_FEATURE:
-        raise ValueError(f"robot_radius: {radius:g}; expected 0 or a number of at least {SMALLEST_FEATURE:g}")
+        raise ValueError(
+            f"robot_radius: {radius:g}; expected 0 or a number of at least {SMALLEST_FEATURE:g}"
+        )
 
 
-def _shrunk(bounds: tuple[float, float, float, float], radius: float) -> tuple[float, float, float, float]:
+def _shrunk(
+    bounds: tuple[float, float, float, float], radius: float
+) -> tuple[float, float, float, float]:
     left, right, bottom, top = bounds
     if min(right - left, top - bottom) < 2 * radius + SMALLEST_FEATURE:
         raise _nothing_free(radius)
@@ -99,11 +126,17 @@ def _shrunk(bounds: tuple[float, float, float, float], radius: float) -> tuple[f
 
 def _nothing_free(radius: float) -> ValueError:
     return ValueError(
-        f"robot_radius: {radius:g}: no place of the map is that far from its obstacles and its border; expected a smaller one"
+        f"robot_radius: {radius:g}: no place of the map is that far from its obstacles and its "
+        f"border; expected a smaller one"
     )
 
 
-def _polygons(workspace: Workspace, shape: "shapely.Geometry", bounds: tuple[float, float, float, float], radius: float) -> Polygons:
+def _polygons(
+    workspace: Workspace,
+    shape: "shapely.Geometry",
+    bounds: tuple[float, float, float, float],
+    radius: float,
+) -> Polygons:
     """Polygons around everything closer to a shape than the radius."""
     import shapely
 
@@ -114,17 +147,26 @@ def _polygons(workspace: Workspace, shape: "shapely.Geometry", bounds: tuple[flo
     if inside.difference(outline).area == 0:
         raise _nothing_free(radius)
     parts = [part for part in shapely.get_parts(outline) if part.intersects(inside)]
-    rings = tuple(tuple(np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)) for part in parts)
-    return Polygons(limits, rings, workspace.unit, Grown(radius, workspace, read_only(centres, float)))
+    rings = tuple(
+        tuple(np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors))
+        for part in parts
+    )
+    return Polygons(
+        limits, rings, workspace.unit, Grown(radius, workspace, read_only(centres, float))
+    )
 
 
 def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
-    """A union without what rounding leaves between shapes that share a side: holes without room for a point, and points that repeat."""
+    """A union without what rounding leaves between shapes that share a side: holes without room for
+    a point, and points that repeat.
+    """
     import shapely
 
     parts = []
     for part in shapely.get_parts(union):
-        holes = [hole for hole in part.interiors if shapely.Polygon(hole).area > TOLERANCE * hole.length]
+        holes = [
+            hole for hole in part.interiors if shapely.Polygon(hole).area > TOLERANCE * hole.length
+        ]
         parts.append(shapely.Polygon(part.exterior, holes))
     return shapely.remove_repeated_points(shapely.MultiPolygon(parts), _SAME_POINT)
 
@@ -132,8 +174,9 @@ def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
 def _outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry", np.ndarray]:
     """A shape and what is closer to it, and its convex corners (n, 2).
 
-    It is the union of the shape, of a rectangle outside each side, and of a sector at each convex corner, which begins and ends at the
-    rectangles' own corners. A buffer of GEOS would simplify the shape by a hundredth of the distance first.
+    It is the union of the shape, of a rectangle outside each side, and of a sector at each convex
+    corner, which begins and ends at the rectangles' own corners. A buffer of GEOS would simplify
+    the shape by a hundredth of the distance first.
     """
     import shapely
 
@@ -142,16 +185,22 @@ def _outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry
         return shape, corners
     along = _unit(after - corners)
     out = np.column_stack([along[:, 1], -along[:, 0]])  # the shape lies to the left
-    sides = shapely.polygons(np.stack([corners, corners + reach * out, after + reach * out, after], axis=1))
+    sides = shapely.polygons(
+        np.stack([corners, corners + reach * out, after + reach * out, after], axis=1)
+    )
     arriving = _unit(corners - before)
     first = np.column_stack([arriving[:, 1], -arriving[:, 0]])
     turn = np.arctan2(_cross(arriving, along), (arriving * along).sum(axis=1))
     convex = np.flatnonzero(turn > _STRAIGHT)
-    sectors = [shapely.Polygon(_sector(corners[k], reach, first[k], out[k], turn[k])) for k in convex]
+    sectors = [
+        shapely.Polygon(_sector(corners[k], reach, first[k], out[k], turn[k])) for k in convex
+    ]
     return _clean(shapely.union_all([shape, *sides, *sectors])), corners[convex]
 
 
-def _sector(corner: np.ndarray, reach: float, first: np.ndarray, last: np.ndarray, turn: float) -> np.ndarray:
+def _sector(
+    corner: np.ndarray, reach: float, first: np.ndarray, last: np.ndarray, turn: float
+) -> np.ndarray:
     """A corner, and the tangents (n, 2) around its arc, from one unit vector to another."""
     parts = math.ceil(turn / (2 * math.acos(1 / (1 + ARC_EXCESS))))
     half = 0.5 * turn / parts
@@ -161,13 +210,17 @@ def _sector(corner: np.ndarray, reach: float, first: np.ndarray, last: np.ndarra
 
 
 def _corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The corners (n, 2) of a shape, which lies to the left of its boundary, and those before and after each."""
+    """The corners (n, 2) of a shape, which lies to the left of its boundary, and those before and
+    after each.
+    """
     import shapely
 
     rings = []
     for part in shapely.get_parts(shape):
         oriented = shapely.geometry.polygon.orient(part)
-        rings += [shapely.get_coordinates(ring)[:-1] for ring in (oriented.exterior, *oriented.interiors)]
+        rings += [
+            shapely.get_coordinates(ring)[:-1] for ring in (oriented.exterior, *oriented.interiors)
+        ]
     around = [(ring, np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)) for ring in rings]
     nothing = np.empty((0, 2))
     if not around:
@@ -179,7 +232,9 @@ def _corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndar
 def _union_of_polygons(polygons: Polygons) -> "shapely.Geometry":
     import shapely
 
-    return _clean(shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles]))
+    return _clean(
+        shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles])
+    )
 
 
 def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
@@ -193,16 +248,21 @@ def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
         return None
     row, column = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == 1)
     _, end = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == -1)
-    whole = shapely.simplify(shapely.union_all(shapely.box(column, row, end, row + 1)), 0)  # whole numbers: exact
+    whole = shapely.simplify(
+        shapely.union_all(shapely.box(column, row, end, row + 1)), 0
+    )  # whole numbers: exact
     return shapely.transform(whole, grid.in_units)
 
 
 def by_cells(grid: Grid, radius: float) -> Grid:
-    """A grid in which every cell that comes closer than the radius to an occupied one or to the border is occupied as well."""
+    """A grid in which every cell that comes closer than the radius to an occupied one or to the
+    border is occupied as well.
+    """
     from scipy.ndimage import binary_dilation, distance_transform_edt
 
     walled = np.pad(grid.occupied, 1, constant_values=True)
-    # Two squares are as far apart as their centres would be if one of them were a cell nearer in both directions.
+    # Two squares are as far apart as their centres would be if one of them were a cell nearer in
+    # both directions.
     touching = binary_dilation(walled, np.ones((3, 3), dtype=bool))
     occupied = walled | (distance_transform_edt(~touching) * grid.cell < radius - SLACK)
     if occupied.all():

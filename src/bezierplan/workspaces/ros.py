@@ -1,10 +1,13 @@
-"""Occupancy maps in the format of ROS's map_server: an image and a YAML file that says what its pixels mean; or an image alone.
+"""Occupancy maps in the format of ROS's map_server: an image and a YAML file that says what its
+pixels mean; or an image alone.
 
-YAML keys: image (a file beside it, or elsewhere in the folder of the maps), resolution (units per pixel), origin [x, y, yaw] of the lower
-left pixel's corner, negate (0: dark pixels are occupied), occupied_thresh, free_thresh, and mode. A pixel is free if its occupancy is below
-free_thresh, occupied above occupied_thresh. In between it is unknown (mode trinary) or occupied in part (mode scale, where transparent
-pixels are unknown). In mode raw a pixel's value is its occupancy in percent, and above 100 it is unknown. What is occupied in part counts
-as occupied, and so does what is unknown, unless it is asked to be free. The image's first row is the top of the map.
+YAML keys: image (a file beside it, or elsewhere in the folder of the maps), resolution (units per
+pixel), origin [x, y, yaw] of the lower left pixel's corner, negate (0: dark pixels are occupied),
+occupied_thresh, free_thresh, and mode. A pixel is free if its occupancy is below free_thresh,
+occupied above occupied_thresh. In between it is unknown (mode trinary) or occupied in part (mode
+scale, where transparent pixels are unknown). In mode raw a pixel's value is its occupancy in
+percent, and above 100 it is unknown. What is occupied in part counts as occupied, and so does what
+is unknown, unless it is asked to be free. The image's first row is the top of the map.
 """
 
 import logging
@@ -31,18 +34,34 @@ MOST_PIXELS = 16_000_000
 """Most pixels of an image unless the description says otherwise: 4,000 x 4,000."""
 
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
-_DEFAULTS: dict[str, Any] = {"occupied_thresh": 0.65, "free_thresh": 0.196, "negate": 0, "mode": "trinary"}
+_DEFAULTS: dict[str, Any] = {
+    "occupied_thresh": 0.65,
+    "free_thresh": 0.196,
+    "negate": 0,
+    "mode": "trinary",
+}
 _MODES = ("trinary", "scale", "raw")
-_TRUTHS = {"0": False, "1": True, "false": False, "true": True, "no": False, "yes": True, "off": False, "on": True}
+_TRUTHS = {
+    "0": False,
+    "1": True,
+    "false": False,
+    "true": True,
+    "no": False,
+    "yes": True,
+    "off": False,
+    "on": True,
+}
 """What ROS reads as a truth value: YAML 1.1 has more of them than the YAML of this project."""
 
 SMALLEST_YAW = 1e-6
-"""A map that is turned by less, in radians, counts as not turned: over 1,000 m it is a millimetre."""
+"""A map that is turned by less, in radians, counts as not turned: over 1,000 m it is a
+millimetre.
+"""
 
 
 class Shades(NamedTuple):
-    """light: from 0 to 1. known: whether the place is known. of_pixels: (rows, columns) the number of the shade of each pixel, where there
-    are few; None where each pixel has its own.
+    """light: from 0 to 1. known: whether the place is known. of_pixels: (rows, columns) the number
+    of the shade of each pixel, where there are few; None where each pixel has its own.
     """
 
     light: np.ndarray
@@ -61,8 +80,9 @@ def read(
 ) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
 
-    folder: where the image must lie, also through links. robot_radius: in units; cells that come closer than that to an occupied cell
-    or to the border also count as occupied. largest: size of a coordinate.
+    folder: where the image must lie, also through links. robot_radius: in units; cells that come
+    closer than that to an occupied cell or to the border also count as occupied. largest: size of a
+    coordinate.
 
     Raises ValueError, naming the key and what is expected.
     """
@@ -73,8 +93,15 @@ def read(
     return robot.by_cells(grid, robot_radius) if robot_radius > 0 else grid
 
 
-def read_image(file: Path, resolution: float, unit: str, most_pixels: int = MOST_PIXELS, unknown: Unknown = "occupied") -> Grid:
-    """The grid of an image without a YAML file, with its lower left corner at 0, 0. resolution: units per pixel.
+def read_image(
+    file: Path,
+    resolution: float,
+    unit: str,
+    most_pixels: int = MOST_PIXELS,
+    unknown: Unknown = "occupied",
+) -> Grid:
+    """The grid of an image without a YAML file, with its lower left corner at 0, 0. resolution:
+    units per pixel.
 
     Raises ValueError, naming the key and what is expected.
     """
@@ -86,22 +113,38 @@ def read_image(file: Path, resolution: float, unit: str, most_pixels: int = MOST
     return grid
 
 
-def _grid(image: Path, content: dict[str, Any], unit: str, most_pixels: int, unknown: Unknown) -> Grid:
+def _grid(
+    image: Path, content: dict[str, Any], unit: str, most_pixels: int, unknown: Unknown
+) -> Grid:
     check_thickness(content["resolution"], "resolution:")
     occupied = _occupied(image, content, most_pixels, unknown)
-    return Grid(occupied, float(content["resolution"]), unit, (float(content["origin"][0]), float(content["origin"][1])))
+    return Grid(
+        occupied,
+        float(content["resolution"]),
+        unit,
+        (float(content["origin"][0]), float(content["origin"][1])),
+    )
 
 
 def image_of(file: Path, folder: Path, content: dict[str, Any] | None = None) -> Path:
-    """The image of a map_server YAML file, a regular file in a folder, also through links. Raises ValueError if there is none.
+    """The image of a map_server YAML file, a regular file in a folder, also through links. Raises
+    ValueError if there is none.
 
-    ROS's map_saver writes the path at which it saved the image. On another machine, the image of that name beside the YAML file is meant.
+    ROS's map_saver writes the path at which it saved the image. On another machine, the image of
+    that name beside the YAML file is meant.
     """
     name = (content or _content(file))["image"]
-    for image in (file.parent / name, file.parent / Path(name).name, file.parent / PureWindowsPath(name).name):
+    for image in (
+        file.parent / name,
+        file.parent / Path(name).name,
+        file.parent / PureWindowsPath(name).name,
+    ):
         if _is_file_in(folder, image):
             return image
-    raise ValueError(f"image: {name}: no such file in {file.parent}; expected the image beside its YAML file, not a link out of there")
+    raise ValueError(
+        f"image: {name}: no such file in {file.parent}; expected the image beside its YAML file, "
+        f"not a link out of there"
+    )
 
 
 def _is_file_in(folder: Path, file: Path) -> bool:
@@ -115,22 +158,49 @@ def _content(file: Path) -> dict[str, Any]:
     """The keys of a map_server YAML file, checked."""
     content = checked.parse(read_text(file), file.name)
     if not isinstance(content, dict) or "image" not in content:
-        raise ValueError(f"image: missing; expected the keys {', '.join(_KEYS)} of a ROS map_server file")
+        raise ValueError(
+            f"image: missing; expected the keys {', '.join(_KEYS)} of a ROS map_server file"
+        )
     content = _DEFAULTS | content
     _expect(isinstance(content["image"], str), "image", content["image"], "the name of an image")
     for key in ("resolution", "occupied_thresh", "free_thresh"):
         _expect(_is_number(content.get(key)), key, content.get(key), "a number")
-    _expect(0 < content["resolution"] < math.inf, "resolution", content["resolution"], "a number above 0")
-    _expect(0 <= content["occupied_thresh"] <= 1, "occupied_thresh", content["occupied_thresh"], "a number from 0 to 1")
+    _expect(
+        0 < content["resolution"] < math.inf,
+        "resolution",
+        content["resolution"],
+        "a number above 0",
+    )
+    _expect(
+        0 <= content["occupied_thresh"] <= 1,
+        "occupied_thresh",
+        content["occupied_thresh"],
+        "a number from 0 to 1",
+    )
     free = content["free_thresh"]
-    _expect(0 <= free <= content["occupied_thresh"], "free_thresh", free, "a number from 0 to occupied_thresh")
+    _expect(
+        0 <= free <= content["occupied_thresh"],
+        "free_thresh",
+        free,
+        "a number from 0 to occupied_thresh",
+    )
     negate = _TRUTHS.get(str(content["negate"]).lower())
     _expect(negate is not None, "negate", content["negate"], "0 or 1")
     _expect(content["mode"] in _MODES, "mode", content["mode"], f"one of {', '.join(_MODES)}")
     origin: Any = content.get("origin")
-    _expect(isinstance(origin, list) and len(origin) == 3 and all(map(_is_number, origin[:2])), "origin", origin, "[x, y, yaw]")
+    _expect(
+        isinstance(origin, list) and len(origin) == 3 and all(map(_is_number, origin[:2])),
+        "origin",
+        origin,
+        "[x, y, yaw]",
+    )
     if str(origin[2]).lower().lstrip("-+.") == "nan":
-        logger.warning("%s: origin: yaw %s counts as 0; map_saver writes it for an orientation that is not valid", file.name, origin[2])
+        logger.warning(
+            "%s: origin: yaw %s counts as 0; map_saver writes it for an orientation that is not "
+            "valid",
+            file.name,
+            origin[2],
+        )
         origin = [*origin[:2], 0.0]
     turned = not _is_number(origin[2]) or abs(math.remainder(origin[2], math.tau)) > SMALLEST_YAW
     _expect(not turned, "origin", f"yaw {origin[2]}", "a yaw of 0: a map that is not turned")
@@ -146,7 +216,9 @@ def _expect(right: bool, key: str, value: Any, wanted: str) -> None:
         raise ValueError(f"{key}: {'missing' if value is None else value}; expected {wanted}")
 
 
-def _occupied(file: Path, content: dict[str, Any], most_pixels: int, unknown: Unknown) -> np.ndarray:
+def _occupied(
+    file: Path, content: dict[str, Any], most_pixels: int, unknown: Unknown
+) -> np.ndarray:
     """Which pixels count as occupied: bool (rows, columns), the bottom row first."""
     from PIL import Image
 
@@ -156,9 +228,14 @@ def _occupied(file: Path, content: dict[str, Any], most_pixels: int, unknown: Un
                 columns, rows = image.size
                 shades = _shades(image) if columns * rows <= most_pixels else None
         except MemoryError:
-            raise ValueError(f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a smaller image") from None
+            raise ValueError(
+                f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a "
+                f"smaller image"
+            ) from None
         except Exception as error:  # of a damaged file each format raises another one
-            raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
+            raise ValueError(
+                f"image: {content['image']}: cannot be read as an image ({type(error).__name__})"
+            ) from None
     if shades is None:
         raise _too_large(columns, rows, most_pixels)
     free = _free(shades, content, unknown)
@@ -193,13 +270,20 @@ def _without_limit(reader: Any) -> Iterator[None]:
 
 def _too_large(columns: int, rows: int, most_pixels: int) -> ValueError:
     size = f"{columns:,} x {rows:,} pixels"
-    return ValueError(f"image: {size}; expected at most {most_pixels:,}; most_pixels raises the limit, as far as memory goes")
+    return ValueError(
+        f"image: {size}; expected at most {most_pixels:,}; most_pixels raises the limit, as far "
+        f"as memory goes"
+    )
 
 
 def _shades(image: Any) -> Shades:
-    """The shades of an image; the lightness of a pixel is the mean of its colours, and it is known unless it is transparent."""
+    """The shades of an image; the lightness of a pixel is the mean of its colours, and it is known
+    unless it is transparent.
+    """
     if image.mode.startswith("I"):
-        return Shades(np.asarray(image, dtype=float) / 65535.0, np.ones(image.size[::-1], dtype=bool), None)
+        return Shades(
+            np.asarray(image, dtype=float) / 65535.0, np.ones(image.size[::-1], dtype=bool), None
+        )
     transparent = "A" in image.getbands() or "transparency" in image.info
     if transparent or image.mode == "P":
         image = image.convert("RGBA")

@@ -1,5 +1,6 @@
-"""Maps far from the origin, such as those in projected coordinates: they are shifted to it before anything is computed, and results are
-shifted back, since the certified checker keeps its tolerance only for small numbers.
+"""Maps far from the origin, such as those in projected coordinates: they are shifted to it before
+anything is computed, and results are shifted back, since the certified checker keeps its tolerance
+only for small numbers.
 
 A shift is a whole number of units, so that shifting a map is exact.
 """
@@ -21,9 +22,11 @@ Shift = tuple[float, float]
 
 
 def shift_of(workspace: Workspace) -> Shift:
-    """What is subtracted from a map's coordinates before anything is computed: zeros, unless one of them is beyond `LARGEST`.
+    """What is subtracted from a map's coordinates before anything is computed: zeros, unless one of
+    them is beyond `LARGEST`.
 
-    It is the same before and after the map grows by a robot's radius. Raises ValueError for a map that is wider than that.
+    It is the same before and after the map grows by a robot's radius. Raises ValueError for a map
+    that is wider than that.
     """
     x_low, x_high, y_low, y_high = bounds = original(workspace).bounds
     if max(map(abs, bounds)) <= LARGEST:
@@ -31,7 +34,8 @@ def shift_of(workspace: Workspace) -> Shift:
     shift = float(math.floor(x_low)), float(math.floor(y_low))
     if max(x_high - shift[0], y_high - shift[1]) > LARGEST:
         raise ValueError(
-            f"the border: {x_high - x_low:g} x {y_high - y_low:g} units; expected at most {LARGEST:g} on a side, so a larger unit"
+            f"the border: {x_high - x_low:g} x {y_high - y_low:g} units; expected at most "
+            f"{LARGEST:g} on a side, so a larger unit"
         )
     return shift
 
@@ -43,7 +47,9 @@ def near(workspace: Workspace) -> Workspace:
 
 def near_problem(problem: Problem) -> Problem:
     """A problem on the map where it is computed with."""
-    start, target = (lowered(end, shift_of(problem.workspace)) for end in (problem.start, problem.target))
+    start, target = (
+        lowered(end, shift_of(problem.workspace)) for end in (problem.start, problem.target)
+    )
     return Problem(problem.name, near(problem.workspace), start, target)
 
 
@@ -68,7 +74,9 @@ def _moved_shapes(workspace: Circles | Polygons, by: Shift) -> Circles | Polygon
     bounds = x_low + by[0], x_high + by[0], y_low + by[1], y_high + by[1]
     grown = _grown(workspace.grown, by)
     if isinstance(workspace, Circles):
-        return replace(workspace, bounds=bounds, centres=workspace.centres + np.array(by), grown=grown)
+        return replace(
+            workspace, bounds=bounds, centres=workspace.centres + np.array(by), grown=grown
+        )
     obstacles = tuple(tuple(ring + np.array(by) for ring in rings) for rings in workspace.obstacles)
     return replace(workspace, bounds=bounds, obstacles=obstacles, grown=grown)
 

@@ -1,4 +1,6 @@
-"""User-supplied text files, read safely: a device, a pipe, or an endless file is rejected before anything is read."""
+"""User-supplied text files, read safely: a device, a pipe, or an endless file is rejected before
+anything is read.
+"""
 
 import re
 import stat
@@ -10,11 +12,15 @@ LARGEST_FILE = 16 * 2**20
 
 _NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", re.ASCII)
 LONGEST_NUMBER = 400
-"""Characters of a number: Python writes none with more, and reads more than some thousands digits slowly, or not at all."""
+"""Characters of a number: Python writes none with more, and reads more than some thousands digits
+slowly, or not at all.
+"""
 
 
 def number(word: str) -> float:
-    """A word as a number, as people write one: Python also reads `1_0`, `infinity` and digits of other scripts. Raises ValueError."""
+    """A word as a number, as people write one: Python also reads `1_0`, `infinity` and digits of
+    other scripts. Raises ValueError.
+    """
     if len(word) > LONGEST_NUMBER or not _NUMBER.fullmatch(word):
         raise ValueError(f"{word[:40]!r} is not a number")
     return float(word)
@@ -26,15 +32,18 @@ def is_count(word: str) -> bool:
 
 
 def lines_of(text: str) -> list[str]:
-    """The lines of a text, without blank ones at its end. Nothing but `\\n` ends a line: a vertical tab is a character in it."""
+    """The lines of a text, without blank ones at its end. Nothing but `\\n` ends a line: a vertical
+    tab is a character in it.
+    """
     return text.rstrip("\n").split("\n") if text.strip("\n") else []
 
 
 def read_text(file: Path, largest: int = LARGEST_FILE) -> str:
-    """The text of a regular file in UTF-8 with at most `largest` bytes, without a byte order mark, with line ends as `\\n`.
+    """The text of a regular file in UTF-8 with at most `largest` bytes, without a byte order mark,
+    with line ends as `\\n`.
 
-    Raises ValueError, in one line without the file's name, for anything else: an unreadable file, a folder, a device or pipe, a larger
-    file, bytes that are not UTF-8, and a NUL character.
+    Raises ValueError, in one line without the file's name, for anything else: an unreadable file, a
+    folder, a device or pipe, a larger file, bytes that are not UTF-8, and a NUL character.
     """
     try:
         found = file.stat()
@@ -46,7 +55,12 @@ def read_text(file: Path, largest: int = LARGEST_FILE) -> str:
     except OSError as error:
         raise ValueError(f"cannot be read ({error.strerror or type(error).__name__})") from None
     except UnicodeDecodeError as error:
-        raise ValueError(f"cannot be read: byte {error.start} is not UTF-8; expected a text file in UTF-8") from None
+        raise ValueError(
+            f"cannot be read: byte {error.start} is not UTF-8; expected a text file in UTF-8"
+        ) from None
     if "\0" in text:
-        raise ValueError(f"has a NUL character in line {text[: text.index(chr(0))].count(chr(10)) + 1}; expected a text file")
+        raise ValueError(
+            f"has a NUL character in line {text[: text.index(chr(0))].count(chr(10)) + 1}; "
+            f"expected a text file"
+        )
     return text

@@ -1,6 +1,8 @@
-"""Worlds that change while a robot drives: circles that move, and grids whose cells change. They never react to the robot.
+"""Worlds that change while a robot drives: circles that move, and grids whose cells change. They
+never react to the robot.
 
-Time is counted in steps. A world has a pace, the way that a robot covers in a step, and an end, after which a robot has failed.
+Time is counted in steps. A world has a pace, the way that a robot covers in a step, and an end,
+after which a robot has failed.
 """
 
 import json
@@ -20,11 +22,13 @@ from bezierplan.workspaces.grid import Grid
 class MovingCircles:
     """Circles that move in straight lines and are reflected where their centres meet a wall.
 
-    bounds: lowest and highest x, lowest and highest y of the robot's field; walls: likewise, of the centres; in units. centres: (n, 2) at
-    step 0, in units; velocities: (n, 2), in units per step; radii: (n,), in units. seen: what planners see, the field's cells, of side 1
-    (`random_field`), or the circles. pace: in units per step. end: in steps.
+    bounds: lowest and highest x, lowest and highest y of the robot's field; walls: likewise, of the
+    centres; in units. centres: (n, 2) at step 0, in units; velocities: (n, 2), in units per step;
+    radii: (n,), in units. seen: what planners see, the field's cells, of side 1 (`random_field`),
+    or the circles. pace: in units per step. end: in steps.
 
-    At whole steps the reflected positions are exact. From one step to the next each circle moves uniformly along a straight line.
+    At whole steps the reflected positions are exact. From one step to the next each circle moves
+    uniformly along a straight line.
     """
 
     bounds: tuple[float, float, float, float]
@@ -46,7 +50,9 @@ class MovingCircles:
         return positions(self.centres, self.velocities, np.array(self.walls), step)
 
     def workspace(self, step: int, margin: float = 0.0) -> Grid | Circles:
-        """What planners see at a step: the circles, grown by a margin in units, or the cells that they occupy."""
+        """What planners see at a step: the circles, grown by a margin in units, or the cells that
+        they occupy.
+        """
         circles = Circles(self.bounds, self.at(step), self.radii + margin, self.unit)
         if self.seen == "circles":
             return circles
@@ -60,8 +66,8 @@ class MovingCircles:
 
 @dataclass(frozen=True)
 class ChangingCells:
-    """Grids that follow each other. maps: the first one, and the one that begins at each moment. moments: (changes,) ascending, in steps.
-    pace: in units per step. end: in steps.
+    """Grids that follow each other. maps: the first one, and the one that begins at each moment.
+    moments: (changes,) ascending, in steps. pace: in units per step. end: in steps.
     """
 
     maps: tuple[Grid, ...]
@@ -95,7 +101,9 @@ World = MovingCircles | ChangingCells
 
 @compiled
 def positions(centres, velocities, walls, step):
-    """Centres (n, 2) after some steps of uniform motion with reflection at walls (4,): lowest and highest x, lowest and highest y."""
+    """Centres (n, 2) after some steps of uniform motion with reflection at walls (4,): lowest and
+    highest x, lowest and highest y.
+    """
     moved = np.empty_like(centres)
     for axis in range(2):
         low, width = walls[2 * axis], walls[2 * axis + 1] - walls[2 * axis]
@@ -109,10 +117,19 @@ def positions(centres, velocities, walls, step):
 def to_json(world: World) -> str:
     """A world as text; `from_json` restores it bit by bit."""
     if isinstance(world, ChangingCells):
-        content = {"maps": [files.to_json(each) for each in world.maps], "moments": world.moments.tolist()}
+        content = {
+            "maps": [files.to_json(each) for each in world.maps],
+            "moments": world.moments.tolist(),
+        }
     else:
         table = np.column_stack([world.centres, world.velocities, world.radii]).tolist()
-        content = {"bounds": world.bounds, "walls": world.walls, "circles": table, "seen": world.seen, "unit": world.unit}
+        content = {
+            "bounds": world.bounds,
+            "walls": world.walls,
+            "circles": table,
+            "seen": world.seen,
+            "unit": world.unit,
+        }
     return json.dumps(content | {"pace": world.pace, "end": world.end})
 
 

@@ -6,7 +6,20 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.kinds import Check, kinds
-from bezierplan.schema.model import Line, Model, Name, Names, Values, at_most, line, listed, matching, one_of, one_or_list, wrong
+from bezierplan.schema.model import (
+    Line,
+    Model,
+    Name,
+    Names,
+    Values,
+    at_most,
+    line,
+    listed,
+    matching,
+    one_of,
+    one_or_list,
+    wrong,
+)
 
 MOST_CHECKS = 100
 """Checks of one claim."""
@@ -21,30 +34,39 @@ class Claim(Model):
 
     id: ClaimId = Field(description="C and a number, such as C1")
     place: Line = Field(description="where the paper says it")
-    statement: Annotated[str, line(160)] = Field(description="one plain sentence of at most 160 characters, in words of one's own")
+    statement: Annotated[str, line(160)] = Field(
+        description="one plain sentence of at most 160 characters, in words of one's own"
+    )
     artefact: listed(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
         [],
-        description="the table or figure that shows it, or a list of them; the groups that `rest` and the metric rank range over "
+        description="the table or figure that shows it, or a list of them; the groups that `rest` "
+        "and the metric rank range over "
         "are theirs",
     )
-    finding: Literal[True] = Field(None, description="true: our own finding, no sentence of the paper; left out otherwise")
+    finding: Literal[True] = Field(
+        None, description="true: our own finding, no sentence of the paper; left out otherwise"
+    )
     criterion: Literal["ours"] = Field(
-        None, description="ours: the paper gives no number, and the threshold or margin that decides is ours; left out otherwise"
+        None,
+        description="ours: the paper gives no number, and the threshold or margin that decides is "
+        "ours; left out otherwise",
     )
     note: Line = Field(None, description="one line that is shown with the reason for the verdict")
     holds: Literal["all", "any", "together"] = Field(
         "all",
-        description="`all` comparisons of the primary checks (left out: this), or `any` of them; `together`: all as one "
+        description="`all` comparisons of the primary checks (left out: this), or `any` of them; "
+        "`together`: all as one "
         "sentence, such as that one is the best, which a single comparison can refute",
     )
     variants: dict[str, listed(Values, least=2)] = Field(
         {},
-        description="column → list of values: the claim is judged with the first one, and once more, in a row of its own, with each of the "
+        description="column → list of values: the claim is judged with the first one, and once "
+        "more, in a row of its own, with each of the "
         "others in its place",
         min_length=1,
     )
-    checks: Annotated[list[Annotated[Check, one_of("test", kinds())]], at_most(MOST_CHECKS)] = Field(
-        description="a list of checks, at least one of them primary", min_length=1
+    checks: Annotated[list[Annotated[Check, one_of("test", kinds())]], at_most(MOST_CHECKS)] = (
+        Field(description="a list of checks, at least one of them primary", min_length=1)
     )
 
     @model_validator(mode="after")
@@ -55,7 +77,9 @@ class Claim(Model):
             raise wrong(f"variants: expected at most {MOST_VARIANTS} combinations of values")
         for column, values in self.variants.items():
             if len({len(one_or_list(each)) for each in values}) > 1:
-                raise wrong(f"variants: {column}: expected values, or lists of them that are equally long")
+                raise wrong(
+                    f"variants: {column}: expected values, or lists of them that are equally long"
+                )
         return self
 
     def in_primary_variant(self) -> Self:

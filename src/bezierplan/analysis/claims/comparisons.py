@@ -1,4 +1,6 @@
-"""From a check of a claim to its comparisons: which runs are compared, and the published numbers of the same cells."""
+"""From a check of a claim to its comparisons: which runs are compared, and the published numbers of
+the same cells.
+"""
 
 import itertools
 import math
@@ -31,38 +33,61 @@ def unit_of(metric: str, experiments: list[str], material: Material) -> str:
 
 
 def with_rest(check: Check, claim: Claim, material: Material) -> Check:
-    """The check with `rest` replaced by the groups of the claim's artefact that the check does not name."""
+    """The check with `rest` replaced by the groups of the claim's artefact that the check does not
+    name.
+    """
     named = check.groups_named
     if REST not in named:
         return check
     rest = [group for group in _groups_of_artefact(check, claim, material) if group not in named]
-    return check.but(**{key: _filled(getattr(check, key), rest) for key in GROUP_KEYS if key in check.model_fields_set})
+    return check.but(
+        **{
+            key: _filled(getattr(check, key), rest)
+            for key in GROUP_KEYS
+            if key in check.model_fields_set
+        }
+    )
 
 
 def _filled(groups: list, rest: list) -> list:
     """A list of groups, or of lists of them, with others in the place of `rest`."""
-    parts = [[_filled(each, rest)] if isinstance(each, list) else rest if each == REST else [each] for each in groups]
+    parts = [
+        [_filled(each, rest)] if isinstance(each, list) else rest if each == REST else [each]
+        for each in groups
+    ]
     return list(itertools.chain.from_iterable(parts))
 
 
 def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[dict]:
-    """The tables and figure panels among a claim's artefacts that show runs of the check's experiments."""
+    """The tables and figure panels among a claim's artefacts that show runs of the check's
+    experiments.
+    """
     parts = []
     for name in claim.artefacts:
         artefact = material.artefacts.get(name, {})
-        parts += [part for part in artefact.get("panels", [artefact]) if part.get("experiment") in check.experiments]
+        parts += [
+            part
+            for part in artefact.get("panels", [artefact])
+            if part.get("experiment") in check.experiments
+        ]
     return parts
 
 
 def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list:
-    """Groups that an artefact shows, each once, in its order; all groups of the experiment if it does not select any."""
+    """Groups that an artefact shows, each once, in its order; all groups of the experiment if it
+    does not select any.
+    """
     across = check.cells
     groups = []
     for part in _parts_of_artefact(check, claim, material) or [{}]:
         if across in part.get("where", {}):
             groups += one_or_list(part["where"][across])
         else:
-            runs = [material.results[name].runs for name in check.experiments if name in material.results]
+            runs = [
+                material.results[name].runs
+                for name in check.experiments
+                if name in material.results
+            ]
             groups += sorted({group for table in runs for group in table[across].dropna()})
     return list(dict.fromkeys(groups))
 
@@ -70,8 +95,8 @@ def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list
 def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Comparison]:
     """The comparisons of a check without `rest`, in an order independent of that of the runs.
 
-    Raises Untestable if its experiment was not run, has no such metric, or has no run that satisfies its `where`; Fault if runs of several
-    conditions would be mixed.
+    Raises Untestable if its experiment was not run, has no such metric, or has no run that
+    satisfies its `where`; Fault if runs of several conditions would be mixed.
     """
     runs = _measured_runs(check, claim, material)
     if runs.empty:
@@ -79,9 +104,17 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     column, unit = check.cells, check.replicate
     every, pool = check.every, check.pooled
     tables, printed_metric = _published_tables(check, claim, material), check.printed_metric
-    keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
+    keys = [
+        "experiment",
+        *every,
+        *pool,
+        *([column] if column else []),
+        *(key for _, table in tables for key in table if key in runs),
+    ]
     keys = list(dict.fromkeys(key for key in keys if key != "value"))
-    printed_tables = [printed_table(experiment, table, printed_metric) for experiment, table in tables]
+    printed_tables = [
+        printed_table(experiment, table, printed_metric) for experiment, table in tables
+    ]
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
     _refuse_mixtures(check, claim, runs, [*every, *pool, *([column] if column else []), unit])
     # Published numbers are found by the places of the runs, each once.
@@ -94,14 +127,23 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
         compared = list(kind_of(check).cells(check, rows))
         printed_rows = {
             cell: [
-                rows_of_cell([row for row in part if column is None or row[column] == cell], printed_tables, material.variant_of)
+                rows_of_cell(
+                    [row for row in part if column is None or row[column] == cell],
+                    printed_tables,
+                    material.variant_of,
+                )
                 for part in conditions
             ]
             for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)
         }
         for name, cells in compared:
-            strata = {key: effects.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
-            numbers, number_of_runs = printed(check, list(zip(*(printed_rows[cell] for cell in cells))))
+            strata = {
+                key: effects.event(check, table.reindex(columns=cells).to_numpy())
+                for key, table in unit_tables.items()
+            }
+            numbers, number_of_runs = printed(
+                check, list(zip(*(printed_rows[cell] for cell in cells)))
+            )
             made.append(
                 Comparison(
                     place=condition,
@@ -111,7 +153,9 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                     printed=numbers,
                     paper_units=number_of_runs or material.repeats.get(check.experiments[0]),
                     boolean=_is_boolean(check, material),
-                    paired=_shares_draws(check, material) if check.pairs_units is None else check.pairs_units,
+                    paired=_shares_draws(check, material)
+                    if check.pairs_units is None
+                    else check.pairs_units,
                     note=_note(check, rows, column, cells),
                     factors=tuple((key, rows[key].iloc[0]) for key in every),
                     typical=typical.get((condition, name), math.nan),
@@ -121,7 +165,9 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
 
 
 def _typical(check: OfRuns, claim: Claim, material: Material) -> dict[tuple[str, str], float]:
-    """Of a check that picks runs: by place and name, the share of all runs that count in which the event happens; else nothing."""
+    """Of a check that picks runs: by place and name, the share of all runs that count in which the
+    event happens; else nothing.
+    """
     if not check.picks:
         return {}
     every = comparisons(check.but(pick=None), claim, material)
@@ -129,13 +175,16 @@ def _typical(check: OfRuns, claim: Claim, material: Material) -> dict[tuple[str,
 
 
 def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFrame:
-    """The runs of a check's conditions with the column `value`, which is NaN where a run does not count.
+    """The runs of a check's conditions with the column `value`, which is NaN where a run does not
+    count.
 
-    A condition on an outcome, such as `feasible: true`, keeps the other runs without a value (or as failed, if failures rank last): a
-    place where no run satisfies it is kept.
+    A condition on an outcome, such as `feasible: true`, keeps the other runs without a value (or as
+    failed, if failures rank last): a place where no run satisfies it is kept.
     """
     where = check.where
-    conditions = {column: wanted for column, wanted in where.items() if column not in metrics.METRICS}
+    conditions = {
+        column: wanted for column, wanted in where.items() if column not in metrics.METRICS
+    }
     outcomes = {column: wanted for column, wanted in where.items() if column in metrics.METRICS}
     measured = []
     for name in check.experiments:
@@ -161,19 +210,29 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
 
 
 def _compared(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:
-    """The runs whose values are needed: those of the groups that a check names, or all for ranks among them."""
+    """The runs whose values are needed: those of the groups that a check names, or all for ranks
+    among them.
+    """
     groups = check.groups_named
-    return runs[runs[check.cells].isin(groups)] if groups and not metrics.METRICS[check.metric].among_rows else runs
+    return (
+        runs[runs[check.cells].isin(groups)]
+        if groups and not metrics.METRICS[check.metric].among_rows
+        else runs
+    )
 
 
 def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
     """One run of each condition and method that has a feasible one."""
-    chosen = [pick(group, which) for _, group in runs.groupby(["experiment", "condition", "method"])]
+    chosen = [
+        pick(group, which) for _, group in runs.groupby(["experiment", "condition", "method"])
+    ]
     return runs.loc[[run.name for run in chosen if run is not None]]
 
 
 def _failure(check: OfRuns) -> float:
-    """The value of a run without one: dropped, worse than any other, or one for which the event is false."""
+    """The value of a run without one: dropped, worse than any other, or one for which the event is
+    false.
+    """
     match check.failed_runs:
         case "last":
             return np.inf
@@ -184,11 +243,17 @@ def _failure(check: OfRuns) -> float:
 
 
 def _refuse_mixtures(check: OfRuns, claim: Claim, runs: pd.DataFrame, keys: list[str]) -> None:
-    """Raise Fault if a unit of a comparison, as identified by the keys, mixes several experiments, conditions or methods."""
-    distinct = runs[[*keys, *(factor for factor in _FACTORS if factor not in keys)]].drop_duplicates()
+    """Raise Fault if a unit of a comparison, as identified by the keys, mixes several experiments,
+    conditions or methods.
+    """
+    distinct = runs[
+        [*keys, *(factor for factor in _FACTORS if factor not in keys)]
+    ].drop_duplicates()
     mixed = distinct[distinct.duplicated(keys, keep=False)]
     if not mixed.empty:
-        factor = next(factor for factor in _FACTORS if factor not in keys and mixed[factor].nunique() > 1)
+        factor = next(
+            factor for factor in _FACTORS if factor not in keys and mixed[factor].nunique() > 1
+        )
         what = f"claim {claim.id}: {check.test} of {check.metric}"
         raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
 
@@ -203,7 +268,9 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
 
 
 def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFrame:
-    """The mean value of each unit (row) in each cell (column); a run that counts as failed makes its unit fail."""
+    """The mean value of each unit (row) in each cell (column); a run that counts as failed makes
+    its unit fail.
+    """
     if column is None:
         return rows.groupby(unit)["value"].mean().to_frame("")
     return rows.groupby([unit, column])["value"].mean().unstack(column)
@@ -212,17 +279,29 @@ def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFra
 def _is_boolean(check: OfRuns, material: Material) -> bool:
     """Whether the metric is a boolean column that is not averaged over the runs of a unit."""
     runs = material.results[check.experiments[0]].runs
-    return check.replicate == "repeat" and check.metric in runs and pd.api.types.is_bool_dtype(runs[check.metric])
+    return (
+        check.replicate == "repeat"
+        and check.metric in runs
+        and pd.api.types.is_bool_dtype(runs[check.metric])
+    )
 
 
 def _shares_draws(check: OfRuns, material: Material) -> bool:
     """Whether units with the same number share a random workspace or a start."""
-    return "replicate" in check.model_fields_set or all(material.paired.get(name, False) for name in check.experiments)
+    return "replicate" in check.model_fields_set or all(
+        material.paired.get(name, False) for name in check.experiments
+    )
 
 
 def _note(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:
-    """A note where two groups are compared on their successful runs but differ in success rate (Fisher's exact test)."""
-    if len(cells) != 2 or check.failed_runs != "drop" or not metrics.METRICS[check.metric].feasible_only:
+    """A note where two groups are compared on their successful runs but differ in success rate
+    (Fisher's exact test).
+    """
+    if (
+        len(cells) != 2
+        or check.failed_runs != "drop"
+        or not metrics.METRICS[check.metric].feasible_only
+    ):
         return ""
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
@@ -230,11 +309,19 @@ def _note(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) ->
         return ""  # both always succeed
     from scipy import stats
 
-    return "compared on successes alone, which are of different number" if stats.fisher_exact(counts).pvalue < effects.ALPHA else ""
+    return (
+        "compared on successes alone, which are of different number"
+        if stats.fisher_exact(counts).pvalue < effects.ALPHA
+        else ""
+    )
 
 
-def _published_tables(check: OfRuns, claim: Claim, material: Material) -> list[tuple[str, pd.DataFrame]]:
-    """Experiment and published numbers of each table of the check's experiments, the claim's artefacts first."""
+def _published_tables(
+    check: OfRuns, claim: Claim, material: Material
+) -> list[tuple[str, pd.DataFrame]]:
+    """Experiment and published numbers of each table of the check's experiments, the claim's
+    artefacts first.
+    """
     own = claim.artefacts
     tables = []
     for name in [*own, *(name for name in material.artefacts if name not in own)]:

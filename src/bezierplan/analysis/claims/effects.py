@@ -1,10 +1,13 @@
-"""The comparisons of a claim, their effects on point values, and the bootstrap draws and intervals of these effects.
+"""The comparisons of a claim, their effects on point values, and the bootstrap draws and intervals
+of these effects.
 
-A comparison consists of cells: a group and the one that it is compared with, several groups, or the values of a factor. Each cell has
-one value per unit (an independent replicate), in one or several conditions that are averaged with equal weight.
+A comparison consists of cells: a group and the one that it is compared with, several groups, or the
+values of a factor. Each cell has one value per unit (an independent replicate), in one or several
+conditions that are averaged with equal weight.
 
-The interval of a difference of booleans is Wald's with one success and one failure added to each group (Agresti and Caffo 2000), or one
-half added to each kind of pair (Agresti and Min 2005): resampling says nothing about events that never happened.
+The interval of a difference of booleans is Wald's with one success and one failure added to each
+group (Agresti and Caffo 2000), or one half added to each kind of pair (Agresti and Min 2005):
+resampling says nothing about events that never happened.
 """
 
 import math
@@ -21,9 +24,11 @@ from bezierplan.workspaces.seeds import generator
 ALPHA = 0.05
 # Share of draws in which a sentence about extremes must hold.
 SURE = 0.95
-# This many runs without a counterexample show with 95 % confidence that fewer than 5 % of all runs are counterexamples.
+# This many runs without a counterexample show with 95 % confidence that fewer than 5 % of all runs
+# are counterexamples.
 LEAST_WITHOUT_EXAMPLE = 59
-# An effect of this many standard errors is found with a power of at least 0.8 (simulated: both rank tests, normal data, 10 to 100 units).
+# An effect of this many standard errors is found with a power of at least 0.8 (simulated: both rank
+# tests, normal data, 10 to 100 units).
 DETECTED = 3.0
 DETECTED_BELOW_20 = 3.2
 
@@ -38,14 +43,16 @@ _EVENTS: dict[str, Callable] = {
 
 
 class Comparison(NamedTuple):
-    """place: the combination of `every`, as text; name: the comparison in words. cells: groups, or values of x in rising order (k).
+    """place: the combination of `every`, as text; name: the comparison in words. cells: groups, or
+    values of x in rising order (k).
 
-    strata: one table (units, k) for each condition that is averaged over (mostly one), by name; NaN where a unit has no value, infinite
-    where it counts as worse than any other. For a share, the values say whether the event happened.
-    printed: the published numbers of the cells (k,), NaN unless all are printed. paper_units: number of units in the paper. boolean:
-    whether the metric is true or false. paired: whether equal units of the cells belong together. note: for the reader of the row.
-    factors: the values of `every` at the place, by column. typical: where runs are picked, the share of all that count in which the event
-    happens.
+    strata: one table (units, k) for each condition that is averaged over (mostly one), by name; NaN
+    where a unit has no value, infinite where it counts as worse than any other. For a share, the
+    values say whether the event happened. printed: the published numbers of the cells (k,), NaN
+    unless all are printed. paper_units: number of units in the paper. boolean: whether the metric
+    is true or false. paired: whether equal units of the cells belong together. note: for the reader
+    of the row. factors: the values of `every` at the place, by column. typical: where runs are
+    picked, the share of all that count in which the event happens.
     """
 
     place: str
@@ -62,8 +69,12 @@ class Comparison(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """How many units of each cell, out of how many, have a value that can be averaged; fewer if runs failed."""
-        found = np.sum([np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0)
+        """How many units of each cell, out of how many, have a value that can be averaged; fewer if
+        runs failed.
+        """
+        found = np.sum(
+            [np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0
+        )
         total = sum(map(len, self.strata.values()))
         return ", ".join(f"{number} of {total}" for number in found)
 
@@ -71,9 +82,10 @@ class Comparison(NamedTuple):
 class Finding(NamedTuple):
     """The result of a test; NaN for quantities that do not exist.
 
-    toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other way, otherwise 0. negligible: whether the
-    interval of the effect lies within the margin. least_detectable: the effect that would have been detected with a power of 0.8.
-    mark: `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.mark`). rho, r_squared: of trends.
+    toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other
+    way, otherwise 0. negligible: whether the interval of the effect lies within the margin.
+    least_detectable: the effect that would have been detected with a power of 0.8. mark: `+`, `-`,
+    `0` or `?` if it does not follow from p (`verdicts.mark`). rho, r_squared: of trends.
     """
 
     effect: float = math.nan
@@ -93,11 +105,14 @@ class Finding(NamedTuple):
     r_squared: float = math.nan
 
 
-# What a claim says about point values. All take (..., k) numbers of cells, so that they work for ours, printed ones and draws.
+# What a claim says about point values. All take (..., k) numbers of cells, so that they work for
+# ours, printed ones and draws.
 
 
 def event(check: OfRuns, values: np.ndarray) -> np.ndarray:
-    """Whether the event of a share happened, as 1 and 0; NaN is kept. Without an event, the values are already boolean."""
+    """Whether the event of a share happened, as 1 and 0; NaN is kept. Without an event, the values
+    are already boolean.
+    """
     if check.limit is None:
         return values
     word, limit = check.limit
@@ -105,11 +120,14 @@ def event(check: OfRuns, values: np.ndarray) -> np.ndarray:
 
 
 class Effect(NamedTuple):
-    """How a kind of test computes an effect from point values of cells; all functions take the check first.
+    """How a kind of test computes an effect from point values of cells; all functions take the
+    check first.
 
-    of: values (..., k) and the names of the cells (k,) -> effects (...). gradient: values (k,) and names -> how the effect changes with
-    each value (k,), None without a linear approximation. claimed: effects (...) and the margin -> whether each is what the claim says.
-    reference: the cell to whose value an effect is relative. statistic: the statistic of a cell if the check names none.
+    of: values (..., k) and the names of the cells (k,) -> effects (...). gradient: values (k,) and
+    names -> how the effect changes with each value (k,), None without a linear approximation.
+    claimed: effects (...) and the margin -> whether each is what the claim says. reference: the
+    cell to whose value an effect is relative. statistic: the statistic of a cell if the check names
+    none.
     """
 
     of: Callable[[Any, np.ndarray, tuple], np.ndarray]
@@ -159,15 +177,18 @@ def claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
 def margin_of(check: OfRuns, comparison: Comparison) -> float:
     """The smallest effect that matters: given as a number or as a share.
 
-    `{published: share}`: a share of the other group's value (of the value at the lowest x; for booleans the share itself), or the printed
-    difference of the same cells if that is smaller and points as claimed. NaN for tests without a margin.
+    `{published: share}`: a share of the other group's value (of the value at the lowest x; for
+    booleans the share itself), or the printed difference of the same cells if that is smaller and
+    points as claimed. NaN for tests without a margin.
     """
     margin = check.least_margin
     if not isinstance(margin, PublishedMargin):
         return margin
     own = margin.published
     if not check.relative and not comparison.boolean:
-        own *= abs(float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference]))
+        own *= abs(
+            float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference])
+        )
     printed = effect(check, comparison.printed, comparison.cells)
     as_claimed = printed * SIDES.get(check.side, np.sign(printed)) > 0
     return min(own, float(abs(printed))) if as_claimed else own
@@ -183,7 +204,9 @@ def point_statistic(check: OfRuns) -> str:
 
 
 def counted(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
-    """The values of each cell of a condition (units, k); if paired, only of units with a value in every cell."""
+    """The values of each cell of a condition (units, k); if paired, only of units with a value in
+    every cell.
+    """
     if paired:
         return list(stratum[~np.isnan(stratum).any(axis=1)].T)
     return [values[~np.isnan(values)] for values in stratum.T]
@@ -197,16 +220,21 @@ def finite(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
 def points(comparison: Comparison, statistic: str) -> np.ndarray:
     """A named statistic of each cell (k,), averaged over the conditions."""
     each = [
-        [statistics.statistic(statistic, values) for values in finite(stratum, comparison.paired)] for stratum in comparison.strata.values()
+        [statistics.statistic(statistic, values) for values in finite(stratum, comparison.paired)]
+        for stratum in comparison.strata.values()
     ]
     return np.mean(each, axis=0)
 
 
-def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | None = None) -> np.ndarray:
-    """A named statistic of each cell in draws from its units (DRAWS, k), averaged over the conditions; NaN for an empty cell.
+def drawn_points(
+    comparison: Comparison, statistic: str, name: str, size: int | None = None
+) -> np.ndarray:
+    """A named statistic of each cell in draws from its units (DRAWS, k), averaged over the
+    conditions; NaN for an empty cell.
 
-    name: seeds the draws. Cells of the same name in comparisons at the same place share their draws; paired cells are drawn unit by unit.
-    size: units in a draw, with the same share of counted units as ours; None to draw as many as there are.
+    name: seeds the draws. Cells of the same name in comparisons at the same place share their
+    draws; paired cells are drawn unit by unit. size: units in a draw, with the same share of
+    counted units as ours; None to draw as many as there are.
     """
     total = np.zeros((statistics.DRAWS, len(comparison.cells)))
     for stratum_name, stratum in comparison.strata.items():
@@ -214,7 +242,9 @@ def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | 
             if not len(values):
                 total[:, number] = np.nan
                 continue
-            drawn = len(values) if size is None else max(1, round(size * len(values) / len(stratum)))
+            drawn = (
+                len(values) if size is None else max(1, round(size * len(values) / len(stratum)))
+            )
             own = "" if comparison.paired else f"/{comparison.cells[number]}"
             rng = generator(f"{name}/{comparison.place}/{stratum_name}{own}")
             total[:, number] += statistics.resampled(statistic, values, drawn, rng)
@@ -222,26 +252,49 @@ def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | 
 
 
 def drawn_effects(check: OfRuns, comparison: Comparison, name: str) -> np.ndarray:
-    """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal approximation; NaN with an empty cell."""
+    """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal
+    approximation; NaN with an empty cell.
+    """
     statistic = point_statistic(check)
-    if comparison.boolean and statistic == "mean" and not check.relative and len(comparison.cells) == 2:
-        adjusted = [_adjusted_difference(*counted(stratum, comparison.paired), comparison.paired) for stratum in comparison.strata.values()]
+    if (
+        comparison.boolean
+        and statistic == "mean"
+        and not check.relative
+        and len(comparison.cells) == 2
+    ):
+        adjusted = [
+            _adjusted_difference(*counted(stratum, comparison.paired), comparison.paired)
+            for stratum in comparison.strata.values()
+        ]
         centre, variance = np.mean(adjusted, axis=0)
         return statistics.normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
     ours = points(comparison, statistic)
     gradient = kind_of(check).EFFECT.gradient(check, ours, comparison.cells)
-    if gradient is None or any(len(v) <= MOST_RESAMPLED for s in comparison.strata.values() for v in finite(s, comparison.paired)):
+    if gradient is None or any(
+        len(v) <= MOST_RESAMPLED
+        for s in comparison.strata.values()
+        for v in finite(s, comparison.paired)
+    ):
         return effect(check, drawn_points(comparison, statistic, name), comparison.cells)
     variance = 0.0
     for stratum in comparison.strata.values():
-        moved = [g * statistics.influence(statistic, values) for g, values in zip(gradient, finite(stratum, comparison.paired))]
+        moved = [
+            g * statistics.influence(statistic, values)
+            for g, values in zip(gradient, finite(stratum, comparison.paired))
+        ]
         parts = [np.sum(moved, axis=0)] if comparison.paired else moved
         variance += sum(part.var(ddof=1) / len(part) for part in parts)
-    return statistics.normal_draws(float(effect(check, ours, comparison.cells)), math.sqrt(variance) / len(comparison.strata))
+    return statistics.normal_draws(
+        float(effect(check, ours, comparison.cells)), math.sqrt(variance) / len(comparison.strata)
+    )
 
 
-def _adjusted_difference(group: np.ndarray, reference: np.ndarray, paired: bool) -> tuple[float, float]:
-    """Difference of the shares of two boolean groups, and its variance, with two units added to each; NaN for an empty group."""
+def _adjusted_difference(
+    group: np.ndarray, reference: np.ndarray, paired: bool
+) -> tuple[float, float]:
+    """Difference of the shares of two boolean groups, and its variance, with two units added to
+    each; NaN for an empty group.
+    """
     if not len(group) or not len(reference):
         return math.nan, math.nan
     if paired:
@@ -249,22 +302,31 @@ def _adjusted_difference(group: np.ndarray, reference: np.ndarray, paired: bool)
         more, fewer = (np.sum(group > reference) + 0.5) / n, (np.sum(group < reference) + 0.5) / n
         return more - fewer, (more + fewer - (more - fewer) ** 2) / n
     shares = [(values.sum() + 1) / (len(values) + 2) for values in (group, reference)]
-    return shares[0] - shares[1], sum(share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, reference)))
+    return shares[0] - shares[1], sum(
+        share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, reference))
+    )
 
 
 def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:
-    """Test a sentence about extremes: how often it holds in experiments of the paper's size, drawn from our runs."""
+    """Test a sentence about extremes: how often it holds in experiments of the paper's size, drawn
+    from our runs.
+    """
     statistic = point_statistic(check)
     ours = float(effect(check, points(comparison, statistic), comparison.cells))
     margin, n = margin_of(check, comparison), units(comparison)
-    finding = Finding(effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin)
+    finding = Finding(
+        effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin
+    )
     if comparison.paper_units is None:
         return finding._replace(mark="?", reason="the paper's number of runs is unknown")
-    effects = effect(check, drawn_points(comparison, statistic, name, comparison.paper_units), comparison.cells)
+    effects = effect(
+        check, drawn_points(comparison, statistic, name, comparison.paper_units), comparison.cells
+    )
     held = np.mean(claimed(check, effects, margin))
     return finding._replace(
         mark="+" if held >= SURE else "-" if held <= 1 - SURE else "?",
-        reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs drawn from ours",
+        reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs "
+        f"drawn from ours",
     )
 
 
@@ -291,18 +353,37 @@ def least_detectable(low: float, high: float, n: int) -> float:
 
 
 def is_negligible(low: float, high: float, margin: float, n: int, least: float = 0.0) -> bool:
-    """Whether the interval of an effect, less the claimed one, lies within the margin. Identical units must be enough to say so."""
-    return bool(max(abs(low - least), abs(high - least)) <= margin and (low < high or n >= LEAST_WITHOUT_EXAMPLE))
+    """Whether the interval of an effect, less the claimed one, lies within the margin. Identical
+    units must be enough to say so.
+    """
+    return bool(
+        max(abs(low - least), abs(high - least)) <= margin
+        and (low < high or n >= LEAST_WITHOUT_EXAMPLE)
+    )
 
 
 def no_difference(low: float, high: float, n: int) -> str:
     """Why identical units say nothing; empty if they differ or are enough."""
-    return f"no difference in fewer than {LEAST_WITHOUT_EXAMPLE} units" if low == high == 0 and n < LEAST_WITHOUT_EXAMPLE else ""
+    return (
+        f"no difference in fewer than {LEAST_WITHOUT_EXAMPLE} units"
+        if low == high == 0 and n < LEAST_WITHOUT_EXAMPLE
+        else ""
+    )
 
 
 def units(comparison: Comparison) -> int:
     """Units of the smallest cell, over all conditions."""
-    return min(map(sum, zip(*(map(len, counted(stratum, comparison.paired)) for stratum in comparison.strata.values()))))
+    return min(
+        map(
+            sum,
+            zip(
+                *(
+                    map(len, counted(stratum, comparison.paired))
+                    for stratum in comparison.strata.values()
+                )
+            ),
+        )
+    )
 
 
 def too_few(comparison: Comparison) -> str:

@@ -1,4 +1,6 @@
-"""The job that judges claims: from files of runs, problems, bounds and published numbers to the tables of claims and of their checks."""
+"""The job that judges claims: from files of runs, problems, bounds and published numbers to the
+tables of claims and of their checks.
+"""
 
 import importlib
 from collections.abc import Mapping
@@ -10,7 +12,13 @@ from bezierplan.running.inputs import Files
 from bezierplan.schema.model import parsed
 
 
-def run(job: dict, files: Mapping[str, Files], published_files: Mapping[str, str], claims_file: str, checks_file: str) -> None:
+def run(
+    job: dict,
+    files: Mapping[str, Files],
+    published_files: Mapping[str, str],
+    claims_file: str,
+    checks_file: str,
+) -> None:
     """Judge the claims of a job (`study.targets.claims_params`) and write both tables as csv.
 
     files: by experiment. published_files: of published numbers, by table.
@@ -18,10 +26,17 @@ def run(job: dict, files: Mapping[str, Files], published_files: Mapping[str, str
     experiments = results.read_all(files, job["repeats"])
     published = {name: results.published_table(file) for name, file in published_files.items()}
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
-    material = {"variant_of": job["variant_of"], "paired": job["paired"], "repeats": job["paper_repeats"], "labels": job["labels"]}
+    material = {
+        "variant_of": job["variant_of"],
+        "paired": job["paired"],
+        "repeats": job["paper_repeats"],
+        "labels": job["labels"],
+    }
     claims = [parsed(Claim, each, "claims") for each in job["claims"]]
     if job["primary_alone"]:
         claims = [claim.in_primary_variant() for claim in claims]
-    judged, checks = judge.judge(claims, experiments, published, job["artefacts"], job["study"], functions, **material)
+    judged, checks = judge.judge(
+        claims, experiments, published, job["artefacts"], job["study"], functions, **material
+    )
     for table, file in ((judged, claims_file), (checks, checks_file)):
         table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")

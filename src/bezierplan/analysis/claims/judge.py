@@ -1,78 +1,70 @@
 """Sentences of a paper, judged on runs and on the paper's own numbers.
 
-A claim is a list of checks; config/README.md describes their format, `kinds` the test behind each kind. Every check gives one or more
-comparisons, every comparison a mark:
+A claim is a list of checks; config/README.md describes their format, `kinds` the test behind each
+kind. Every check gives one or more comparisons, every comparison a mark:
 
-| mark | meaning |
-| --- | --- |
-| + | the sentence holds here: p < 0.05, and the effect points as claimed and is as large as the margin |
-| - | the opposite holds |
-| 0 | neither, and the interval of the effect lies within the margin |
-| ? | none of these, or too little data to test |
+| mark | meaning | | --- | --- | | + | the sentence holds here: p < 0.05, and the effect points as
+claimed and is as large as the margin | | - | the opposite holds | | 0 | neither, and the interval
+of the effect lies within the margin | | ? | none of these, or too little data to test |
 
-Comparisons that a check takes `together` (a superlative: the best of all in a column, or on a map) are judged as one, and are shown below
-it as secondary ones.
+Comparisons that a check takes `together` (a superlative: the best of all in a column, or on a map)
+are judged as one, and are shown below it as secondary ones.
 
-A comparison has one mark on its own and one in the family of all comparisons of the claim's primary checks (`verdicts` explains the
-procedure). If all have to hold, every mark on its own must be + to support the claim; everything else follows from the family's marks:
+A comparison has one mark on its own and one in the family of all comparisons of the claim's primary
+checks (`verdicts` explains the procedure). If all have to hold, every mark on its own must be + to
+support the claim; everything else follows from the family's marks:
 
-| verdict | all have to hold | any may hold |
-| --- | --- | --- |
-| supported | every mark + on its own | at least one + |
-| partly | + in some but not all (`holds` says in how many); if there is no - and no 0, in at least three quarters | |
-| contradicted | no +, and a - | every mark - on its own |
-| no effect | every mark 0 | no + and no ?, not all - |
-| undecided | otherwise: a ? prevents a verdict, or more than half of the marks are ? | a ? prevents a verdict |
-| untestable | the reason is given | likewise |
+| verdict | all have to hold | any may hold | | --- | --- | --- | | supported | every mark + on its
+own | at least one + | | partly | + in some but not all (`holds` says in how many); if there is no -
+and no 0, in at least three quarters | | | contradicted | no +, and a - | every mark - on its own |
+| no effect | every mark 0 | no + and no ?, not all - | | undecided | otherwise: a ? prevents a
+verdict, or more than half of the marks are ? | a ? prevents a verdict | | untestable | the reason
+is given | likewise |
 
-If all have to hold together, as one sentence (`holds: together`): supported if every mark is + on its own; contradicted by one - in the
-family, or by a 0 beside a +; no effect with a 0 and neither; otherwise undecided.
+If all have to hold together, as one sentence (`holds: together`): supported if every mark is + on
+its own; contradicted by one - in the family, or by a 0 beside a +; no effect with a 0 and neither;
+otherwise undecided.
 
-A sentence about seconds is judged on counted work if its check names one (`work`); the seconds are reported next to it, and the reason
-says where they disagree. Without one, the seconds decide: between planners of different kinds, whose evaluations are different things.
+A sentence about seconds is judged on counted work if its check names one (`work`); the seconds are
+reported next to it, and the reason says where they disagree. Without one, the seconds decide:
+between planners of different kinds, whose evaluations are different things.
 
 Columns of claims.csv, one row per claim and variant:
 
-| column | meaning |
-| --- | --- |
-| study, id, place, statement | of the claim |
-| variant | values used instead of the primary ones; in the primary row, the primary values |
-| primary | whether this is the primary variant |
-| finding | whether it is our own finding rather than a sentence of the paper |
-| own_criterion | whether the paper gives no number and the threshold or margin that decides is ours |
-| verdict | as above |
-| holds | how many comparisons of the primary checks are + |
-| where_it_holds | which of them are + in the family, in words; if none, where the opposite holds; empty if all or none do |
-| published | how many of those that are printed hold in the printed numbers, by value alone |
-| effect ... p_family | of the decisive comparison: the worst -, otherwise that with the largest p; columns as below |
-| units_to_decide | of an undecided claim: about how many units would decide every comparison marked ?, were our effects the true ones |
-| replication_probability | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone (*) |
-| size | our effect compared with the printed one: alike (the printed one lies in our interval), smaller, larger, opposite |
-| artefact | the tables and figures that show it |
-| timed | judged on CPU times, which differ from machine to machine |
-| reason | why it is untestable or undecided, and other notes for the reader |
+| column | meaning | | --- | --- | | study, id, place, statement | of the claim | | variant | values
+used instead of the primary ones; in the primary row, the primary values | | primary | whether this
+is the primary variant | | finding | whether it is our own finding rather than a sentence of the
+paper | | own_criterion | whether the paper gives no number and the threshold or margin that decides
+is ours | | verdict | as above | | holds | how many comparisons of the primary checks are + | |
+where_it_holds | which of them are + in the family, in words; if none, where the opposite holds;
+empty if all or none do | | published | how many of those that are printed hold in the printed
+numbers, by value alone | | effect ... p_family | of the decisive comparison: the worst -, otherwise
+that with the largest p; columns as below | | units_to_decide | of an undecided claim: about how
+many units would decide every comparison marked ?, were our effects the true ones | |
+replication_probability | share of experiments of the paper's size, drawn from our runs, in which
+the claim holds by values alone (*) | | size | our effect compared with the printed one: alike (the
+printed one lies in our interval), smaller, larger, opposite | | artefact | the tables and figures
+that show it | | timed | judged on CPU times, which differ from machine to machine | | reason | why
+it is untestable or undecided, and other notes for the reader |
 
-(*) Where a claim is about one picked run of each condition: the chance that runs drawn at random among those that count do in its place.
+(*) Where a claim is about one picked run of each condition: the chance that runs drawn at random
+among those that count do in its place.
 
 Columns of claim_checks.csv, one row per comparison:
 
-| column | meaning |
-| --- | --- |
-| study, id, variant, timed | as above |
-| check | number of the check within the claim, from 1 |
-| primary | false for secondary checks, which are only reported |
-| decisive | whether the row of claims.csv repeats it: the worst -, otherwise that with the largest p |
-| test, metric, statistic, unit | of the check; unit of the metric |
-| condition, comparison | where, and what is compared |
-| mark, mark_family | on its own; in the family, empty for secondary checks |
-| effect, effect_size_name, effect_size | of means, or of the statistic; what is computed from both groups (`kinds`) |
-| low95, high95 | interval of the effect |
-| p, p_family | two-sided; corrected, empty for secondary checks and where no p decides |
-| n | units: pairs, or those of the smallest group |
-| counted | how many units of each group, out of how many, have a value: means, minima and maxima exclude failed runs |
-| margin, least_detectable | the smallest effect that matters; that detected with a power of 0.8, empty if the units do not differ |
-| rho, r_squared | of trends: Spearman's rho and R squared of the conditions' means over x |
-| effect_published, published | the effect in the printed numbers, and whether the sentence holds in them |
+| column | meaning | | --- | --- | | study, id, variant, timed | as above | | check | number of the
+check within the claim, from 1 | | primary | false for secondary checks, which are only reported | |
+decisive | whether the row of claims.csv repeats it: the worst -, otherwise that with the largest p
+| | test, metric, statistic, unit | of the check; unit of the metric | | condition, comparison |
+where, and what is compared | | mark, mark_family | on its own; in the family, empty for secondary
+checks | | effect, effect_size_name, effect_size | of means, or of the statistic; what is computed
+from both groups (`kinds`) | | low95, high95 | interval of the effect | | p, p_family | two-sided;
+corrected, empty for secondary checks and where no p decides | | n | units: pairs, or those of the
+smallest group | | counted | how many units of each group, out of how many, have a value: means,
+minima and maxima exclude failed runs | | margin, least_detectable | the smallest effect that
+matters; that detected with a power of 0.8, empty if the units do not differ | | rho, r_squared | of
+trends: Spearman's rho and R squared of the conditions' means over x | | effect_published, published
+| the effect in the printed numbers, and whether the sentence holds in them |
 """
 
 import math
@@ -107,12 +99,47 @@ CLAIM_COLUMNS = [
         "where_it_holds",
         "published",
     ),
-    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
+    *(
+        "effect",
+        "effect_size_name",
+        "effect_size",
+        "low95",
+        "high95",
+        "n",
+        "counted",
+        "p",
+        "p_family",
+    ),
     *("units_to_decide", "replication_probability", "size", "artefact", "timed", "reason"),
 ]
 CHECK_COLUMNS = [
-    *("study", "id", "variant", "check", "primary", "decisive", "test", "metric", "statistic", "unit", "condition", "comparison"),
-    *("mark", "mark_family", "effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
+    *(
+        "study",
+        "id",
+        "variant",
+        "check",
+        "primary",
+        "decisive",
+        "test",
+        "metric",
+        "statistic",
+        "unit",
+        "condition",
+        "comparison",
+    ),
+    *(
+        "mark",
+        "mark_family",
+        "effect",
+        "effect_size_name",
+        "effect_size",
+        "low95",
+        "high95",
+        "n",
+        "counted",
+        "p",
+        "p_family",
+    ),
     *("margin", "least_detectable"),
     *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
 ]
@@ -122,7 +149,8 @@ MOST_UNITS = 10**9
 
 
 class _Judged(NamedTuple):
-    """One comparison; `comparison` is None if no runs are compared. primary: False for a secondary check.
+    """One comparison; `comparison` is None if no runs are compared. primary: False for a secondary
+    check.
 
     parts: the comparisons that it takes together, if any; `comparison` is then the decisive one.
     """
@@ -155,11 +183,13 @@ def judge(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`, described above.
 
-    study: its name; all random draws are seeded by names. functions: by name, of the study's file in `papers/`.
-    The others as in `Material`. Nothing depends on the order of the runs. Raises Fault for a claim that mixes runs of
-    several conditions or names an unknown function.
+    study: its name; all random draws are seeded by names. functions: by name, of the study's file
+    in `papers/`. The others as in `Material`. Nothing depends on the order of the runs. Raises
+    Fault for a claim that mixes runs of several conditions or names an unknown function.
     """
-    material = Material(results, published, artefacts, functions, variant_of, paired, repeats, labels or {})
+    material = Material(
+        results, published, artefacts, functions, variant_of, paired, repeats, labels or {}
+    )
     claim_rows, check_rows = [], []
     for claim in claims:
         first, *_ = assignments = variants(claim)
@@ -167,20 +197,25 @@ def judge(
             row, details = _judge_variant(claim, first, assignment, study, material)
             claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
-    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64", "units_to_decide": "Int64"}), pd.DataFrame(
-        check_rows, columns=CHECK_COLUMNS
-    )
+    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype(
+        {"n": "Int64", "units_to_decide": "Int64"}
+    ), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
 
 
 # From comparisons to a verdict.
 
 
-def _judge_variant(claim: Claim, first: dict, assignment: dict, study: str, material: Material) -> tuple[dict, list[dict]]:
+def _judge_variant(
+    claim: Claim, first: dict, assignment: dict, study: str, material: Material
+) -> tuple[dict, list[dict]]:
     """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
-    variant = ", ".join(f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items())
+    variant = ", ".join(
+        f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items()
+    )
     holds = claim.holds
     name = f"{study}/{claim.id}/{variant}"
-    # `rest` means the same as in the primary variant, so it is filled in before values are substituted.
+    # `rest` means the same as in the primary variant, so it is filled in before values are
+    # substituted.
     checks = [comparisons.with_rest(check, claim, material) for check in claim.checks]
     checks = in_variant(checks, first, assignment)
     described = {
@@ -190,15 +225,21 @@ def _judge_variant(claim: Claim, first: dict, assignment: dict, study: str, mate
         "artefact": ", ".join(claim.artefacts),
         "finding": bool(claim.finding),
         "own_criterion": claim.criterion is not None,
-        "timed": any(_is_timed(check) for check in checks if check.primary and len(with_work(check)) == 1),
+        "timed": any(
+            _is_timed(check) for check in checks if check.primary and len(with_work(check)) == 1
+        ),
     }
     judged, obstacle = [], ""
-    for number, check in [(number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)]:
+    for number, check in [
+        (number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)
+    ]:
         try:
             judged += _findings(number, check, claim, name, material)
         except Untestable as reason:
             if not check.primary:
-                judged.append(_Judged(number, check, False, "", "", None, Finding(reason=str(reason))))
+                judged.append(
+                    _Judged(number, check, False, "", "", None, Finding(reason=str(reason)))
+                )
             else:
                 obstacle = obstacle or str(reason)
     judged = _marked(judged)
@@ -207,16 +248,29 @@ def _judge_variant(claim: Claim, first: dict, assignment: dict, study: str, mate
     named = {key: described[key] for key in ("study", "id", "variant")}
     rows = [_check_row(each, material) | named | {"decisive": each is shown} for each in judged]
     if shown is None:
-        return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
+        return described | {
+            "verdict": "untestable",
+            "published": _published(deciding),
+            "reason": obstacle,
+        }, rows
     finding = shown.finding
-    verdict = verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
+    verdict = verdicts.verdict(
+        [each.mark for each in deciding], [each.mark_family for each in deciding], holds
+    )
     everywhere = verdict == "supported" and holds != "any"
     summary = {
         "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
-        "where_it_holds": "" if everywhere else verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
+        "where_it_holds": ""
+        if everywhere
+        else verdicts.where_it_holds(
+            [_in_words(each, deciding) for each in deciding], material.labels
+        ),
         "published": _published(deciding),
-        **{key: getattr(finding, key) for key in ("effect", "effect_size_name", "effect_size", "n", "p")},
+        **{
+            key: getattr(finding, key)
+            for key in ("effect", "effect_size_name", "effect_size", "n", "p")
+        },
         "low95": finding.low,
         "high95": finding.high,
         "counted": shown.comparison.counted if shown.comparison else "",
@@ -241,28 +295,47 @@ def _judge_variant(claim: Claim, first: dict, assignment: dict, study: str, mate
 
 
 def _by_own_criterion(claim: Claim, verdict: str) -> str:
-    """The first words of the reason for a claim that does not hold by a threshold of ours, where the paper gives no number."""
-    return "" if claim.criterion is None or verdict in ("supported", "undecided") else "fails by our criterion alone"
+    """The first words of the reason for a claim that does not hold by a threshold of ours, where
+    the paper gives no number.
+    """
+    return (
+        ""
+        if claim.criterion is None or verdict in ("supported", "undecided")
+        else "fails by our criterion alone"
+    )
 
 
 def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str:
-    """Of a claim without effect: below what size all differences that are shown to be negligible lie; empty for any other."""
+    """Of a claim without effect: below what size all differences that are shown to be negligible
+    lie; empty for any other.
+    """
     within = [each for each in deciding if each.mark_family == "0"]
     if verdict != "no effect" or not within:
         return ""
     most = max(max(abs(each.finding.low), abs(each.finding.high)) for each in within)
     relative = within[0].check.relative
-    size = f"{100 * most:.2g} %" if relative else f"{most:.2g} {_unit(within[0].check, material)}".removesuffix(" -")
-    where = "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
+    size = (
+        f"{100 * most:.2g} %"
+        if relative
+        else f"{most:.2g} {_unit(within[0].check, material)}".removesuffix(" -")
+    )
+    where = (
+        "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
+    )
     return f"{where}differs by less than {size}"
 
 
-def _findings(number: int, check: Check, claim: Claim, name: str, material: Material) -> list[_Judged]:
+def _findings(
+    number: int, check: Check, claim: Claim, name: str, material: Material
+) -> list[_Judged]:
     """The comparisons of one check with their findings. Raises Untestable."""
     primary, kind = check.primary, kind_of(check)
     if not isinstance(check, OfRuns):
         judged = kind.findings(check, claim, material)
-        return [_Judged(number, check, primary, condition, words, None, finding) for condition, words, finding in judged]
+        return [
+            _Judged(number, check, primary, condition, words, None, finding)
+            for condition, words, finding in judged
+        ]
     if _is_timed(check) and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
     judged = [
@@ -282,26 +355,42 @@ def _together(found: list[_Judged]) -> list[_Judged]:
     for own in ([each for each in found if each.condition == place] for place in places):
         finding, decisive = verdicts.conjunction([each.finding for each in own])
         parts = tuple(each.comparison for each in own)
-        whole = own[decisive]._replace(name=f"all {len(own)} together", finding=finding, parts=parts)
+        whole = own[decisive]._replace(
+            name=f"all {len(own)} together", finding=finding, parts=parts
+        )
         judged += [whole, *(each._replace(primary=False) for each in own)]
     return judged
 
 
 def _marked(judged: list[_Judged]) -> list[_Judged]:
     """The comparisons with their marks, the primary ones also with their marks in the family."""
-    tested = [number for number, each in enumerate(judged) if each.primary and not math.isnan(each.finding.p)]
-    corrected = dict(zip(tested, verdicts.family(np.array([judged[number].finding.p for number in tested]))))
+    tested = [
+        number
+        for number, each in enumerate(judged)
+        if each.primary and not math.isnan(each.finding.p)
+    ]
+    corrected = dict(
+        zip(tested, verdicts.family(np.array([judged[number].finding.p for number in tested])))
+    )
     marked = []
     for number, each in enumerate(judged):
         p_family = corrected.get(number, math.nan)
         together = verdicts.mark(each.finding, p_family) if each.primary else ""
-        marked.append(each._replace(mark=verdicts.mark(each.finding, each.finding.p), mark_family=together, p_family=p_family))
+        marked.append(
+            each._replace(
+                mark=verdicts.mark(each.finding, each.finding.p),
+                mark_family=together,
+                p_family=p_family,
+            )
+        )
     return marked
 
 
 def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     """A comparison with the factors that distinguish it from the others of its claim."""
-    metrics_differ = len({(other.check.measured, other.check.statistic_written) for other in deciding}) > 1
+    metrics_differ = (
+        len({(other.check.measured, other.check.statistic_written) for other in deciding}) > 1
+    )
     factors: dict[str, Any] = {}
     if judged.comparison is not None:
         if judged.check.against and not judged.parts:
@@ -311,7 +400,11 @@ def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     elif judged.condition:
         factors["in"] = judged.condition
     if metrics_differ:
-        factors["what"] = f"{judged.check.statistic_written} {judged.check.measured or judged.check.test}".strip().replace("_", " ")
+        factors["what"] = (
+            f"{judged.check.statistic_written} {judged.check.measured or judged.check.test}".strip().replace(
+                "_", " "
+            )
+        )
     return verdicts.Marked(factors, judged.mark_family)
 
 
@@ -321,34 +414,57 @@ def _group_in_words(check: Check, group: Any) -> Any:
 
 
 def _disagreement(judged: list[_Judged]) -> str:
-    """A note where seconds and counted work disagree, one of which is primary and the other secondary."""
-    others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.primary}
+    """A note where seconds and counted work disagree, one of which is primary and the other
+    secondary.
+    """
+    others = {
+        (each.condition, each.name, _is_timed(each.check)): each.mark
+        for each in judged
+        if not each.primary
+    }
     deciding = [each for each in judged if each.primary]
-    pairs = [(each, others.get((each.condition, each.name, not _is_timed(each.check)))) for each in deciding]
-    pairs = [(each, other) for each, other in pairs if other is not None and (_is_timed(each.check) or each.check.judges_work)]
+    pairs = [
+        (each, others.get((each.condition, each.name, not _is_timed(each.check))))
+        for each in deciding
+    ]
+    pairs = [
+        (each, other)
+        for each, other in pairs
+        if other is not None and (_is_timed(each.check) or each.check.judges_work)
+    ]
     differing = sum(each.mark != other for each, other in pairs)
     if not differing:
         return ""
-    judged_on, other = ("seconds", "evaluations") if _is_timed(pairs[0][0].check) else ("counted work", "seconds")
+    judged_on, other = (
+        ("seconds", "evaluations") if _is_timed(pairs[0][0].check) else ("counted work", "seconds")
+    )
     return f"judged on {judged_on}; {other} disagree in {differing} of {len(pairs)}"
 
 
 def _shown(deciding: list[_Judged], holds: str) -> _Judged:
     """The decisive comparison.
 
-    If all have to hold, the worst - by effect (of the first check that has one), otherwise that with the largest p, preceded by any without
-    p that is not +. If any may hold, that with the smallest p, among those with a + if there are any.
+    If all have to hold, the worst - by effect (of the first check that has one), otherwise that
+    with the largest p, preceded by any without p that is not +. If any may hold, that with the
+    smallest p, among those with a + if there are any.
     """
 
     def p(each: _Judged) -> float:
-        return each.finding.p if not math.isnan(each.finding.p) else -1.0 if each.mark == "+" else 2.0
+        return (
+            each.finding.p if not math.isnan(each.finding.p) else -1.0 if each.mark == "+" else 2.0
+        )
 
     if holds == "any":
         return min([each for each in deciding if each.mark_family == "+"] or deciding, key=p)
     against = [each for each in deciding if each.mark_family == "-"]
     if against:
         first = [each for each in against if each.number == against[0].number]
-        return max(first, key=lambda each: np.nan_to_num(abs(each.finding.effect - each.check.claimed_difference), nan=np.inf))
+        return max(
+            first,
+            key=lambda each: np.nan_to_num(
+                abs(each.finding.effect - each.check.claimed_difference), nan=np.inf
+            ),
+        )
     return max(deciding, key=p)
 
 
@@ -356,15 +472,21 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
 
 
 def _printed(judged: _Judged) -> tuple[float, bool | None]:
-    """The effect in the printed numbers, and whether the sentence holds in them; None if they are not printed."""
+    """The effect in the printed numbers, and whether the sentence holds in them; None if they are
+    not printed.
+    """
     if judged.check.of_printed:
         return judged.finding.effect, judged.mark == "+"
     parts = judged.parts or (judged.comparison,)
     if None in parts or any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
     printed = [effects.effect(judged.check, part.printed, part.cells) for part in parts]
-    held = all(bool(effects.claimed(judged.check, effect, judged.finding.margin)) for effect in printed)
-    return float(effects.effect(judged.check, judged.comparison.printed, judged.comparison.cells)), held
+    held = all(
+        bool(effects.claimed(judged.check, effect, judged.finding.margin)) for effect in printed
+    )
+    return float(
+        effects.effect(judged.check, judged.comparison.printed, judged.comparison.cells)
+    ), held
 
 
 def _published(deciding: list[_Judged]) -> str:
@@ -373,14 +495,20 @@ def _published(deciding: list[_Judged]) -> str:
 
 
 def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> float:
-    """Share of experiments of the paper's size, drawn from our runs, in which the claim holds by point values.
+    """Share of experiments of the paper's size, drawn from our runs, in which the claim holds by
+    point values.
 
-    If runs are picked, the chance that runs drawn at random among those that count, one of each condition, do in their place. NaN if a cell
-    is empty, or if the paper's size is unknown.
+    If runs are picked, the chance that runs drawn at random among those that count, one of each
+    condition, do in their place. NaN if a cell is empty, or if the paper's size is unknown.
     """
-    picked = [isinstance(judged.check, OfRuns) and judged.check.picks is not None for judged in deciding]
+    picked = [
+        isinstance(judged.check, OfRuns) and judged.check.picks is not None for judged in deciding
+    ]
     if any(picked):
-        return math.prod(judged.comparison.typical if of_one else math.nan for judged, of_one in zip(deciding, picked))
+        return math.prod(
+            judged.comparison.typical if of_one else math.nan
+            for judged, of_one in zip(deciding, picked)
+        )
     held = []
     for judged in deciding:
         every = judged.parts or (judged.comparison,)
@@ -388,7 +516,9 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
             return math.nan
         claimed = []
         for part in every:
-            points = effects.drawn_points(part, effects.point_statistic(judged.check), name, part.paper_units)
+            points = effects.drawn_points(
+                part, effects.point_statistic(judged.check), name, part.paper_units
+            )
             drawn = effects.effect(judged.check, points, part.cells)
             if np.isnan(drawn).any():
                 return math.nan
@@ -399,10 +529,11 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
 
 
 def _units_to_decide(deciding: list[_Judged]) -> int | Any:
-    """Units with which every comparison marked ? would be decided if our effects were the true ones; missing beyond `MOST_UNITS`.
+    """Units with which every comparison marked ? would be decided if our effects were the true
+    ones; missing beyond `MOST_UNITS`.
 
-    Errors shrink with the square root of the number of units. An effect as large as the margin needs a p below `ALPHA` in the family; a
-    smaller one needs an interval within the margin.
+    Errors shrink with the square root of the number of units. An effect as large as the margin
+    needs a p below `ALPHA` in the family; a smaller one needs an interval within the margin.
     """
     from scipy.special import ndtri
 
@@ -415,13 +546,19 @@ def _units_to_decide(deciding: list[_Judged]) -> int | Any:
             if f.toward:
                 ratio = np.divide(ndtri(1 - ALPHA / 2), ndtri(1 - judged.p_family / 2))
             else:
-                ratio = np.divide(max(f.high - f.effect, f.effect - f.low), f.margin - abs(f.effect))
+                ratio = np.divide(
+                    max(f.high - f.effect, f.effect - f.low), f.margin - abs(f.effect)
+                )
             needed.append(max(f.n * ratio**2, f.n + 1))
-    return math.ceil(max(needed)) if max(needed) < MOST_UNITS and not np.isnan(needed).any() else pd.NA
+    return (
+        math.ceil(max(needed)) if max(needed) < MOST_UNITS and not np.isnan(needed).any() else pd.NA
+    )
 
 
 def _size(each: _Judged) -> str:
-    """Our effect compared with the printed one; empty without a printed effect or an interval of ours."""
+    """Our effect compared with the printed one; empty without a printed effect or an interval of
+    ours.
+    """
     printed, held = _printed(each)
     finding = each.finding
     if held is None or math.isnan(finding.low):
@@ -450,7 +587,17 @@ def _reason(each: _Judged) -> str:
 def _check_row(judged: _Judged, material: Material) -> dict:
     check, finding = judged.check, judged.finding
     effect_published, held = _printed(judged)
-    fields = ("effect", "effect_size_name", "effect_size", "n", "p", "margin", "least_detectable", "rho", "r_squared")
+    fields = (
+        "effect",
+        "effect_size_name",
+        "effect_size",
+        "n",
+        "p",
+        "margin",
+        "least_detectable",
+        "rho",
+        "r_squared",
+    )
     return {
         "check": judged.number,
         "primary": judged.primary,

@@ -13,10 +13,12 @@ if TYPE_CHECKING:
 class Material(NamedTuple):
     """The data on which a study's claims are judged, everything by name.
 
-    results: of each experiment that was run. published: files of published numbers, named without `.csv`. artefacts: descriptions of tables
-    and figures as in artefacts.yaml. functions: of the study's file in `papers/`. variant_of: method -> the method whose published numbers
-    count. paired: for each experiment, whether runs with equal repeat numbers share a start or a random workspace. repeats: the paper's
-    number of repeats of each, used if the printed numbers do not state it. labels: name -> how it is printed.
+    results: of each experiment that was run. published: files of published numbers, named without
+    `.csv`. artefacts: descriptions of tables and figures as in artefacts.yaml. functions: of the
+    study's file in `papers/`. variant_of: method -> the method whose published numbers count.
+    paired: for each experiment, whether runs with equal repeat numbers share a start or a random
+    workspace. repeats: the paper's number of repeats of each, used if the printed numbers do not
+    state it. labels: name -> how it is printed.
     """
 
     results: dict[str, Results]

@@ -16,39 +16,54 @@ _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
 
 
 class Printed(NamedTuple):
-    """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value, number of runs)."""
+    """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value,
+    number of runs).
+    """
 
     table: int
     statistics: dict[str, tuple[int, float, float]]
 
 
-def printed(check: OfRuns, rows_of_conditions: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
-    """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if that is not printed.
+def printed(
+    check: OfRuns, rows_of_conditions: Sequence[Sequence[Printed | None]]
+) -> tuple[np.ndarray, int | None]:
+    """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if
+    that is not printed.
 
     rows_of_conditions: of each condition, of each cell, its rows as from `rows_of_cell`.
 
-    All use one statistic: the check's own or an unstated one, for a median of seconds also another; if it names none, the first of
-    `_ANY_STATISTIC` that is printed for every cell. NaN where a cell is not printed, or where two cells share a row (the paper does not
-    distinguish them).
+    All use one statistic: the check's own or an unstated one, for a median of seconds also another;
+    if it names none, the first of `_ANY_STATISTIC` that is printed for every cell. NaN where a cell
+    is not printed, or where two cells share a row (the paper does not distinguish them).
     """
     cells = len(rows_of_conditions[0])
     nothing = np.full(cells, np.nan), None
     rows_of_conditions = list(itertools.chain.from_iterable(rows_of_conditions))
     if None in rows_of_conditions:
         return nothing
-    rows = [(each.table, row) for each in rows_of_conditions for row, _, _ in each.statistics.values()]
+    rows = [
+        (each.table, row) for each in rows_of_conditions for row, _, _ in each.statistics.values()
+    ]
     if len(set(rows)) < len(rows):
         return nothing
     for statistic in _wanted(check):
         if all(statistic in each.statistics for each in rows_of_conditions):
-            values, runs = np.array([each.statistics[statistic][1:] for each in rows_of_conditions]).T
-            numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
-            return effects.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
+            values, runs = np.array(
+                [each.statistics[statistic][1:] for each in rows_of_conditions]
+            ).T
+            numbers = (
+                (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
+            )
+            return effects.event(check, numbers), None if np.isnan(runs).all() else int(
+                np.nanmin(runs)
+            )
     return nothing
 
 
 def _wanted(check: OfRuns) -> tuple[str, ...]:
-    """The printed statistics that serve a check, the best first. Papers print mean times; other programs disturb medians less."""
+    """The printed statistics that serve a check, the best first. Papers print mean times; other
+    programs disturb medians less.
+    """
     named = check.statistic_named
     timed = check.metric in METRICS and METRICS[check.metric].unit == "s"
     if named in (None, "rank"):
@@ -57,8 +72,8 @@ def _wanted(check: OfRuns) -> tuple[str, ...]:
 
 
 class PrintedTable(NamedTuple):
-    """The printed numbers of one metric in a table: its experiment; the columns that tell its cells apart; and their values in a cell ->
-    statistic -> (row in the table, value, number of runs).
+    """The printed numbers of one metric in a table: its experiment; the columns that tell its cells
+    apart; and their values in a cell -> statistic -> (row in the table, value, number of runs).
     """
 
     experiment: str
@@ -72,15 +87,21 @@ def printed_table(experiment: str, table: pd.DataFrame, metric: str) -> PrintedT
     rows = table[table["metric"] == metric].dropna(subset=keys)
     cells: dict[tuple, dict] = {}
     for number, row in zip(rows.index, rows.to_dict("records")):
-        cells.setdefault(tuple(row[key] for key in keys), {})[row["statistic"]] = number, float(row["value"]), float(row["n"])
+        cells.setdefault(tuple(row[key] for key in keys), {})[row["statistic"]] = (
+            number,
+            float(row["value"]),
+            float(row["n"]),
+        )
     return PrintedTable(experiment, keys, cells)
 
 
-def rows_of_cell(cell: list[dict], tables: list[PrintedTable], variant_of: dict[str, str]) -> Printed | None:
+def rows_of_cell(
+    cell: list[dict], tables: list[PrintedTable], variant_of: dict[str, str]
+) -> Printed | None:
     """The printed numbers of a cell; None if no table has it, or if the cell matches several rows.
 
-    cell: the values that distinguish its runs, by column. tables: the first with the cell is used. variant_of: method -> the method whose
-    published numbers count.
+    cell: the values that distinguish its runs, by column. tables: the first with the cell is used.
+    variant_of: method -> the method whose published numbers count.
     """
     experiments = {row["experiment"] for row in cell}
     for number, table in enumerate(tables):
@@ -89,7 +110,10 @@ def rows_of_cell(cell: list[dict], tables: list[PrintedTable], variant_of: dict[
         places = {tuple(row[key] for key in table.keys) for row in cell}
         if len(places) != 1:
             continue
-        place = tuple(variant_of.get(value, value) if key == "method" else value for key, value in zip(table.keys, places.pop()))
+        place = tuple(
+            variant_of.get(value, value) if key == "method" else value
+            for key, value in zip(table.keys, places.pop())
+        )
         if place in table.cells:
             return Printed(number, table.cells[place])
     return None

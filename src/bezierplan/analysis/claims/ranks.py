@@ -18,11 +18,14 @@ def rank_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> tuple[f
         return signed_rank_test(difference), int(np.sign(ranks.sum()))
     if np.ptp(np.concatenate([group, reference])) == 0:
         return 1.0, 0
-    return float(stats.mannwhitneyu(group, reference).pvalue), int(np.sign(wins(group, reference) - 0.5))
+    return float(stats.mannwhitneyu(group, reference).pvalue), int(
+        np.sign(wins(group, reference) - 0.5)
+    )
 
 
 def signed_rank_test(difference: np.ndarray) -> float:
-    """p of Wilcoxon's signed-rank test with Pratt's zeros, against a median of zero; exact, even with ties, up to `MOST_EXACT` differences.
+    """p of Wilcoxon's signed-rank test with Pratt's zeros, against a median of zero; exact, even
+    with ties, up to `MOST_EXACT` differences.
 
     scipy's test is exact with ties only up to 13 differences, and takes a second for that.
     """
@@ -37,11 +40,15 @@ def signed_rank_test(difference: np.ndarray) -> float:
     for rank in ranks[difference != 0]:
         signs = np.pad(signs, (0, rank)) + np.pad(signs, (rank, 0))
     positive = ranks[difference > 0].sum()
-    return min(1.0, 2 * float(min(signs[: positive + 1].sum(), signs[positive:].sum()) / signs.sum()))
+    return min(
+        1.0, 2 * float(min(signs[: positive + 1].sum(), signs[positive:].sum()) / signs.sum())
+    )
 
 
 def wins(group: np.ndarray, other: np.ndarray) -> float:
     """Share of all pairs in which the first group's value is higher, ties counted half."""
     ordered = np.sort(other)
-    above, at_least = (np.searchsorted(ordered, group, side=side).sum() for side in ("left", "right"))
+    above, at_least = (
+        np.searchsorted(ordered, group, side=side).sum() for side in ("left", "right")
+    )
     return float((above + at_least) / 2 / len(group) / len(other))

@@ -9,21 +9,32 @@ from bezierplan.schema.model import one_or_list
 
 
 def variants(claim: Claim) -> list[dict[str, Any]]:
-    """Every combination of the values of a claim's variants, column -> value; the first one is primary."""
-    return [dict(zip(claim.variants, values)) for values in itertools.product(*claim.variants.values())]
+    """Every combination of the values of a claim's variants, column -> value; the first one is
+    primary.
+    """
+    return [
+        dict(zip(claim.variants, values)) for values in itertools.product(*claim.variants.values())
+    ]
 
 
-def in_variant(checks: list[Check], first: dict[str, Any], assignment: dict[str, Any]) -> list[Check]:
-    """The checks with the values of an assignment instead of the first ones, wherever a check names those.
+def in_variant(
+    checks: list[Check], first: dict[str, Any], assignment: dict[str, Any]
+) -> list[Check]:
+    """The checks with the values of an assignment instead of the first ones, wherever a check names
+    those.
 
-    Lists are replaced member by member. A column whose first value no check names becomes one more condition of `where`.
+    Lists are replaced member by member. A column whose first value no check names becomes one more
+    condition of `where`.
     """
     for column, chosen in assignment.items():
         pairs = dict(zip(one_or_list(first[column]), one_or_list(chosen), strict=True))
         if any(_names(check, column) & set(pairs) for check in checks):
             checks = [_exchanged(check, column, pairs) for check in checks]
         else:
-            checks = [check.but(where=check.where | {column: chosen}) if has_runs(check) else check for check in checks]
+            checks = [
+                check.but(where=check.where | {column: chosen}) if has_runs(check) else check
+                for check in checks
+            ]
     return checks
 
 
@@ -48,7 +59,11 @@ def _names(check: Check, column: str) -> set:
 
 
 def _flat(values: Any) -> list:
-    return [value for each in values for value in _flat(each)] if isinstance(values, list) else [values]
+    return (
+        [value for each in values for value in _flat(each)]
+        if isinstance(values, list)
+        else [values]
+    )
 
 
 def _exchanged(check: Check, column: str, pairs: dict) -> Check:
@@ -59,11 +74,17 @@ def _exchanged(check: Check, column: str, pairs: dict) -> Check:
 
 
 def _replaced(values: Any, pairs: dict) -> Any:
-    return [_replaced(value, pairs) for value in values] if isinstance(values, list) else pairs.get(values, values)
+    return (
+        [_replaced(value, pairs) for value in values]
+        if isinstance(values, list)
+        else pairs.get(values, values)
+    )
 
 
 def with_work(check: Check) -> list[Check]:
-    """A check of seconds that names counted work, split into a primary check of the work and a secondary one of the seconds."""
+    """A check of seconds that names counted work, split into a primary check of the work and a
+    secondary one of the seconds.
+    """
     if not isinstance(check, OfRuns) or check.counted_work is None:
         return [check]
     return [check.of_work(), check.reported()]

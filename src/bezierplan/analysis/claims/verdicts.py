@@ -1,21 +1,29 @@
-"""From the comparisons of a claim to marks, to one verdict, and to words that say where the claim holds.
+"""From the comparisons of a claim to marks, to one verdict, and to words that say where the claim
+holds.
 
-A comparison has two marks, one from its own p and one from its p within the family: all comparisons of a claim's primary checks in one
-variant. The procedure is a standard one at each step:
+A comparison has two marks, one from its own p and one from its p within the family: all comparisons
+of a claim's primary checks in one variant. The procedure is a standard one at each step:
 
-- All comparisons have to hold: the sentence is supported if every comparison is `+` on its own. This is an intersection-union test, which
-  needs no correction (Berger 1982, Technometrics 24, 295). Everything else uses the p of the family.
-- All together: as above, but the sentence is one, such as that Singer is the best of eight maps. It is contradicted by one comparison that
-  is `-` in the family, or one that is `0` beside others that are `+`; without either and with a `0`, there is no effect.
-- Any comparison may hold: the sentence is supported if one is `+` in the family, and contradicted if every one is `-` on its own.
-- The family is corrected by Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57, 289). It finds something exactly when Simes' global test
-  rejects "no effect anywhere" (1986, Biometrika 73, 751), so at most 5 % of sentences without any effect get a mark other than `0` and `?`.
-  Comparisons that share a method are positively dependent, which the procedure allows (Benjamini and Yekutieli 2001, Ann. Stat. 29,
-  1165). The least p of ten pairs is 0.002: Holm's correction over 30 comparisons can never bring it below 0.05; this one can.
-- In addition to p, a `+` or `-` needs an effect as large as the margin (Goodman, Spruill and Komaroff 2019, Am. Stat. 73, 168).
-- Comparisons that a check takes together are one comparison in the family: `+` by the intersection-union test, `-` by Bonferroni within
-  it (`conjunction`).
-- A `0` needs an interval within the margin (two one-sided tests, Schuirmann 1987, J. Pharmacokinet. Biopharm. 15, 657).
+- All comparisons have to hold: the sentence is supported if every comparison is `+` on its own.
+  This is an intersection-union test, which needs no correction (Berger 1982, Technometrics 24,
+  295). Everything else uses the p of the family.
+- All together: as above, but the sentence is one, such as that Singer is the best of eight maps. It
+  is contradicted by one comparison that is `-` in the family, or one that is `0` beside others that
+  are `+`; without either and with a `0`, there is no effect.
+- Any comparison may hold: the sentence is supported if one is `+` in the family, and contradicted
+  if every one is `-` on its own.
+- The family is corrected by Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57, 289). It finds
+  something exactly when Simes' global test rejects "no effect anywhere" (1986, Biometrika 73, 751),
+  so at most 5 % of sentences without any effect get a mark other than `0` and `?`. Comparisons that
+  share a method are positively dependent, which the procedure allows (Benjamini and Yekutieli 2001,
+  Ann. Stat. 29, 1165). The least p of ten pairs is 0.002: Holm's correction over 30 comparisons can
+  never bring it below 0.05; this one can.
+- In addition to p, a `+` or `-` needs an effect as large as the margin (Goodman, Spruill and
+  Komaroff 2019, Am. Stat. 73, 168).
+- Comparisons that a check takes together are one comparison in the family: `+` by the
+  intersection-union test, `-` by Bonferroni within it (`conjunction`).
+- A `0` needs an interval within the margin (two one-sided tests, Schuirmann 1987, J. Pharmacokinet.
+  Biopharm. 15, 657).
 """
 
 import math
@@ -27,9 +35,11 @@ import numpy as np
 from bezierplan.analysis.claims.effects import ALPHA, Finding
 
 VERDICTS = ("supported", "partly", "contradicted", "no effect", "undecided", "untestable")
-# Least share of all comparisons that must be decided; if no decided one speaks against the claim, the least share that must hold.
+# Least share of all comparisons that must be decided; if no decided one speaks against the claim,
+# the least share that must hold.
 DECIDED, HOLDING = 0.5, 0.75
-# Up to this many names are listed, otherwise only counted. Up to this many mixed groups are described one by one.
+# Up to this many names are listed, otherwise only counted. Up to this many mixed groups are
+# described one by one.
 MOST_LISTED, MOST_MIXED = 4, 3
 # Number of factors by which comparisons are split.
 DEPTH = 2
@@ -52,10 +62,12 @@ def mark(finding: Finding, p: float) -> str:
 
 
 def conjunction(findings: Sequence[Finding]) -> tuple[Finding, int]:
-    """The finding that all of some (at least one) hold together, and the number of the decisive one, whose effect it has.
+    """The finding that all of some (at least one) hold together, and the number of the decisive
+    one, whose effect it has.
 
-    It holds as surely as the least sure of them (intersection-union), and fails if the surest contrary one does, corrected by Bonferroni
-    for their number. It is negligible if one of them is, since the sentence asks for a difference in each.
+    It holds as surely as the least sure of them (intersection-union), and fails if the surest
+    contrary one does, corrected by Bonferroni for their number. It is negligible if one of them is,
+    since the sentence asks for a difference in each.
     """
     tested = [_as_tested(each) for each in findings]
     against = [number for number, each in enumerate(tested) if each.toward < 0]
@@ -81,8 +93,8 @@ def _as_tested(finding: Finding) -> Finding:
 
 
 def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
-    """The verdict on a claim that holds if `all` or `any` comparisons do, or all `together`, from their marks alone and in the family (at
-    least one).
+    """The verdict on a claim that holds if `all` or `any` comparisons do, or all `together`, from
+    their marks alone and in the family (at least one).
     """
     marks = set(together)
     if holds == "together":
@@ -90,7 +102,9 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
     if set(alone) == {"+"} or (holds == "any" and "+" in marks):
         return "supported"
     if holds == "any":
-        return "contradicted" if set(alone) == {"-"} else "undecided" if "?" in marks else "no effect"
+        return (
+            "contradicted" if set(alone) == {"-"} else "undecided" if "?" in marks else "no effect"
+        )
     if "+" in marks:
         return _partly(together)
     if "-" in marks:
@@ -99,7 +113,9 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
 
 
 def _as_one(alone: set[str], together: set[str]) -> str:
-    """The verdict on a sentence that fails as soon as one of its comparisons does: the best of eight is better than each of the others."""
+    """The verdict on a sentence that fails as soon as one of its comparisons does: the best of
+    eight is better than each of the others.
+    """
     if alone == {"+"}:
         return "supported"
     if "-" in together:
@@ -111,7 +127,8 @@ def _as_one(alone: set[str], together: set[str]) -> str:
 
 def _partly(marks: Sequence[str]) -> str:
     decided = [mark for mark in marks if mark != "?"]
-    # Where all that is decided holds, the open comparisons may all hold as well: `partly` says that some do not.
+    # Where all that is decided holds, the open comparisons may all hold as well: `partly` says that
+    # some do not.
     least = HOLDING if set(decided) == {"+"} else DECIDED
     return "partly" if len(decided) >= least * len(marks) else "undecided"
 
@@ -120,7 +137,9 @@ def _partly(marks: Sequence[str]) -> str:
 
 
 class Marked(NamedTuple):
-    """A comparison for its description in words: factor -> value (`against`, `group`, `in`, columns), and its mark."""
+    """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
+    columns), and its mark.
+    """
 
     factors: Mapping[str, Any]
     mark: str
@@ -129,9 +148,10 @@ class Marked(NamedTuple):
 def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> str:
     """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
 
-    The comparisons are split by the factor that best separates those that hold from those that do not; mixed groups are split again by
-    another factor. Numbers in brackets say how many of the remaining ones hold.
-    labels: name -> how it is printed. Example: `against 5 of 7: all but Circle and Sinusoidal`.
+    The comparisons are split by the factor that best separates those that hold from those that do
+    not; mixed groups are split again by another factor. Numbers in brackets say how many of the
+    remaining ones hold. labels: name -> how it is printed. Example: `against 5 of 7: all but Circle
+    and Sinusoidal`.
     """
     wanted = "+" if any(each.mark == "+" for each in comparisons) else "-"
     holding = [each.mark == wanted for each in comparisons]
@@ -143,7 +163,9 @@ def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> 
     return words + (f"; undecided in {unknown} of {len(comparisons)}" if unknown else "")
 
 
-def _described(comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, str], depth: int) -> str:
+def _described(
+    comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, str], depth: int
+) -> str:
     factor = _best_factor(comparisons, wanted)
     if factor is None or not depth:
         return f"({sum(each.mark == wanted for each in comparisons)} of {len(comparisons)})"
@@ -151,20 +173,37 @@ def _described(comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, 
     for each in comparisons:
         parts.setdefault(each.factors[factor], []).append(each)
     full = [value for value, part in parts.items() if all(each.mark == wanted for each in part)]
-    mixed = [value for value, part in parts.items() if value not in full and any(each.mark == wanted for each in part)]
+    mixed = [
+        value
+        for value, part in parts.items()
+        if value not in full and any(each.mark == wanted for each in part)
+    ]
     if len(mixed) > MOST_MIXED:
-        counts = [f"{_name(value, labels)} {sum(e.mark == wanted for e in parts[value])} of {len(parts[value])}" for value in parts]
+        counts = [
+            f"{_name(value, labels)} {sum(e.mark == wanted for e in parts[value])} of "
+            f"{len(parts[value])}"
+            for value in parts
+        ]
         return f"{_before(factor)}{', '.join(counts)}"
     words = [_chosen(factor, full, list(parts), labels)] if full else []
     for value in mixed:
-        words.append(f"{_before(factor)}{_name(value, labels)} {_described(parts[value], wanted, labels, depth - 1)}")
+        words.append(
+            f"{_before(factor)}{_name(value, labels)} "
+            f"{_described(parts[value], wanted, labels, depth - 1)}"
+        )
     return ("; " if depth == DEPTH else " and ").join(words)
 
 
 def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
-    """The factor of all comparisons with the least mixed values (Gini impurity), the first among equals; None if none has two values."""
+    """The factor of all comparisons with the least mixed values (Gini impurity), the first among
+    equals; None if none has two values.
+    """
     best, least = None, np.inf
-    for factor in [factor for factor in comparisons[0].factors if all(factor in each.factors for each in comparisons)]:
+    for factor in [
+        factor
+        for factor in comparisons[0].factors
+        if all(factor in each.factors for each in comparisons)
+    ]:
         parts: dict[Any, list[bool]] = {}
         for each in comparisons:
             parts.setdefault(each.factors[factor], []).append(each.mark == wanted)

@@ -1,1 +1,3 @@
-"""Code specific to one paper: one file per paper, with its audit and the claims that fit no kind of test."""
+"""Code specific to one paper: one file per paper, with its audit and the claims that fit no kind of
+test.
+"""

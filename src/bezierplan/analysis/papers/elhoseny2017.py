@@ -1,5 +1,5 @@
-"""elhoseny2017: the worked example of the Q statistic, claims about printed numbers, an audit of its tables and text, the obstacle
-radius that fits the printed lengths, and its drawings.
+"""elhoseny2017: the worked example of the Q statistic, claims about printed numbers, an audit of
+its tables and text, the obstacle radius that fits the printed lengths, and its drawings.
 
 Numbers of equations, sections, tables and figures are the paper's.
 """
@@ -30,25 +30,43 @@ if TYPE_CHECKING:
 
 def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
     """Values in the text, by quantity; a fraction stands for its value."""
-    return {row.quantity: float(Fraction(str(row.value))) for row in published["text_values"].itertuples()}
+    return {
+        row.quantity: float(Fraction(str(row.value)))
+        for row in published["text_values"].itertuples()
+    }
 
 
 def solutions(published: dict[str, pd.DataFrame]) -> dict[str, np.ndarray]:
     """Table 1: the genes (10,) of each solution."""
-    return {name: rows.sort_values("gene")["value"].to_numpy() for name, rows in published["table1"].groupby("solution")}
+    return {
+        name: rows.sort_values("gene")["value"].to_numpy()
+        for name, rows in published["table1"].groupby("solution")
+    }
 
 
 def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
     """Section 3.3: the number of genes with each pair of values in one solution and the other."""
-    return {f"N{a}{b}": int(((one == a) & (other == b)).sum()) for a, b in ((1, 1), (0, 0), (1, 0), (0, 1))}
+    return {
+        f"N{a}{b}": int(((one == a) & (other == b)).sum())
+        for a, b in ((1, 1), (0, 0), (1, 0), (0, 1))
+    }
 
 
 def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Table 1 and derived quantities: genes of the solutions, counts and Q (equation 10) of their pairs, and the mean Q."""
+    """Table 1 and derived quantities: genes of the solutions, counts and Q (equation 10) of their
+    pairs, and the mean Q.
+    """
     genes = solutions(published)
-    rows = [{"solutions": name, **{f"gene {gene}": value for gene, value in enumerate(values, 1)}} for name, values in genes.items()]
+    rows = [
+        {"solutions": name, **{f"gene {gene}": value for gene, value in enumerate(values, 1)}}
+        for name, values in genes.items()
+    ]
     pairs = [
-        {"solutions": f"{one}, {other}", **counts(genes[one], genes[other]), "Q": q_of_rows(genes[one], genes[other])}
+        {
+            "solutions": f"{one}, {other}",
+            **counts(genes[one], genes[other]),
+            "Q": q_of_rows(genes[one], genes[other]),
+        }
         for one, other in itertools.combinations(genes, 2)
     ]
     mean = {"solutions": "mean", "Q": np.mean([pair["Q"] for pair in pairs])}
@@ -57,10 +75,17 @@ def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return table.astype(dict.fromkeys(whole, "Int64")).round({"Q": 4})
 
 
-def q_example(check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
-    """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest difference from a printed value."""
+def q_example(
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, None, int]:
+    """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest
+    difference from a printed value.
+    """
     genes, printed = solutions(published), said(published)
-    found = {f"Q of {one} and {other}": q_of_rows(genes[one], genes[other]) for one, other in itertools.combinations(genes, 2)}
+    found = {
+        f"Q of {one} and {other}": q_of_rows(genes[one], genes[other])
+        for one, other in itertools.combinations(genes, 2)
+    }
     mean = float(np.mean(list(found.values())))
     differences = [abs(q - printed[pair]) for pair, q in found.items()]
     holds = max(differences) < 1e-12 and round(mean, 2) == printed["mean Q"]
@@ -72,9 +97,10 @@ def printed_over_bound(
 ) -> tuple[str, float, None, int]:
     """Claim C23: whether no printed length of a rival is larger than such fields explain.
 
-    A path that never turns back in x or in y counts at most two cells for every cell of the side. Shortest paths among such obstacles do
-    not turn back, so the fields cannot explain a larger printed mean. The effect is the largest printed length over the mean length of
-    the shortest path of cells in our fields; the units are the fields.
+    A path that never turns back in x or in y counts at most two cells for every cell of the side.
+    Shortest paths among such obstacles do not turn back, so the fields cannot explain a larger
+    printed mean. The effect is the largest printed length over the mean length of the shortest path
+    of cells in our fields; the units are the fields.
     """
     ratios, explained, fields = [], [], 0
     for name, table in (("fields100", "table2"), ("fields200", "table3")):
@@ -98,14 +124,15 @@ def fitness_leads(
     genes: int,
     words: list[int],
 ) -> tuple[str, float, tuple[float, float], int]:
-    """Claim C21: whether fitness takes more work than diversity, counted because seconds differ from machine to machine. Raises Untestable
-    where this depends on how the genes are counted.
+    """Claim C21: whether fitness takes more work than diversity, counted because seconds differ
+    from machine to machine. Raises Untestable where this depends on how the genes are counted.
 
-    Fitness (equations 2 and 8): for each chromosome evaluated, every control point weighs on every sample of the curve; all are counted
-    as if they were like the final path. Diversity (equation 10): lines 8 and 12 of Algorithm 2 compare each pair of the pool as many
-    genes together as each of `words` says; the pool holds the population and the valid children of one batch, after line 11 of two.
-    offspring: children of a batch for each chromosome. The effect is the share of fitness in this work with the first of `words`, a mean
-    over runs with its interval.
+    Fitness (equations 2 and 8): for each chromosome evaluated, every control point weighs on every
+    sample of the curve; all are counted as if they were like the final path. Diversity (equation
+    10): lines 8 and 12 of Algorithm 2 compare each pair of the pool as many genes together as each
+    of `words` says; the pool holds the population and the valid children of one batch, after line
+    11 of two. offspring: children of a batch for each chromosome. The effect is the share of
+    fitness in this work with the first of `words`, a mean over runs with its interval.
     """
     shares = []
     for name in check.experiments:
@@ -118,33 +145,58 @@ def fitness_leads(
                 batch = population * offspring * run["valid_share"]
                 pairs = [math.comb(round(population + batches * batch), 2) for batches in (1, 2)]
                 compared = (len(run["history"]) - 1) * pairs[0] + run["extra_batches"] * pairs[1]
-                shares.append([fitness / (fitness + compared * math.ceil(genes / word)) for word in words])
+                shares.append(
+                    [fitness / (fitness + compared * math.ceil(genes / word)) for word in words]
+                )
     if not shares:
         raise Untestable("no run has a path")
     table = np.array(shares)
-    ends = [statistics.interval("mean", own, generator(f"elhoseny2017/C21/{word}")) for word, own in zip(words, table.T, strict=True)]
+    ends = [
+        statistics.interval("mean", own, generator(f"elhoseny2017/C21/{word}"))
+        for word, own in zip(words, table.T, strict=True)
+    ]
     marks = ["+" if low > 0.5 else "-" if high < 0.5 else "?" for low, high in ends]
     if len(set(marks)) > 1:
-        each = ", ".join(f"{share:.2f} if {word} at a time" for word, share in zip(words, table.mean(axis=0), strict=True))
-        raise Untestable(f"the share of fitness in the work depends on how many genes are compared at once: {each}")
+        each = ", ".join(
+            f"{share:.2f} if {word} at a time"
+            for word, share in zip(words, table.mean(axis=0), strict=True)
+        )
+        raise Untestable(
+            f"the share of fitness in the work depends on how many genes are compared at once: "
+            f"{each}"
+        )
     return marks[0], float(table[:, 0].mean()), ends[0], len(table)
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     """Printed numbers that contradict the text, other tables or the rule for counting lengths.
 
-    A straight diagonal counts 1.5 cells per cell of the side, the minimum for a path between opposite corners; a path that never turns
-    back counts at most 2. Sentences of Section 4.6 are checked against the tables: PRM the longest, the proposed method cheaper than all
-    others in all cases. Two tables print times for methods of the same name. Section 3.3.1 counts pairs of its example, in Section 3.3 eta
-    decreases linearly to 0 and then accepts more, and in Section 2.2.2 any mutation leaves the subspace of a crossover.
+    A straight diagonal counts 1.5 cells per cell of the side, the minimum for a path between
+    opposite corners; a path that never turns back counts at most 2. Sentences of Section 4.6 are
+    checked against the tables: PRM the longest, the proposed method cheaper than all others in all
+    cases. Two tables print times for methods of the same name. Section 3.3.1 counts pairs of its
+    example, in Section 3.3 eta decreases linearly to 0 and then accepts more, and in Section 2.2.2
+    any mutation leaves the subspace of a crossover.
     """
     rows = []
     printed = said(published)
     for table, side in _sides(published).items():
         cells = published[table]
         for row in cells.itertuples():
-            rule = f"no path between opposite corners counts less than {DIAGONAL:g} cells for each of the side"
-            rows.append(_row(table, _place(row), rule, row.value, DIAGONAL * side, row.value >= DIAGONAL * side))
+            rule = (
+                f"no path between opposite corners counts less than {DIAGONAL:g} cells for "
+                f"each of the side"
+            )
+            rows.append(
+                _row(
+                    table,
+                    _place(row),
+                    rule,
+                    row.value,
+                    DIAGONAL * side,
+                    row.value >= DIAGONAL * side,
+                )
+            )
             rule = "a path that never turns back counts at most 2 cells for each of the side"
             rows.append(_row(table, _place(row), rule, row.value, 2 * side, row.value <= 2 * side))
         for (route, obstacles), column in cells.groupby(["route", "obstacles"]):
@@ -152,48 +204,135 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             cell = f"route={route}, obstacles={obstacles}"
             others = lengths.drop("prm").max()
             rule = "the text has PRM the longest"
-            rows.append(_row(table, f"{cell}, method=prm", rule, lengths["prm"], others, lengths["prm"] > others))
+            rows.append(
+                _row(
+                    table,
+                    f"{cell}, method=prm",
+                    rule,
+                    lengths["prm"],
+                    others,
+                    lengths["prm"] > others,
+                )
+            )
             least = lengths.drop("mga").min()
             rule = "the text has the proposed method the shortest"
-            rows.append(_row(table, f"{cell}, method=mga", rule, lengths["mga"], least, lengths["mga"] < least))
+            rows.append(
+                _row(
+                    table,
+                    f"{cell}, method=mga",
+                    rule,
+                    lengths["mga"],
+                    least,
+                    lengths["mga"] < least,
+                )
+            )
             if table == "table2":
                 rivals = lengths.drop(["mga", "ga"]).min()
                 rule = "the text has GA second"
-                rows.append(_row(table, f"{cell}, method=ga", rule, lengths["ga"], rivals, lengths["mga"] < lengths["ga"] < rivals))
+                rows.append(
+                    _row(
+                        table,
+                        f"{cell}, method=ga",
+                        rule,
+                        lengths["ga"],
+                        rivals,
+                        lengths["mga"] < lengths["ga"] < rivals,
+                    )
+                )
     means = {
-        name: published[name].query("statistic == 'mean'").set_index(["method", "obstacles"])["value"].sort_index()
+        name: published[name]
+        .query("statistic == 'mean'")
+        .set_index(["method", "obstacles"])["value"]
+        .sort_index()
         for name in ("table5", "table6")
     }
     for table, times in means.items():
         for (method, obstacles), time in times.drop("mga").items():
             ours = times["mga", obstacles]
             rule = "the text has the proposed method cheaper than all others in all cases"
-            rows.append(_row(table, f"method=mga, obstacles={obstacles}, beside {method}", rule, ours, time, ours < time))
+            rows.append(
+                _row(
+                    table,
+                    f"method=mga, obstacles={obstacles}, beside {method}",
+                    rule,
+                    ours,
+                    time,
+                    ours < time,
+                )
+            )
     for obstacles, time in means["table5"]["mga"].items():
         later = means["table6"]["mga", obstacles]
         rule = "Tables 5 and 6 print the same time of the proposed method"
-        rows.append(_row("table5", f"method=mga, obstacles={obstacles}", rule, time, later, time == later))
+        rows.append(
+            _row("table5", f"method=mga, obstacles={obstacles}", rule, time, later, time == later)
+        )
         time, later = means["table5"]["mga_plain", obstacles], means["table6"]["ga", obstacles]
         rule = "Tables 5 and 6 print the same time of what both call GA"
-        rows.append(_row("table5", f"method=GA, obstacles={obstacles}", rule, time, later, time == later))
+        rows.append(
+            _row("table5", f"method=GA, obstacles={obstacles}", rule, time, later, time == later)
+        )
     genes = solutions(published)
     for name, found in counts(genes["S1"], genes["S2"]).items():
         number = int(printed[f"{name} of S1 and S2"])
-        rows.append(_row("table1", f"S1, S2: {name}", "the text counts as it defines", number, found, number == found))
-    q = q_statistic(*(int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")))
+        rows.append(
+            _row(
+                "table1",
+                f"S1, S2: {name}",
+                "the text counts as it defines",
+                number,
+                found,
+                number == found,
+            )
+        )
+    q = q_statistic(
+        *(int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01"))
+    )
     of_text = printed["Q of S1 and S2"]
-    rows.append(_row("table1", "S1, S2: Q", "Q of the counts in the text is the printed one", of_text, q, q == of_text))
+    rows.append(
+        _row(
+            "table1",
+            "S1, S2: Q",
+            "Q of the counts in the text is the printed one",
+            of_text,
+            q,
+            q == of_text,
+        )
+    )
     eta, decay, iterations = printed["eta"], printed["decay of eta"], int(printed["iterations"])
     last = eta * decay**iterations
-    rows.append(_row("text", "3.3, 4.2.2", f"eta decreases to 0 over the {iterations} iterations", 0.0, round(last, 4), last < 0.005))
+    rows.append(
+        _row(
+            "text",
+            "3.3, 4.2.2",
+            f"eta decreases to 0 over the {iterations} iterations",
+            0.0,
+            round(last, 4),
+            last < 0.005,
+        )
+    )
     half = eta * (1 - decay ** (iterations // 2))
     rule = "eta decreases linearly: half of the way in half of the iterations"
-    rows.append(_row("text", "3.3, 4.2.2", rule, 0.5, round(half / (eta - last), 4), abs(half / (eta - last) - 0.5) < 0.005))
-    rule = "3.3: as eta falls, more similar solutions are accepted, though theirs is a Q of at most eta: eta after an iteration"
+    rows.append(
+        _row(
+            "text",
+            "3.3, 4.2.2",
+            rule,
+            0.5,
+            round(half / (eta - last), 4),
+            abs(half / (eta - last) - 0.5) < 0.005,
+        )
+    )
+    rule = (
+        "3.3: as eta falls, more similar solutions are accepted, though theirs is a Q of at "
+        "most eta: eta after an iteration"
+    )
     rows.append(_row("text", "3.3", rule, eta * decay, eta, eta * decay >= eta))
     # A crossover keeps the digits that both parents have.
     digits, shared = int(printed["digits of A"]), int(printed["digits of A that B has too"])
-    rule = "2.2.2: a change of any digit of A leaves the subspace of its crossover with B: digits of which that is true"
+    rule = (
+        "2.2.2: a change of any digit of A leaves the subspace of its crossover with B: digits "
+        "of which that is true"
+    )
     rows.append(_row("text", "2.2.2", rule, digits, shared, digits == shared))
     # A table of drives would say how fast the obstacles are.
     drives = sum(not {"speed", "moment"}.isdisjoint(table) for table in published.values())
@@ -203,29 +342,59 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
 
 
 def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """Rows of the audit: do the printed lengths of the proposed method grow with the obstacles as the counting rule has it?
+    """Rows of the audit: do the printed lengths of the proposed method grow with the obstacles as
+    the counting rule has it?
 
-    A path counts 1.5 cells for each of the side along a free diagonal, else 2, so a mean says how many diagonals were blocked.
+    A path counts 1.5 cells for each of the side along a free diagonal, else 2, so a mean says how
+    many diagonals were blocked.
     """
     from scipy import stats
 
     printed, fields = _printed_lengths(published), int(published["table2"]["n"].iloc[0])
     blocked = fields * (printed["value"] / printed["side"] - DIAGONAL) / (2 - DIAGONAL)
     whole = int(np.isclose(blocked, blocked.round()).sum())
-    blocked_cells, tried = (each.groupby(printed["obstacles"]).sum() for each in (blocked, 0 * blocked + fields))
+    blocked_cells, tried = (
+        each.groupby(printed["obstacles"]).sum() for each in (blocked, 0 * blocked + fields)
+    )
     radius = radius_errors(published).groupby("radius")["relative_error"].mean().idxmin()
     share = (expected_length(1, radius, blocked_cells.index.to_numpy()) - DIAGONAL) / (2 - DIAGONAL)
-    rule = f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how many of the printed can be such"
+    rule = (
+        f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how "
+        f"many of the printed can be such"
+    )
     rows = [_row("table2, table3", "method=mga", rule, whole, len(printed), whole == len(printed))]
     # The radius is fitted to these lengths.
     freedom = len(blocked_cells) - 1
-    chi_square, limit = ((blocked_cells - tried * share) ** 2 / (tried * share * (1 - share))).sum(), stats.chi2.ppf(0.95, freedom)
-    rule = f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} degrees of freedom) and its limit at 5 %"
-    return [*rows, _row("table2, table3", "method=mga", rule, round(chi_square, 1), round(limit, 1), chi_square <= limit)]
+    chi_square, limit = (
+        ((blocked_cells - tried * share) ** 2 / (tried * share * (1 - share))).sum(),
+        stats.chi2.ppf(0.95, freedom),
+    )
+    rule = (
+        f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} "
+        f"degrees of freedom) and its limit at 5 %"
+    )
+    return [
+        *rows,
+        _row(
+            "table2, table3",
+            "method=mga",
+            rule,
+            round(chi_square, 1),
+            round(limit, 1),
+            chi_square <= limit,
+        ),
+    ]
 
 
 def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {"item": item, "place": place, "rule": rule, "printed": printed, "limit": limit, "consistent": bool(consistent)}
+    return {
+        "item": item,
+        "place": place,
+        "rule": rule,
+        "printed": printed,
+        "limit": limit,
+        "consistent": bool(consistent),
+    }
 
 
 def _place(row: tuple) -> str:
@@ -233,22 +402,35 @@ def _place(row: tuple) -> str:
     return f"route={row.route}, obstacles={row.obstacles}, method={row.method}"
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # The radius of the obstacles, which the paper does not state, inferred from its lengths
 
 
-def memory(*, sides: list[int], side: int, obstacles: list[int], radius: float, clear_ends: float) -> pd.DataFrame:
-    """Memory used by empty fields of several sides, and by one with many obstacles; columns: side, obstacles, held (what is stored),
-    megabytes.
+def memory(
+    *, sides: list[int], side: int, obstacles: list[int], radius: float, clear_ends: float
+) -> pd.DataFrame:
+    """Memory used by empty fields of several sides, and by one with many obstacles; columns: side,
+    obstacles, held (what is stored), megabytes.
 
-    All planners share the occupied cells; the certified check stores them again, with all edges and corners of cells.
+    All planners share the occupied cells; the certified check stores them again, with all edges and
+    corners of cells.
 
-    sides: of the empty fields. side, obstacles, radius and clear_ends: of the others, as in a `random_field`.
+    sides: of the empty fields. side, obstacles, radius and clear_ends: of the others, as in a
+    `random_field`.
     """
-    empty = [(each, 0, Circles((0.0, each, 0.0, each), np.empty((0, 2)), np.empty(0), "cell")) for each in sides]
+    empty = [
+        (each, 0, Circles((0.0, each, 0.0, each), np.empty((0, 2)), np.empty(0), "cell"))
+        for each in sides
+    ]
     fields = [(each, count, random_field.from_circles(circles)) for each, count, circles in empty]
     for count in obstacles:
-        described = {"side": side, "start": [0, 0], "target": [side, side], "obstacles": count, "layout": 0}
+        described = {
+            "side": side,
+            "start": [0, 0],
+            "target": [side, side],
+            "obstacles": count,
+            "layout": 0,
+        }
         gravel = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
         fields.append((side, count, random_field.field(gravel, described, "elhoseny2017/gravel")))
     rows = []
@@ -266,35 +448,41 @@ def _sides(published: dict[str, pd.DataFrame]) -> dict[str, int]:
 
 
 def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
-    """Mean of `cells4` of paths between opposite corners that never turn back, in cells; radius: a share of the side.
+    """Mean of `cells4` of paths between opposite corners that never turn back, in cells; radius: a
+    share of the side.
 
-    Such a path counts 2 cells per cell of the side, but 1.5 along a free diagonal. A circle with its centre uniform in the square leaves
-    the diagonal free with probability (1 - sqrt(2) radius)^2: the share of the square farther from the diagonal than the radius.
+    Such a path counts 2 cells per cell of the side, but 1.5 along a free diagonal. A circle with
+    its centre uniform in the square leaves the diagonal free with probability (1 - sqrt(2)
+    radius)^2: the share of the square farther from the diagonal than the radius.
     """
     free = (1 - np.sqrt(2) * radius) ** (2 * np.asarray(obstacles))
     return side * (2 - (2 - DIAGONAL) * free)
 
 
 def _printed_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value, in cells."""
+    """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value,
+    in cells.
+    """
     tables = [published[table].assign(side=side) for table, side in _sides(published).items()]
     rows = pd.concat(tables, ignore_index=True)
     return rows.loc[rows["method"] == "mga", ["side", "route", "obstacles", "value"]]
 
 
 def _errors(printed: pd.DataFrame, side: int, radius: float) -> tuple[float, float]:
-    """Mean absolute difference between printed and expected lengths for a side, in cells, and as a share of their mean."""
+    """Mean absolute difference between printed and expected lengths for a side, in cells, and as a
+    share of their mean.
+    """
     own = printed[printed["side"] == side]
     error = float((own["value"] - expected_length(side, radius, own["obstacles"])).abs().mean())
     return error, error / own["value"].mean()
 
 
 def radius_fit(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
-    """The printed lengths of the proposed method, those expected for several obstacle radii (shares of the side), and the errors of the
-    latter.
+    """The printed lengths of the proposed method, those expected for several obstacle radii (shares
+    of the side), and the errors of the latter.
 
-    The last rows have the radius with the least error (relative to the mean length, averaged over both sides), in steps of a thousandth
-    of the side.
+    The last rows have the radius with the least error (relative to the mean length, averaged over
+    both sides), in steps of a thousandth of the side.
     """
     printed = _printed_lengths(published)
     errors = radius_errors(published).groupby("radius")["relative_error"].mean()
@@ -303,24 +491,53 @@ def radius_fit(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.
     rows = []
     for (side, route), own in printed.groupby(["side", "route"]):
         lengths = own.set_index("obstacles")["value"]
-        rows.append({"lengths": f"printed, {route}", "side": side, **{f"{n} obstacles": lengths[n] for n in numbers}})
+        rows.append(
+            {
+                "lengths": f"printed, {route}",
+                "side": side,
+                **{f"{n} obstacles": lengths[n] for n in numbers},
+            }
+        )
     for name, radius in [("expected", radius) for radius in radii] + [("least error", best)]:
         for side in _sides(published).values():
             cells, share = _errors(printed, side, radius)
-            expected = {f"{n} obstacles": round(expected_length(side, radius, n), 1) for n in numbers}
-            error = {"mean error (cell)": round(cells, 2), "mean error / mean length": round(share, 4)}
-            rows.append({"lengths": name, "radius / side": radius, "side": side, **expected, **error})
-    columns = ["lengths", "radius / side", "side", *(f"{n} obstacles" for n in numbers), "mean error (cell)", "mean error / mean length"]
+            expected = {
+                f"{n} obstacles": round(expected_length(side, radius, n), 1) for n in numbers
+            }
+            error = {
+                "mean error (cell)": round(cells, 2),
+                "mean error / mean length": round(share, 4),
+            }
+            rows.append(
+                {"lengths": name, "radius / side": radius, "side": side, **expected, **error}
+            )
+    columns = [
+        "lengths",
+        "radius / side",
+        "side",
+        *(f"{n} obstacles" for n in numbers),
+        "mean error (cell)",
+        "mean error / mean length",
+    ]
     return pd.DataFrame(rows)[columns]
 
 
 def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
-    """Printed and expected lengths against the number of obstacles; columns: side, lengths (which), obstacles, cells4 (in cells)."""
+    """Printed and expected lengths against the number of obstacles; columns: side, lengths (which),
+    obstacles, cells4 (in cells).
+    """
     printed = _printed_lengths(published).rename(columns={"value": "cells4"})
     printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
     counts = np.arange(printed["obstacles"].min(), printed["obstacles"].max() + 1)
     expected = [
-        pd.DataFrame({"side": side, "lengths": f"R = {radius:g} N", "obstacles": counts, "cells4": expected_length(side, radius, counts)})
+        pd.DataFrame(
+            {
+                "side": side,
+                "lengths": f"R = {radius:g} N",
+                "obstacles": counts,
+                "cells4": expected_length(side, radius, counts),
+            }
+        )
         for side in _sides(published).values()
         for radius in radii
     ]
@@ -328,67 +545,111 @@ def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) ->
 
 
 def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """The error of the expected lengths against the radius; columns: radius (a share of the side), side, relative_error."""
+    """The error of the expected lengths against the radius; columns: radius (a share of the side),
+    side, relative_error.
+    """
     printed = _printed_lengths(published)
     return pd.DataFrame(
         [
-            {"radius": thousandths / 1000, "side": side, "relative_error": _errors(printed, side, thousandths / 1000)[1]}
+            {
+                "radius": thousandths / 1000,
+                "side": side,
+                "relative_error": _errors(printed, side, thousandths / 1000)[1],
+            }
             for side in _sides(published).values()
             for thousandths in range(5, 81)
         ]
     )
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Drawings
 
 
 def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
-    """Figure 1: marks of the sixteen four-digit chromosomes, once with the crossover of two parents, and once with the mutation of the
-    first; column operator.
+    """Figure 1: marks of the sixteen four-digit chromosomes, once with the crossover of two
+    parents, and once with the mutation of the first; column operator.
 
-    The first two digits give the row and the last two the column, so that neighbours differ in one digit.
+    The first two digits give the row and the last two the column, so that neighbours differ in one
+    digit.
     """
     rows, columns = ("10", "00", "01", "11"), ("00", "01", "11", "10")
     at = {row + column: (i, -j) for i, column in enumerate(columns) for j, row in enumerate(rows)}
     first, second = parents
-    crossed = {head[:cut] + tail[cut:] for cut in range(1, 4) for head, tail in ((first, second), (second, first))}
+    crossed = {
+        head[:cut] + tail[cut:]
+        for cut in range(1, 4)
+        for head, tail in ((first, second), (second, first))
+    }
     mutated = {first[:digit] + "10"[int(first[digit])] + first[digit + 1 :] for digit in range(4)}
     marks = []
-    for operator, origins, children in (("crossover", parents, crossed), ("mutation", parents[:1], mutated)):
+    for operator, origins, children in (
+        ("crossover", parents, crossed),
+        ("mutation", parents[:1], mutated),
+    ):
         for chromosome, (x, y) in at.items():
-            role = "accent" if chromosome in origins else "muted" if chromosome in children else "none"
+            role = (
+                "accent" if chromosome in origins else "muted" if chromosome in children else "none"
+            )
             label = {"accent": "parent", "muted": "possible child", "none": None}[role]
-            box = {"mark": "cell", "group": chromosome, "role": role, "x": x, "y": y, "width": 0.92, "height": 0.92, "label": label}
+            box = {
+                "mark": "cell",
+                "group": chromosome,
+                "role": role,
+                "x": x,
+                "y": y,
+                "width": 0.92,
+                "height": 0.92,
+                "label": label,
+            }
             marks.append(box | {"operator": operator})
         words = {"mark": "text", "role": "note", "operator": operator}
-        marks += [words | {"x": x, "y": y, "text": " ".join(chromosome)} for chromosome, (x, y) in at.items()]
+        marks += [
+            words | {"x": x, "y": y, "text": " ".join(chromosome)}
+            for chromosome, (x, y) in at.items()
+        ]
     x, y = at[first]
     for child in sorted(mutated):
         towards = np.subtract(at[child], (x, y))
         arrow = {"mark": "arrow", "role": "second", "group": f"to {child}", "operator": "mutation"}
         tail, head = ((x, y) + share * towards for share in (0.3, 0.68))
         marks += [arrow | {"x": tail[0], "y": tail[1]}, arrow | {"x": head[0], "y": head[1]}]
-    frame = np.add([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[first][1]))
-    border = {"mark": "line", "role": "first", "group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
+    frame = np.add(
+        [[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[first][1])
+    )
+    border = {
+        "mark": "line",
+        "role": "first",
+        "group": "subspace",
+        "label": "subspace 00 of the parents",
+        "operator": "crossover",
+    }
     return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
 
 
 def chromosome(*, least_distance: float) -> pd.DataFrame:
-    """Figure 3: marks of a field of 25 places, the curve of a valid chromosome in it, and below it the chromosome's genes.
+    """Figure 3: marks of a field of 25 places, the curve of a valid chromosome in it, and below it
+    the chromosome's genes.
 
-    Every place is a gene; its number grows by one upwards, and by five to the right. The paper gives neither its field nor its points: here
-    one circle covers the central place, and the chromosome is the first valid one among random ones with two control points.
-    least_distance: the smallest allowed distance between control points.
+    Every place is a gene; its number grows by one upwards, and by five to the right. The paper
+    gives neither its field nor its points: here one circle covers the central place, and the
+    chromosome is the first valid one among random ones with two control points. least_distance: the
+    smallest allowed distance between control points.
     """
     side, number = 4, 2
-    grid = random_field.from_circles(Circles((0, side, 0, side), np.array([[2.0, 2.0]]), np.array([0.8]), "cell"))
+    grid = random_field.from_circles(
+        Circles((0, side, 0, side), np.array([[2.0, 2.0]]), np.array([0.8]), "cell")
+    )
     start, target = (0, 0), (side, side)
     rng = np.random.default_rng(0)
     path, points = None, []
     while path is None or not is_free(path, grid):
         drawn = verdicts(rng.integers(0, side + 1, (number, 2)), grid, least_distance)
-        points = [each.point for each in drawn if each.word == "accepted" and each.point not in (start, target)]
+        points = [
+            each.point
+            for each in drawn
+            if each.word == "accepted" and each.point not in (start, target)
+        ]
         path = curve_through(points, start, target) if len(points) == number else None
     curve = shapely.LineString(grid.in_units(np.column_stack(samples(path, grid))))
     marks = []
@@ -398,12 +659,21 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         value = -1 if grid.occupied[y, x] else int((x, y) in points)
         role = {-1: "obstacle", 1: "accent", 0: "none"}[value]
         label = {-1: "obstacle, -1", 1: "control point, 1", 0: None}[value]
-        box = {"mark": "cell", "group": f"gene {gene}", "role": role, "label": label, "gene": gene, "value": value}
+        box = {
+            "mark": "cell",
+            "group": f"gene {gene}",
+            "role": role,
+            "label": label,
+            "gene": gene,
+            "value": value,
+        }
         marks.append(box | {"x": x, "y": y + top, "width": 1.0, "height": 1.0})
         middle = side / 2 + gene_width * (gene - 12)
         marks.append(box | {"x": middle, "y": 0.0, "width": gene_width, "height": gene_width})
         marks.append(words | {"x": middle, "y": 0.0, "text": str(value)})
-        corners = [(x + aside, y + above) for aside, above in itertools.product((0.28, -0.28), (0.3, -0.3))]
+        corners = [
+            (x + aside, y + above) for aside, above in itertools.product((0.28, -0.28), (0.3, -0.3))
+        ]
         a, b = max(corners, key=lambda corner: round(curve.distance(shapely.Point(corner)), 6))
         marks.append(words | {"x": a, "y": b + top, "text": str(gene)})
         if y == 0 or gene == (side + 1) ** 2 - 1:
@@ -411,7 +681,9 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
     line = {"mark": "line", "role": "second", "group": "curve", "label": "Bezier curve"}
     marks += [line | {"x": a, "y": b + top} for a, b in curve.coords]
     for role, (a, b) in (("start", start), ("target", target)):
-        marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": a, "y": b + top})
+        marks.append(
+            {"mark": "dots", "role": role, "group": role, "label": role, "x": a, "y": b + top}
+        )
     return pd.DataFrame(marks)
 
 
@@ -426,25 +698,43 @@ def validation(
     radius: float,
     clear_ends: float,
 ) -> pd.DataFrame:
-    """Figure 4: marks of random points in a field, tested in turn, circles of the least distance around the accepted points, and their
-    curve. Further columns: candidate (its number) and verdict.
+    """Figure 4: marks of random points in a field, tested in turn, circles of the least distance
+    around the accepted points, and their curve. Further columns: candidate (its number) and
+    verdict.
 
-    The random fields and points shown are the first in which each rule rejects a point and the curve is free. points: their number. The
-    arguments from side on describe the field, as in a `random_field`.
+    The random fields and points shown are the first in which each rule rejects a point and the
+    curve is free. points: their number. The arguments from side on describe the field, as in a
+    `random_field`.
     """
     ends = tuple(start), tuple(target)
     workspace = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
     for number in itertools.count():
-        described = {"side": side, "start": ends[0], "target": ends[1], "obstacles": obstacles, "layout": number}
+        described = {
+            "side": side,
+            "start": ends[0],
+            "target": ends[1],
+            "obstacles": obstacles,
+            "layout": number,
+        }
         grid = random_field.field(workspace, described, "elhoseny2017/figure4")
         drawn = np.random.default_rng(number).integers(0, side + 1, (points, 2))
         judged = verdicts(drawn, grid, least_distance)
         path = curve_through([each.point for each in judged if each.word == "accepted"], *ends)
-        if {each.word for each in judged} == {"obstacle", "too near", "accepted"} and is_free(path, grid):
+        if {each.word for each in judged} == {"obstacle", "too near", "accepted"} and is_free(
+            path, grid
+        ):
             break
     angles = np.linspace(0, 2 * math.pi, 61)
     marks = [
-        {"mark": "circle", "role": "obstacle", "group": "obstacles", "label": "obstacle", "x": x, "y": y, "radius": reach}
+        {
+            "mark": "circle",
+            "role": "obstacle",
+            "group": "obstacles",
+            "label": "obstacle",
+            "x": x,
+            "y": y,
+            "radius": reach,
+        }
         for (x, y), reach in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
     ]
     looks = {
@@ -454,16 +744,41 @@ def validation(
     }
     for candidate, (point, word) in enumerate(judged, 1):
         if word == "accepted":
-            ring = {"mark": "line", "role": "muted", "group": f"ring {candidate}", "label": f"distance r = {least_distance:g}"}
-            circle = np.array(point) + least_distance * np.column_stack([np.cos(angles), np.sin(angles)])
+            ring = {
+                "mark": "line",
+                "role": "muted",
+                "group": f"ring {candidate}",
+                "label": f"distance r = {least_distance:g}",
+            }
+            circle = np.array(point) + least_distance * np.column_stack(
+                [np.cos(angles), np.sin(angles)]
+            )
             marks += [ring | {"x": x, "y": y} for x, y in circle.tolist()]
     x, y = grid.in_units(np.column_stack(samples(path, grid))).T
-    marks += [{"mark": "line", "role": "third", "group": "curve", "label": "Bezier curve", "x": a, "y": b} for a, b in zip(x, y)]
+    marks += [
+        {"mark": "line", "role": "third", "group": "curve", "label": "Bezier curve", "x": a, "y": b}
+        for a, b in zip(x, y)
+    ]
     for candidate, (point, word) in enumerate(judged, 1):
         role, label = looks[word]
-        dot = {"mark": "dots", "role": role, "group": word, "label": label, "candidate": candidate, "verdict": word}
+        dot = {
+            "mark": "dots",
+            "role": role,
+            "group": word,
+            "label": label,
+            "candidate": candidate,
+            "verdict": word,
+        }
         marks.append(dot | {"x": point[0], "y": point[1]})
-        marks.append({"mark": "text", "role": "note", "x": point[0] - 0.8, "y": point[1] + 0.7, "text": str(candidate)})
+        marks.append(
+            {
+                "mark": "text",
+                "role": "note",
+                "x": point[0] - 0.8,
+                "y": point[1] + 0.7,
+                "text": str(candidate),
+            }
+        )
     for role, (x, y) in zip(("start", "target"), ends, strict=True):
         marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": x, "y": y})
     return pd.DataFrame(marks)

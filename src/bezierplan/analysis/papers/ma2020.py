@@ -1,4 +1,6 @@
-"""ma2020: its drawings, quantities computed from its printed numbers alone, the claim about curvature, and its audit."""
+"""ma2020: its drawings, quantities computed from its printed numbers alone, the claim about
+curvature, and its audit.
+"""
 
 import math
 from typing import TYPE_CHECKING
@@ -18,20 +20,23 @@ if TYPE_CHECKING:
 # Methods that plan on cells.
 LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
 
-# Tolerance, in cells, for matching a length s + d sqrt(2): the paper prints four decimals, with a root that may be rounded to 1.414,
-# and every printed minimum of the four lattice methods is within it.
+# Tolerance, in cells, for matching a length s + d sqrt(2): the paper prints four decimals, with a
+# root that may be rounded to 1.414, and every printed minimum of the four lattice methods is within
+# it.
 LATTICE_TOLERANCE = 0.0045
 
 # A time up to this many times another counts as slightly longer.
 SLIGHTLY = 1.5
 
-# Number of parameters at which the speed of a curve is sampled, and the share of its maximum below which it counts as zero.
+# Number of parameters at which the speed of a curve is sampled, and the share of its maximum below
+# which it counts as zero.
 SPEED_SAMPLES = 20_001
 STILL = 1e-6
 
 
 def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
-    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these corners as control points, and both.
+    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these corners
+    as control points, and both.
 
     points: start, corners and target.
     """
@@ -40,16 +45,25 @@ def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
     corners = _line(zigzag, "second", "path with corners")
     curve = _line(steps, "first", "Bezier curve")
     inner = _dots(zigzag[1:-1], "third", f"corners P1 to P{len(zigzag) - 2}")
-    ends = pd.concat([_dots(zigzag[:1], "start", "start S"), _dots(zigzag[-1:], "target", "target T")])
-    parts = {"corners": [corners, inner, ends], "curve": [curve, inner, ends], "both": [corners, curve, inner, ends]}
-    return pd.concat([pd.concat(marks).assign(drawn=name) for name, marks in parts.items()], ignore_index=True)
+    ends = pd.concat(
+        [_dots(zigzag[:1], "start", "start S"), _dots(zigzag[-1:], "target", "target T")]
+    )
+    parts = {
+        "corners": [corners, inner, ends],
+        "curve": [curve, inner, ends],
+        "both": [corners, curve, inner, ends],
+    }
+    return pd.concat(
+        [pd.concat(marks).assign(drawn=name) for name, marks in parts.items()], ignore_index=True
+    )
 
 
 def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
-    """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after the crossover's tails are swapped.
+    """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after
+    the crossover's tails are swapped.
 
-    parents: cells, counted from 0 as the planner does; they are shown as equation (10) counts, from 1. bits: of a cell number. cut: the
-    number of genes before the cut.
+    parents: cells, counted from 0 as the planner does; they are shown as equation (10) counts, from
+    1. bits: of a cell number. cut: the number of genes before the cut.
     """
     chromosomes = np.array(parents)
     children = chromosomes.copy()
@@ -60,13 +74,33 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
             # A gene keeps the colour of its original chromosome.
             for place, gene in enumerate(row):
                 role = "accent" if gene == chromosomes[0, place] else "muted"
-                box = {"mark": "cell", "role": role, "x": place, "y": height, "width": 0.96, "height": 0.8}
+                box = {
+                    "mark": "cell",
+                    "role": role,
+                    "x": place,
+                    "y": height,
+                    "width": 0.96,
+                    "height": 0.8,
+                }
                 frames.append(
-                    pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene + 1)}]).assign(
-                        drawn=drawn
-                    )
+                    pd.DataFrame(
+                        [
+                            box,
+                            {
+                                "mark": "text",
+                                "role": "note",
+                                "x": place,
+                                "y": height,
+                                "text": str(gene + 1),
+                            },
+                        ]
+                    ).assign(drawn=drawn)
                 )
-        line = _line(np.array([(cut - 0.5, -0.7), (cut - 0.5, 2.0)]), "second", f"cut between genes {cut} and {cut + 1}")
+        line = _line(
+            np.array([(cut - 0.5, -0.7), (cut - 0.5, 2.0)]),
+            "second",
+            f"cut between genes {cut} and {cut + 1}",
+        )
         frames.append(line.assign(drawn=drawn))
     return pd.concat(frames, ignore_index=True)
 
@@ -80,20 +114,38 @@ def _dots(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
 
 
 def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame:
-    return pd.DataFrame({"mark": mark, "group": label, "role": role, "x": points[:, 0], "y": points[:, 1], "label": label})
+    return pd.DataFrame(
+        {
+            "mark": mark,
+            "group": label,
+            "role": role,
+            "x": points[:, 0],
+            "y": points[:, 1],
+            "label": label,
+        }
+    )
 
 
 def drawn_farther(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, method: str, other: str
+    check: "function.Options",
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    method: str,
+    other: str,
 ) -> tuple[str, float, None, int]:
-    """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles than that drawn of another, on every map.
+    """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles
+    than that drawn of another, on every map.
 
-    The effect is the least excess in clearance, the units are the paths. Raises Untestable if a method has no feasible run on a map.
+    The effect is the least excess in clearance, the units are the paths. Raises Untestable if a
+    method has no feasible run on a map.
     """
     experiment = results[check.experiment]
     excess = []
     for _, runs in experiment.runs.groupby("problem"):
-        drawn = [pick(runs[runs["method"] == name], {"lowest": "length"}) for name in (method, other)]
+        drawn = [
+            pick(runs[runs["method"] == name], {"lowest": "length"}) for name in (method, other)
+        ]
         if any(run is None for run in drawn):
             raise Untestable("a method has no feasible run on a map")
         own, beside = obstacle_clearance(pd.DataFrame(drawn), experiment.problems)
@@ -102,12 +154,13 @@ def drawn_farther(
 
 
 def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
-    """Straight and diagonal moves of the 8-connected paths from corner to corner of a map whose length is nearest to a given one.
+    """Straight and diagonal moves of the 8-connected paths from corner to corner of a map whose
+    length is nearest to a given one.
 
     side: cells from start to target, along x and along y.
 
-    The half diagonals from start and to target count as one diagonal move. The number of straight moves is even, and with s straight
-    and d diagonal moves, s + 2 d is at least twice the side.
+    The half diagonals from start and to target count as one diagonal move. The number of straight
+    moves is even, and with s straight and d diagonal moves, s + 2 d is at least twice the side.
     """
     found = []
     for diagonal in range(1, int(length / math.sqrt(2)) + 2):
@@ -119,8 +172,9 @@ def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
 def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """Printed shortest and longest lengths next to the nearest length of an 8-connected path.
 
-    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length, distance (cells), chance (the
-    probability that a random length is as near, over the lattice methods' printed range of this statistic, in whole cells), met.
+    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length,
+    distance (cells), chance (the probability that a random length is as near, over the lattice
+    methods' printed range of this statistic, in whole cells), met.
     """
     side = _side(published)
     lengths = pd.concat([published["table1"], published["table2"]])
@@ -151,7 +205,9 @@ def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def chance_of_lattice(low: float, high: float, tolerance: float, side: int) -> float:
-    """The probability that a length drawn uniformly from an interval is within a tolerance of the length of an 8-connected path."""
+    """The probability that a length drawn uniformly from an interval is within a tolerance of the
+    length of an 8-connected path.
+    """
     diagonal, straight = np.meshgrid(np.arange(1, int(high)), np.arange(0, int(high) + 2, 2))
     lengths = np.sort((straight + diagonal * math.sqrt(2))[straight + 2 * diagonal >= 2 * side])
     starts, ends = np.clip(lengths - tolerance, low, high), np.clip(lengths + tolerance, low, high)
@@ -162,9 +218,11 @@ def chance_of_lattice(low: float, high: float, tolerance: float, side: int) -> f
 def continuous_curvature(
     check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C20: whether every feasible path is one polynomial piece with non-zero speed everywhere, so that its curvature is continuous.
+    """Claim C20: whether every feasible path is one polynomial piece with non-zero speed
+    everywhere, so that its curvature is continuous.
 
-    The effect is the largest jump of curvature at the joints of pieces; a path of one piece has no joints.
+    The effect is the largest jump of curvature at the joints of pieces; a path of one piece has no
+    joints.
     """
     runs = select(results[check.experiment].runs, check.where)
     paths = [path_of(run) for _, run in runs[runs["feasible"].astype(bool)].iterrows()]
@@ -183,9 +241,10 @@ def _least_speed(pieces: np.ndarray) -> float:
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     """Printed numbers that are impossible, or contradict others.
 
-    If the four lattice methods plan on cells, each of their shortest and longest paths has the length of an 8-connected path: all minima
-    do, the maxima do not. No path is shorter than the straight line. Shares of occupied cells are whole numbers of cells. Statements in
-    the text about lengths and times are checked against the tables.
+    If the four lattice methods plan on cells, each of their shortest and longest paths has the
+    length of an 8-connected path: all minima do, the maxima do not. No path is shorter than the
+    straight line. Shares of occupied cells are whole numbers of cells. Statements in the text about
+    lengths and times are checked against the tables.
     """
     tables = {name: published[name] for name in ("table1", "table2")}
     side = _side(published)
@@ -194,34 +253,81 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     for name, table in tables.items():
         lengths = table[table["metric"] == "length"]
         for row in lengths.itertuples():
-            rows.append(_row(name, row, "no path is shorter than the straight line", shortest, row.value >= shortest))
-        for row in lengths[lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")].itertuples():
+            rows.append(
+                _row(
+                    name,
+                    row,
+                    "no path is shorter than the straight line",
+                    shortest,
+                    row.value >= shortest,
+                )
+            )
+        for row in lengths[
+            lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")
+        ].itertuples():
             straight, diagonal = nearest_lattice_length(row.value, side)
             nearest = straight + diagonal * math.sqrt(2)
             rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
-            rows.append(_row(name, row, rule, nearest, abs(row.value - nearest) <= LATTICE_TOLERANCE))
+            rows.append(
+                _row(name, row, rule, nearest, abs(row.value - nearest) <= LATTICE_TOLERANCE)
+            )
     mean = _means(tables["table1"], "length")
     for method in ("bca", "bca_q"):
         for rival in LATTICE_METHODS:
             rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
-            rows.append(_said("table1", f"method={method}, metric=length", rule, mean[method], mean[rival], mean[method] < mean[rival]))
+            rows.append(
+                _said(
+                    "table1",
+                    f"method={method}, metric=length",
+                    rule,
+                    mean[method],
+                    mean[rival],
+                    mean[method] < mean[rival],
+                )
+            )
     time = _means(tables["table2"], "cpu_s")
     for rival in ("aco", "ga", "aco_ga"):
-        rule = f"the text (4.2) has the time of bca slightly above that of {rival}, here: at most {SLIGHTLY} times"
+        rule = (
+            f"the text (4.2) has the time of bca slightly above that of {rival}, here: at most "
+            f"{SLIGHTLY} times"
+        )
         limit = SLIGHTLY * time[rival]
-        rows.append(_said("table2", "method=bca, metric=cpu_s", rule, time["bca"], limit, time["bca"] <= limit))
+        rows.append(
+            _said(
+                "table2", "method=bca, metric=cpu_s", rule, time["bca"], limit, time["bca"] <= limit
+            )
+        )
     parameters = published["parameters"].set_index(["workspace", "parameter"])["value"]
     for workspace in ("environment1", "environment2"):
-        cells = parameters[workspace, "obstacle_coverage"] / 100 * parameters[workspace, "grid_size"] ** 2
+        cells = (
+            parameters[workspace, "obstacle_coverage"]
+            / 100
+            * parameters[workspace, "grid_size"] ** 2
+        )
         rule = "a share of the cells is a whole number of cells"
-        rows.append(_said("parameters", f"workspace={workspace}", rule, cells, round(cells), abs(cells - round(cells)) < 1e-9))
+        rows.append(
+            _said(
+                "parameters",
+                f"workspace={workspace}",
+                rule,
+                cells,
+                round(cells),
+                abs(cells - round(cells)) < 1e-9,
+            )
+        )
     # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
     heights = side + np.arange(1, side * side + 1) // side + 0.5
-    rule = "equation (11) gives the heights of the cells' centres: cells whose height lies on the map"
+    rule = (
+        "equation (11) gives the heights of the cells' centres: cells whose height lies on the map"
+    )
     inside = int((heights < side).sum())
-    rows.append(_said("text", "3.2, equation (11)", rule, inside, side * side, inside == side * side))
+    rows.append(
+        _said("text", "3.2, equation (11)", rule, inside, side * side, inside == side * side)
+    )
     listed = int((published["parameters"]["parameter"] == "control_points").sum())
-    rule = "Data Availability: all required parameters are listed, here: the number of control points"
+    rule = (
+        "Data Availability: all required parameters are listed, here: the number of control points"
+    )
     rows.append(_said("text", "Data Availability", rule, listed, 1, listed >= 1))
     return rows
 
@@ -240,8 +346,22 @@ def _means(table: pd.DataFrame, metric: str) -> dict[str, float]:
 
 
 def _row(item: str, row: tuple, rule: str, limit: float, consistent: bool) -> dict:
-    return _said(item, f"method={row.method}, metric={row.metric}, statistic={row.statistic}", rule, row.value, limit, consistent)
+    return _said(
+        item,
+        f"method={row.method}, metric={row.metric}, statistic={row.statistic}",
+        rule,
+        row.value,
+        limit,
+        consistent,
+    )
 
 
 def _said(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {"item": item, "place": place, "rule": rule, "printed": printed, "limit": limit, "consistent": bool(consistent)}
+    return {
+        "item": item,
+        "place": place,
+        "rule": rule,
+        "printed": printed,
+        "limit": limit,
+        "consistent": bool(consistent),
+    }

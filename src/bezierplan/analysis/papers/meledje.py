@@ -1,6 +1,7 @@
 """meledje: the drawings of its Figures 2 to 4, and an audit of its Tables 2 to 5.
 
-Numbers of equations, sections, tables and figures are the paper's. Drawings use the operators of the planner itself.
+Numbers of equations, sections, tables and figures are the paper's. Drawings use the operators of
+the planner itself.
 """
 
 import itertools
@@ -14,7 +15,14 @@ import shapely
 from bezierplan.analysis.results import Results, select
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic, planner_settings
-from bezierplan.planners.parts.node_mutation import Direction, Mutation, ObstacleNode, Ref21Test, WithoutObstacle, mutate
+from bezierplan.planners.parts.node_mutation import (
+    Direction,
+    Mutation,
+    ObstacleNode,
+    Ref21Test,
+    WithoutObstacle,
+    mutate,
+)
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
 
@@ -26,41 +34,78 @@ BESIDE = 0.45
 # Number of seeds to search for one whose mutation shows what the paper says about the operator.
 SEEDS = 1000
 
-# The counts of `said` that Fisher's exact test compares, its level, and the sign of what counts as best.
+# The counts of `said` that Fisher's exact test compares, its level, and the sign of what counts as
+# best.
 TESTED = ("optimal", "infeasible")
 ALPHA = 0.05
 SIGN = {"highest": 1, "lowest": -1}
 
 
 def chromosome(*, genes: list[int], side: int) -> pd.DataFrame:
-    """Figure 2: genes, numbers of cells from 1 (part `genes`), and their path on a grid of side x side cells (part `path`)."""
+    """Figure 2: genes, numbers of cells from 1 (part `genes`), and their path on a grid of side x
+    side cells (part `path`).
+    """
     row = _genes(genes, 0, ["accent", *["muted"] * (len(genes) - 2), "accent"])
-    names = [{"mark": "text", "role": "note", "x": x, "y": -0.9, "text": word} for x, word in ((0, "start"), (3, "passage"), (6, "target"))]
+    names = [
+        {"mark": "text", "role": "note", "x": x, "y": -0.9, "text": word}
+        for x, word in ((0, "start"), (3, "passage"), (6, "target"))
+    ]
     places = [_place(number, side) for number in genes]
     way = shapely.LineString(places)
-    # Cells that the path crosses between its nodes show no number, because the path would make it illegible.
+    # Cells that the path crosses between its nodes show no number, because the path would make it
+    # illegible.
     cells = {number: _place(number, side) for number in range(1, side * side + 1)}
     boxes = [{"mark": "cell", "role": "free", **_box(*place)} for place in cells.values()]
-    apart = {number: place for number, place in cells.items() if shapely.Point(place).distance(way) > BESIDE}
-    others = [{"mark": "text", "role": "note", **_words(number, *place)} for number, place in apart.items()]
-    nodes = [mark for number, place in zip(genes, places, strict=True) for mark in _gene(number, *place, "accent")]
+    apart = {
+        number: place
+        for number, place in cells.items()
+        if shapely.Point(place).distance(way) > BESIDE
+    }
+    others = [
+        {"mark": "text", "role": "note", **_words(number, *place)}
+        for number, place in apart.items()
+    ]
+    nodes = [
+        mark
+        for number, place in zip(genes, places, strict=True)
+        for mark in _gene(number, *place, "accent")
+    ]
     path = [*boxes, *others, *_path(places, "accent", "path"), *nodes]
-    return pd.concat([pd.DataFrame([*row, *names]).assign(part="genes"), pd.DataFrame(path).assign(part="path")])
+    return pd.concat(
+        [pd.DataFrame([*row, *names]).assign(part="genes"), pd.DataFrame(path).assign(part="path")]
+    )
 
 
 def crossover(*, parents: list[list[int]], cut: int) -> pd.DataFrame:
-    """Figure 3: two parents (part `parents`) and their children (part `children`), each parent's nodes in a distinct style.
+    """Figure 3: two parents (part `parents`) and their children (part `children`), each parent's
+    nodes in a distinct style.
 
     cut: the number of nodes after which both are cut.
     """
     one, other = (np.array(parent) for parent in parents)
     frames = []
-    for part, (first, second) in {"parents": parents, "children": (_child(one, other, cut), _child(other, one, cut))}.items():
+    for part, (first, second) in {
+        "parents": parents,
+        "children": (_child(one, other, cut), _child(other, one, cut)),
+    }.items():
         own = {"parents": (len(first), 0), "children": (cut, cut)}[part]
-        looks = [["accent"] * own[0] + ["muted"] * (len(first) - own[0]), ["muted"] * (own[1] or len(second))]
+        looks = [
+            ["accent"] * own[0] + ["muted"] * (len(first) - own[0]),
+            ["muted"] * (own[1] or len(second)),
+        ]
         looks[1] += ["accent"] * (len(second) - len(looks[1]))
         marks = [*_genes(first, 1.5, looks[0]), *_genes(second, 0, looks[1])]
-        line = [{"mark": "line", "role": "second", "group": "cut", "x": cut - 0.5, "y": y, "label": "cut"} for y in (-0.8, 2.3)]
+        line = [
+            {
+                "mark": "line",
+                "role": "second",
+                "group": "cut",
+                "x": cut - 0.5,
+                "y": y,
+                "label": "cut",
+            }
+            for y in (-0.8, 2.3)
+        ]
         frames.append(pd.DataFrame([*marks, *line]).assign(part=part))
     return pd.concat(frames)
 
@@ -82,15 +127,23 @@ def mutations(
     whole_path: bool,
     penalty: float,
 ) -> pd.DataFrame:
-    """Figure 4: a path before and after a mutation, by operator, and the cells that were tried instead of the node.
+    """Figure 4: a path before and after a mutation, by operator, and the cells that were tried
+    instead of the node.
 
-    Random mutation makes a feasible path infeasible; reference 12 changes a node that is not before the obstacle, and the path stays
-    infeasible; the proposed mutation changes the one that is. The first seed with this result is used.
+    Random mutation makes a feasible path infeasible; reference 12 changes a node that is not before
+    the obstacle, and the path stays infeasible; the proposed mutation changes the one that is. The
+    first seed with this result is used.
 
-    free_path, blocked_path: columns and rows of the nodes of a feasible path, and of one whose second edge meets an obstacle. The others:
-    settings that the operators read, as in `node_genetic.Settings`.
+    free_path, blocked_path: columns and rows of the nodes of a feasible path, and of one whose
+    second edge meets an obstacle. The others: settings that the operators read, as in
+    `node_genetic.Settings`.
     """
-    unread = node_genetic.Settings(**{name: 0 if each.words else each.kind() for name, each in planner_settings(node_genetic).items()})
+    unread = node_genetic.Settings(
+        **{
+            name: 0 if each.words else each.kind()
+            for name, each in planner_settings(node_genetic).items()
+        }
+    )
     rules = unread._replace(
         without_obstacle=int(WithoutObstacle.any_node if any_node else WithoutObstacle.none),
         obstacle_node=int(ObstacleNode.neighbour if beside_obstacle else ObstacleNode.edge),
@@ -100,28 +153,44 @@ def mutations(
         penalty=penalty,
     )
     frames = []
-    for operator, places in (("random", free_path), ("ref12", blocked_path), ("proposed", blocked_path)):
+    for operator, places in (
+        ("random", free_path),
+        ("ref12", blocked_path),
+        ("proposed", blocked_path),
+    ):
         before = np.array([column + grid.occupied.shape[1] * row for column, row in places])
         after, k = next(_shown(grid, operator, before, rules))
-        frames.append(pd.DataFrame(_mutation(grid, operator, before, after, k)).assign(operator=operator))
+        frames.append(
+            pd.DataFrame(_mutation(grid, operator, before, after, k)).assign(operator=operator)
+        )
     return pd.concat(frames)
 
 
-def _shown(grid: Grid, operator: str, before: np.ndarray, rules: node_genetic.Settings) -> Iterator[tuple[np.ndarray, int]]:
-    """Paths after a mutation that shows what the paper says about the operator, each with the index of the changed node."""
+def _shown(
+    grid: Grid, operator: str, before: np.ndarray, rules: node_genetic.Settings
+) -> Iterator[tuple[np.ndarray, int]]:
+    """Paths after a mutation that shows what the paper says about the operator, each with the index
+    of the changed node.
+    """
     ground = ground_of(grid, 1.0)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), before[[0, -1]])
     rules = rules._replace(mutation=int(Mutation[operator]))
     for seed in range(SEEDS):
         after = before.copy()
-        mutate(np.random.default_rng(seed), after, drawn, ground, rules, np.empty(8, dtype=np.int64))
+        mutate(
+            np.random.default_rng(seed), after, drawn, ground, rules, np.empty(8, dtype=np.int64)
+        )
         for k in np.flatnonzero(after != before).tolist():
-            blocked = any(obstacles_met(ground, *edge) for edge in itertools.pairwise(after.tolist()))
+            blocked = any(
+                obstacles_met(ground, *edge) for edge in itertools.pairwise(after.tolist())
+            )
             if blocked != (operator == "proposed"):
                 yield after, k
 
 
-def _mutation(grid: Grid, operator: str, before: np.ndarray, after: np.ndarray, k: int) -> Iterator[dict]:
+def _mutation(
+    grid: Grid, operator: str, before: np.ndarray, after: np.ndarray, k: int
+) -> Iterator[dict]:
     """Marks of a path before and after the change of node k."""
     first, second = (centres(grid, path).tolist() for path in (before, after))
     yield from _path(first, "third", "before")
@@ -132,8 +201,19 @@ def _mutation(grid: Grid, operator: str, before: np.ndarray, after: np.ndarray, 
             cell = grid.occupied.shape[1] * (row + up) + column + across
             if (up, across) != (0, 0) and not grid.occupied.flat[cell]:
                 x, y = grid.centre(int(cell))
-                yield {"mark": "dots", "role": "muted", "x": x, "y": y, "group": "tried", "label": "cells tried"}
-    for role, label, (x, y) in (("first", "node that changes", first[k]), ("start", "start", first[0]), ("target", "target", first[-1])):
+                yield {
+                    "mark": "dots",
+                    "role": "muted",
+                    "x": x,
+                    "y": y,
+                    "group": "tried",
+                    "label": "cells tried",
+                }
+    for role, label, (x, y) in (
+        ("first", "node that changes", first[k]),
+        ("start", "start", first[0]),
+        ("target", "target", first[-1]),
+    ):
         yield {"mark": "dots", "role": role, "x": x, "y": y, "group": role, "label": label}
 
 
@@ -168,17 +248,26 @@ def _path(places: Sequence[tuple[float, float]], role: str, label: str) -> Itera
 
 
 def less_work_for_a_path(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, group: str, other: str
+    check: "function.Options",
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    group: str,
+    other: str,
 ) -> tuple[str, float, tuple[float, float], int]:
-    """Claim C7: whether one kind of first population takes less work than another until a run ends feasible, in every environment.
+    """Claim C7: whether one kind of first population takes less work than another until a run ends
+    feasible, in every environment.
 
-    The work is the mean number of evaluations of a run over the share of feasible ones. The effect is the largest ratio of both kinds'
-    work, with the least and largest ratio that their Clopper-Pearson intervals allow; the units are the runs of the smaller kind.
+    The work is the mean number of evaluations of a run over the share of feasible ones. The effect
+    is the largest ratio of both kinds' work, with the least and largest ratio that their
+    Clopper-Pearson intervals allow; the units are the runs of the smaller kind.
     """
     runs = select(results[check.experiment].runs, check.where)
     ratios = []
     for _, own in runs.groupby("workspace"):
-        (least, typical, most), (least_other, typical_other, most_other) = (_work(own[own["initial"] == name]) for name in (group, other))
+        (least, typical, most), (least_other, typical_other, most_other) = (
+            _work(own[own["initial"] == name]) for name in (group, other)
+        )
         ratios.append((typical / typical_other, least / most_other, most / least_other))
     typical, low, high = (max(each) for each in zip(*ratios, strict=True))
     mark = "+" if high < 1 else "-" if low > 1 else "?"
@@ -186,24 +275,34 @@ def less_work_for_a_path(
 
 
 def _work(runs: pd.DataFrame) -> tuple[float, float, float]:
-    """Evaluations for each feasible path: least, found and most, infinite where no run is feasible."""
+    """Evaluations for each feasible path: least, found and most, infinite where no run is
+    feasible.
+    """
     from scipy import stats
 
     found = stats.binomtest(int(runs["feasible"].sum()), len(runs))
     share = found.proportion_ci(method="exact")
     with np.errstate(divide="ignore"):
-        least, typical, most = (float(np.divide(runs["evaluations"].mean(), each)) for each in (share.high, found.statistic, share.low))
+        least, typical, most = (
+            float(np.divide(runs["evaluations"].mean(), each))
+            for each in (share.high, found.statistic, share.low)
+        )
     return least, typical, most
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     """Numbers in Tables 2 to 5 that contradict others.
 
-    The three counts of a row add up to the trials. What Section 4 says about the proposed mutation is checked against the numbers, by value
-    alone and, for counts, by Fisher's exact test, with Holm's correction over the paper's twelve comparisons. Environment 2 ranks the
-    operators by optima as environment 1 does.
+    The three counts of a row add up to the trials. What Section 4 says about the proposed mutation
+    is checked against the numbers, by value alone and, for counts, by Fisher's exact test, with
+    Holm's correction over the paper's twelve comparisons. Environment 2 ranks the operators by
+    optima as environment 1 does.
     """
-    tables = {name: table.set_index(["method", "metric"])["value"] for name, table in published.items() if "problem" in table}
+    tables = {
+        name: table.set_index(["method", "metric"])["value"]
+        for name, table in published.items()
+        if "problem" in table
+    }
     trials = {name: int(published[name]["n"].max()) for name in tables}
     operators = list(published["table2"]["method"].unique())
     others = [method for method in operators if method != "proposed"]
@@ -211,43 +310,76 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     rows = []
     for name, table in tables.items():
         for method in ("proposed", *others):
-            total = sum(table[method, metric] for metric in ("optimal", "near_optimal", "infeasible"))
+            total = sum(
+                table[method, metric] for metric in ("optimal", "near_optimal", "infeasible")
+            )
             rule = "the three counts add to the trials"
-            rows.append(_row(name, f"method={method}", rule, total, trials[name], total == trials[name]))
+            rows.append(
+                _row(name, f"method={method}", rule, total, trials[name], total == trials[name])
+            )
         for sentence in said:
             sign = SIGN[sentence.best]
-            own, *theirs = (_printed(table, method, sentence.quantity) for method in ("proposed", *others))
+            own, *theirs = (
+                _printed(table, method, sentence.quantity) for method in ("proposed", *others)
+            )
             best = sign * max(sign * value for value in theirs)
             rule = f"the proposed mutation has the {sentence.words} (Section 4)"
-            rows.append(_row(name, f"metric={sentence.quantity}", rule, own, best, sign * (own - best) > 0))
+            rows.append(
+                _row(name, f"metric={sentence.quantity}", rule, own, best, sign * (own - best) > 0)
+            )
     for sentence in said:
         if sentence.quantity in TESTED:
-            rows += _fisher_rows(tables, trials, others, sentence.quantity, sentence.words, SIGN[sentence.best])
-    ranks = {name: [table[method, "optimal"] for method in ("proposed", *others)] for name, table in tables.items()}
+            rows += _fisher_rows(
+                tables, trials, others, sentence.quantity, sentence.words, SIGN[sentence.best]
+            )
+    ranks = {
+        name: [table[method, "optimal"] for method in ("proposed", *others)]
+        for name, table in tables.items()
+    }
     pairs = list(itertools.combinations(range(len(operators)), 2))
     for name in ("table3", "table4", "table5"):
-        agree = sum(np.sign(ranks[name][i] - ranks[name][j]) == np.sign(ranks["table2"][i] - ranks["table2"][j]) for i, j in pairs)
+        agree = sum(
+            np.sign(ranks[name][i] - ranks[name][j])
+            == np.sign(ranks["table2"][i] - ranks["table2"][j])
+            for i, j in pairs
+        )
         rule = "pairs of operators that rank by optima as in Table 2 (Section 4): all"
         rows.append(_row(name, "metric=optimal", rule, agree, len(pairs), agree == len(pairs)))
     # A table of drives would say when the environment changes.
     drives = sum(not {"after", "moment"}.isdisjoint(table) for table in published.values())
-    rule = "the title speaks of dynamic environments: some table has drives during which the environment changes"
+    rule = (
+        "the title speaks of dynamic environments: some table has drives during which the "
+        "environment changes"
+    )
     rows.append(_row("text", "title", rule, drives, 1, drives >= 1))
     return rows
 
 
-def _fisher_rows(tables: dict[str, pd.Series], trials: dict[str, int], others: list[str], metric: str, words: str, sign: int) -> list[dict]:
+def _fisher_rows(
+    tables: dict[str, pd.Series],
+    trials: dict[str, int],
+    others: list[str],
+    metric: str,
+    words: str,
+    sign: int,
+) -> list[dict]:
     """Whether the proposed mutation's count differs from each other one by more than chance."""
     from scipy import stats
 
     pairs = list(itertools.product(tables, others))
-    counts = [[tables[name][method, metric] for method in ("proposed", other)] for name, other in pairs]
-    squares = [[[count, trials[name] - count] for count in both] for (name, _), both in zip(pairs, counts, strict=True)]
+    counts = [
+        [tables[name][method, metric] for method in ("proposed", other)] for name, other in pairs
+    ]
+    squares = [
+        [[count, trials[name] - count] for count in both]
+        for (name, _), both in zip(pairs, counts, strict=True)
+    ]
     p = holm(np.array([stats.fisher_exact(square).pvalue for square in squares]))
     return [
         _row(
             *(name, f"metric={metric}, proposed and {other}"),
-            f"the proposed mutation has the {words} beyond chance: p of Fisher's test, corrected by Holm",
+            f"the proposed mutation has the {words} beyond chance: p of Fisher's test, corrected "
+            f"by Holm",
             *(value, ALPHA, value < ALPHA and sign * (own - theirs) > 0),
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())
@@ -261,4 +393,11 @@ def _printed(table: pd.Series, method: str, metric: str) -> float:
 
 
 def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {"item": item, "place": place, "rule": rule, "printed": float(printed), "limit": float(limit), "consistent": bool(consistent)}
+    return {
+        "item": item,
+        "place": place,
+        "rule": rule,
+        "printed": float(printed),
+        "limit": float(limit),
+        "consistent": bool(consistent),
+    }

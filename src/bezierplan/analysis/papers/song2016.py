@@ -1,4 +1,6 @@
-"""song2016: the claim about its genetic operators, an audit of its Table I, and the paths whose lengths its table prints."""
+"""song2016: the claim about its genetic operators, an audit of its Table I, and the paths whose
+lengths its table prints.
+"""
 
 from typing import TYPE_CHECKING
 
@@ -19,16 +21,25 @@ TRIALS = 10_000
 
 
 def genes_in_range(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, bits: int, genes: int
+    check: "function.Options",
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    bits: int,
+    genes: int,
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C8: genes outside 0 .. 2^bits - 1 after a crossover at every kind of cut and a mutation at any bit, in random chromosomes."""
+    """Claim C8: genes outside 0 .. 2^bits - 1 after a crossover at every kind of cut and a mutation
+    at any bit, in random chromosomes.
+    """
     rng = np.random.default_rng(0)
     outside = 0
     for _ in range(TRIALS):
         one, other = rng.integers(0, 1 << bits, (2, genes))
         swap_tails(one, other, rng.integers(1, bits * genes), bits)
         complement_bit(one, rng.integers(0, bits * genes), bits)
-        outside += int(((one < 0) | (one >= 1 << bits)).sum() + ((other < 0) | (other >= 1 << bits)).sum())
+        outside += int(
+            ((one < 0) | (one >= 1 << bits)).sum() + ((other < 0) | (other >= 1 << bits)).sum()
+        )
     return "-" if outside else "+", float(outside), None, TRIALS
 
 
@@ -51,16 +62,32 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
 
 
 def identified_paths(
-    workspace: Grid, published: dict[str, pd.DataFrame], *, start: int, target: int, method: str, decimals: int, edges: int
+    workspace: Grid,
+    published: dict[str, pd.DataFrame],
+    *,
+    start: int,
+    target: int,
+    method: str,
+    decimals: int,
+    edges: int,
 ) -> pd.DataFrame:
-    """Marks of the free polylines of fewest edges between two cells whose length is the objective that Table I prints of a method.
+    """Marks of the free polylines of fewest edges between two cells whose length is the objective
+    that Table I prints of a method.
 
-    decimals: of the printed number. edges: the most of a polyline. Raises ValueError if the table prints no such number.
+    decimals: of the printed number. edges: the most of a polyline. Raises ValueError if the table
+    prints no such number.
     """
     table = published["table1"]
-    own = table[(table["problem"] == f"{start}_{target}") & (table["method"] == method) & (table["metric"] == "objective")]
+    own = table[
+        (table["problem"] == f"{start}_{target}")
+        & (table["method"] == method)
+        & (table["metric"] == "objective")
+    ]
     if len(own) != 1:
-        raise ValueError(f"identified_paths: {len(own)} printed numbers of {method} from {start} to {target}; expected one")
+        raise ValueError(
+            f"identified_paths: {len(own)} printed numbers of {method} from {start} to {target}; "
+            f"expected one"
+        )
     problem = Problem("", workspace, workspace.centre(start), workspace.centre(target))
     identification = identified.in_problem(problem, float(own["value"].iloc[0]), decimals, edges)
     rows = []
@@ -68,10 +95,16 @@ def identified_paths(
         role = ("accent", "first", "third")[min(number, 2)]
         name = f"{' '.join(map(str, path))}: length {identification.length * workspace.cell:.6f}"
         points = [{"x": x, "y": y} for x, y in map(workspace.centre, path)]
-        rows += [{"mark": "line", "role": role, "group": f"path {number}", "label": name} | point for point in points]
-    lines = shapely.MultiLineString([[workspace.centre(cell) for cell in path] for path in identification.paths])
+        rows += [
+            {"mark": "line", "role": role, "group": f"path {number}", "label": name} | point
+            for point in points
+        ]
+    lines = shapely.MultiLineString(
+        [[workspace.centre(cell) for cell in path] for path in identification.paths]
+    )
     rows += [
-        {"mark": "text", "role": "note", "text": str(cell)} | dict(zip("xy", _beside(workspace.centre(cell), lines, 0.85 * workspace.cell)))
+        {"mark": "text", "role": "note", "text": str(cell)}
+        | dict(zip("xy", _beside(workspace.centre(cell), lines, 0.85 * workspace.cell)))
         for path in identification.paths[:1]
         for cell in path[1:-1]
     ]
@@ -81,7 +114,14 @@ def identified_paths(
     return pd.DataFrame(rows)
 
 
-def _beside(point: tuple[float, float], lines: shapely.Geometry, away: float) -> tuple[float, float]:
-    """Of the places around a point, a distance away, the one that is farthest from lines; the first from the top of equal ones."""
-    around = [(point[0] + away * np.sin(angle), point[1] + away * np.cos(angle)) for angle in np.linspace(0, 2 * np.pi, 8, endpoint=False)]
+def _beside(
+    point: tuple[float, float], lines: shapely.Geometry, away: float
+) -> tuple[float, float]:
+    """Of the places around a point, a distance away, the one that is farthest from lines; the first
+    from the top of equal ones.
+    """
+    around = [
+        (point[0] + away * np.sin(angle), point[1] + away * np.cos(angle))
+        for angle in np.linspace(0, 2 * np.pi, 8, endpoint=False)
+    ]
     return max(around, key=lambda place: round(lines.distance(shapely.Point(place)), 6))

@@ -1,4 +1,5 @@
-"""tharwat2018: the claims that a comparison of runs cannot judge, data of its figures without runs, and an audit of its tables and text.
+"""tharwat2018: the claims that a comparison of runs cannot judge, data of its figures without runs,
+and an audit of its tables and text.
 
 Numbers of equations, sections, tables and figures are the paper's.
 """
@@ -20,13 +21,15 @@ from bezierplan.workspaces.seeds import generator
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds import function
 
-# The three control points (x, y), in units, of the best known single Bezier curves, by workspace: the results of 300 long runs, improved
-# by sequential quadratic programming. Their lengths are 7.7263 and 7.5180.
+# The three control points (x, y), in units, of the best known single Bezier curves, by workspace:
+# the results of 300 long runs, improved by sequential quadratic programming. Their lengths are
+# 7.7263 and 7.5180.
 BEST_KNOWN = {
     "equal": ((-0.4768, 4.5057), (1.8022, 0.8887), (3.1746, 4.9328)),
     "public": ((0.7197, 2.1662), (-0.1836, 2.8501), (2.2284, 1.1334)),
 }
-# The search for such curves starts from this many random ones, first with few samples; the best results are improved with all samples.
+# The search for such curves starts from this many random ones, first with few samples; the best
+# results are improved with all samples.
 STARTS, FEW_SAMPLES, IMPROVED = 40, 34, 10
 SAMPLES = 100  # of a path, as in the planner
 MOST_POINTS = 4  # control points of the best curves to find
@@ -37,21 +40,31 @@ RIM = 0.01  # least height of a valley's edge above its lowest node, as a share 
 
 SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # discarded from each of them
-NO_PARAMETERS = chaotic_maps.Parameters(*[math.nan] * len(chaotic_maps.Parameters._fields))  # which that map has
+NO_PARAMETERS = chaotic_maps.Parameters(
+    *[math.nan] * len(chaotic_maps.Parameters._fields)
+)  # which that map has
 
 RANKED = ("table3", "table4", "table5", "table6")  # tables whose rows are ranked (Section 5.1)
 WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
 RESAMPLES, BOXES = 200, 500  # of our runs, and box plots drawn from each
-CONVERGED = 0.01  # runs that end within this share of the shortest path of their class have reached its optimum
+# Runs that end within this share of the shortest path of their class have reached its optimum.
+CONVERGED = 0.01
 
 # The maps of Section 3.3, in its order.
 CHAOTIC = chaotic_maps.MAPS[:8]
 
 
 def chaotic_sequences(
-    *, iterations: int, singer_mu: float, singer_x4: float, sine_a: float, piecewise_p: float, sinusoidal_a: float
+    *,
+    iterations: int,
+    singer_mu: float,
+    singer_x4: float,
+    sine_a: float,
+    piecewise_p: float,
+    sinusoidal_a: float,
 ) -> pd.DataFrame:
-    """Figure 3: one row per map of the paper and iteration; columns: map, iteration (from 1), value. Each map has one random start.
+    """Figure 3: one row per map of the paper and iteration; columns: map, iteration (from 1),
+    value. Each map has one random start.
 
     The other arguments: parameters of the maps, as in `chaotic_maps.Parameters`.
     """
@@ -61,7 +74,9 @@ def chaotic_sequences(
     for name in CHAOTIC:
         start = chaotic_maps.random_start(rng, name, parameters)
         values = chaotic_maps.sequence(name, start, iterations, parameters).values
-        frames.append(pd.DataFrame({"map": name, "iteration": np.arange(1, iterations + 1), "value": values}))
+        frames.append(
+            pd.DataFrame({"map": name, "iteration": np.arange(1, iterations + 1), "value": values})
+        )
     return pd.concat(frames, ignore_index=True)
 
 
@@ -71,38 +86,90 @@ def ends(workspace: Workspace, *, start: list[float], target: list[float]) -> pd
     return pd.DataFrame(dots, columns=["mark", "role", "label", "x", "y"])
 
 
-def movement(*, particles: list[list[float]], best: float, inertia: float, c1: float, c2: float) -> pd.DataFrame:
-    """Figure 2: marks of particles that move in one dimension, the three parts of each velocity (eq. 8) from tail to head.
+def movement(
+    *, particles: list[list[float]], best: float, inertia: float, c1: float, c2: float
+) -> pd.DataFrame:
+    """Figure 2: marks of particles that move in one dimension, the three parts of each velocity
+    (eq. 8) from tail to head.
 
-    particles: of each its position x, velocity v, best position p, r1 and r2. best: that of the swarm. inertia, c1, c2: as in eq. 8.
-    Further columns: part (of the velocity, its name) and value (its signed length).
+    particles: of each its position x, velocity v, best position p, r1 and r2. best: that of the
+    swarm. inertia, c1, c2: as in eq. 8. Further columns: part (of the velocity, its name) and value
+    (its signed length).
     """
     rows = []
     for number, (x, v, p, r1, r2) in enumerate(particles):
         line = -5.0 * number  # the height at which the particle moves
-        parts = {"w v": inertia * v, "C1 r1 (p - x)": c1 * r1 * (p - x), "C2 r2 (G - x)": c2 * r2 * (best - x)}
+        parts = {
+            "w v": inertia * v,
+            "C1 r1 (p - x)": c1 * r1 * (p - x),
+            "C2 r2 (G - x)": c2 * r2 * (best - x),
+        }
         moved = x + sum(parts.values())
-        names = zip(("inertia", "cognition", "social part"), ("third", "first", "second"), parts.items(), strict=True)
+        names = zip(
+            ("inertia", "cognition", "social part"),
+            ("third", "first", "second"),
+            parts.items(),
+            strict=True,
+        )
         aside = math.copysign(1.0, best - x)  # words are placed beyond the heads
-        rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line})
-        rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line})
+        rows.append(
+            {"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line}
+        )
+        rows.append(
+            {"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line}
+        )
         tail = x
         for height, (name, role, (formula, part)) in enumerate(names, start=1):
-            arrow = {"mark": "arrow", "role": role, "group": f"{name} {number}", "y": line + 0.9 * height, "part": name, "value": part}
+            arrow = {
+                "mark": "arrow",
+                "role": role,
+                "group": f"{name} {number}",
+                "y": line + 0.9 * height,
+                "part": name,
+                "value": part,
+            }
             rows += [arrow | {"x": tail}, arrow | {"x": tail + part}]
             tail += part
-            words = {"mark": "text", "role": "note", "y": line + 0.9 * height, "text": f"{name} {formula}"}
+            words = {
+                "mark": "text",
+                "role": "note",
+                "y": line + 0.9 * height,
+                "text": f"{name} {formula}",
+            }
             rows.append(words | {"x": moved + aside * 4.3})
-        for role, place, words in (("first", x, "x"), ("third", p, "p"), ("start", moved, "new x"), ("target", best, "G")):
-            label = {"first": "position", "third": "best position", "start": "next position", "target": "best position of the swarm"}[role]
-            rows.append({"mark": "dots", "role": role, "group": f"{words} {number}", "label": label, "x": place, "y": line})
+        for role, place, words in (
+            ("first", x, "x"),
+            ("third", p, "p"),
+            ("start", moved, "new x"),
+            ("target", best, "G"),
+        ):
+            label = {
+                "first": "position",
+                "third": "best position",
+                "start": "next position",
+                "target": "best position of the swarm",
+            }[role]
+            rows.append(
+                {
+                    "mark": "dots",
+                    "role": role,
+                    "group": f"{words} {number}",
+                    "label": label,
+                    "x": place,
+                    "y": line,
+                }
+            )
             if words != "new x":
-                rows.append({"mark": "text", "role": "note", "x": place, "y": line - 0.75, "text": words})
+                rows.append(
+                    {"mark": "text", "role": "note", "x": place, "y": line - 0.75, "text": words}
+                )
     return pd.DataFrame(rows)
 
 
 def flow_chart() -> pd.DataFrame:
-    """Figure 4: marks of a flow chart of the method (Section 4, Algorithm 1), boxes from top to bottom and arrows between them."""
+    """Figure 4: marks of a flow chart of the method (Section 4, Algorithm 1), boxes from top to
+    bottom and arrows between them.
+    """
     middle, left, right, width, height, step = 0.0, -62.0, 62.0, 190.0, 22.0, 36.0
     steps = [
         ("muted", "particles at random positions, velocities 0"),
@@ -128,10 +195,18 @@ def flow_chart() -> pd.DataFrame:
         [(-width / 2, -step * 7), (edge, -step * 7), (edge, -step), (-width / 2, -step)],
         [(width / 2, -step * 4), (-edge, -step * 4), (-edge, -step * 8), (width / 2, -step * 8)],
     ]
-    rows = [{"mark": "cell", "role": role, "x": x, "y": y, "width": wide, "height": height} for x, y, wide, role, _ in boxes]
-    rows += [{"mark": "text", "role": "note", "x": x, "y": y, "text": text} for x, y, _, _, text in boxes]
+    rows = [
+        {"mark": "cell", "role": role, "x": x, "y": y, "width": wide, "height": height}
+        for x, y, wide, role, _ in boxes
+    ]
+    rows += [
+        {"mark": "text", "role": "note", "x": x, "y": y, "text": text} for x, y, _, _, text in boxes
+    ]
     for number, way in enumerate(ways):
-        line, arrow = {"mark": "line", "role": "note", "group": number}, {"mark": "arrow", "role": "note", "group": number}
+        line, arrow = (
+            {"mark": "line", "role": "note", "group": number},
+            {"mark": "arrow", "role": "note", "group": number},
+        )
         rows += [line | {"x": x, "y": y} for x, y in way[:-1]] if len(way) > 2 else []
         rows += [arrow | {"x": x, "y": y} for x, y in way[-2:]]
     rows += [
@@ -142,12 +217,17 @@ def flow_chart() -> pd.DataFrame:
 
 
 def gauss_above(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: float
+    check: "function.Options",
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    limit: float,
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C39: the share of values above a limit in long sequences of the Gauss map, without their first values.
+    """Claim C39: the share of values above a limit in long sequences of the Gauss map, without
+    their first values.
 
-    It tends to 1 - log2(1 + limit), which is 0.234 for 0.7, since the map's values have the density 1 / ((1 + x) ln 2). The interval is
-    that of the mean over sequences, each one unit.
+    It tends to 1 - log2(1 + limit), which is 0.234 for 0.7, since the map's values have the density
+    1 / ((1 + x) ln 2). The interval is that of the mean over sequences, each one unit.
     """
     rng = np.random.default_rng(0)
     shares = []
@@ -165,8 +245,9 @@ def bowl_with_local_minima(
 ) -> tuple[str, float, tuple[float, float] | None, int]:
     """Claim C16: whether the fitness over one control point is a bowl with several local minima.
 
-    The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the distance to the best node. A bowl has more
-    than 0.5, and a second valley means several minima: + if both hold, - if either fails.
+    The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the
+    distance to the best node. A bowl has more than 0.5, and a second valley means several minima: +
+    if both hold, - if either fails.
     """
     from scipy import stats
 
@@ -182,7 +263,8 @@ def bowl_with_local_minima(
 def fitness_landscape(results: Results) -> pd.DataFrame:
     """Figures 10 to 12: `landscape` of the problem of runs, with the settings in force.
 
-    Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node), fixed (control points that do not move).
+    Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node),
+    fixed (control points that do not move).
     """
     surface = _landscape(results).rename(columns={"fitness": "objective"})
     minima = surface[valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
@@ -199,26 +281,34 @@ def fitness_landscape(results: Results) -> pd.DataFrame:
 def _landscape(results: Results) -> pd.DataFrame:
     """`landscape` with the settings of the first run of the swarms."""
     run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
-    return landscape(results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"]))
+    return landscape(
+        results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"])
+    )
 
 
 def best_curves(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
-    """Lengths, in units, of the best Bezier curves found with one control point and more, and of the exact shortest path.
+    """Lengths, in units, of the best Bezier curves found with one control point and more, and of
+    the exact shortest path.
 
-    Columns: path (which of the two), control_points, length (of `SAMPLES` samples, of the exact path its own).
+    Columns: path (which of the two), control_points, length (of `SAMPLES` samples, of the exact
+    path its own).
     """
     problem = Problem("", workspace, tuple(start), tuple(target))
     numbers = range(1, MOST_POINTS + 1)
     rows = [("best Bezier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
-    rows += [("exact shortest path", n, shortest_paths.shortest_path(problem).length) for n in numbers]
+    rows += [
+        ("exact shortest path", n, shortest_paths.shortest_path(problem).length) for n in numbers
+    ]
     return pd.DataFrame(rows, columns=["path", "control_points", "length"])
 
 
 def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[float, np.ndarray]:
-    """Length, in units, and control points (control_points + 2, 2) of the shortest free Bezier curve that a search from many starts finds.
+    """Length, in units, and control points (control_points + 2, 2) of the shortest free Bezier
+    curve that a search from many starts finds.
 
-    Length and freedom from collision are those of the given number of samples. The starts, alternately random curves about the straight
-    line and across the field, are the same in every call. Raises ValueError if none of them leads to a free curve.
+    Length and freedom from collision are those of the given number of samples. The starts,
+    alternately random curves about the straight line and across the field, are the same in every
+    call. Raises ValueError if none of them leads to a free curve.
     """
     rng = np.random.default_rng(0)
     x_low, x_high, y_low, y_high = problem.workspace.bounds
@@ -229,15 +319,22 @@ def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[flo
         near = line + rng.normal(0, reach, line.shape)
         anywhere = rng.uniform((x_low, y_low), (x_high, y_high), line.shape)
         curves.append(_shortened(problem, near if start % 2 else anywhere, FEW_SAMPLES))
-    best = [_shortened(problem, points[1:-1], samples) for _, points in sorted(curves, key=lambda each: each[0])[:IMPROVED]]
+    best = [
+        _shortened(problem, points[1:-1], samples)
+        for _, points in sorted(curves, key=lambda each: each[0])[:IMPROVED]
+    ]
     length, points = min(best, key=lambda each: each[0])
     if math.isinf(length):
-        raise ValueError(f"no free curve of {control_points} control points found from {STARTS} starts")
+        raise ValueError(
+            f"no free curve of {control_points} control points found from {STARTS} starts"
+        )
     return length, points
 
 
 def _shortened(problem: Problem, free: np.ndarray, samples: int) -> tuple[float, np.ndarray]:
-    """The result of sequential quadratic programming from free control points (n, 2): length, infinite if it collides, and all points."""
+    """The result of sequential quadratic programming from free control points (n, 2): length,
+    infinite if it collides, and all points.
+    """
     from scipy import optimize
 
     basis = curves.sample_matrix("bezier", len(free) + 2, samples)
@@ -257,33 +354,51 @@ def _shortened(problem: Problem, free: np.ndarray, samples: int) -> tuple[float,
         return (((places(z)[:, None] - centres) ** 2).sum(axis=2) - radii**2).ravel()
 
     def outside_slope(z: np.ndarray) -> np.ndarray:
-        return np.einsum("soj,sk->sokj", 2 * (places(z)[:, None] - centres), weights).reshape(-1, z.size)
+        return np.einsum("soj,sk->sokj", 2 * (places(z)[:, None] - centres), weights).reshape(
+            -1, z.size
+        )
 
     rule = {"type": "ineq", "fun": outside, "jac": outside_slope}
-    end = optimize.minimize(length, free.ravel(), jac=True, method="SLSQP", constraints=rule, options={"maxiter": 200, "ftol": 1e-9})
+    end = optimize.minimize(
+        length,
+        free.ravel(),
+        jac=True,
+        method="SLSQP",
+        constraints=rule,
+        options={"maxiter": 200, "ftol": 1e-9},
+    )
     free_curve = outside(end.x).min() >= -1e-7
-    return float(end.fun) if free_curve else math.inf, np.vstack([problem.start, end.x.reshape(free.shape), problem.target])
+    return float(end.fun) if free_curve else math.inf, np.vstack(
+        [problem.start, end.x.reshape(free.shape), problem.target]
+    )
 
 
 def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
-    """Figures 10 and 11: fitness of a Bezier curve with one control point moving over the field, the others as in `BEST_KNOWN`.
+    """Figures 10 and 11: fitness of a Bezier curve with one control point moving over the field,
+    the others as in `BEST_KNOWN`.
 
-    One row per node of a square grid, y changing fastest; columns: x, y and fitness, in units. samples, beta: settings of the planner.
+    One row per node of a square grid, y changing fastest; columns: x, y and fitness, in units.
+    samples, beta: settings of the planner.
     """
     x_low, x_high, y_low, y_high = problem.workspace.bounds
-    x, y = np.meshgrid(np.linspace(x_low, x_high, GRID), np.linspace(y_low, y_high, GRID), indexing="ij")
+    x, y = np.meshgrid(
+        np.linspace(x_low, x_high, GRID), np.linspace(y_low, y_high, GRID), indexing="ij"
+    )
     paths = np.empty((GRID * GRID, len(BEST_KNOWN[workspace]) + 2, 2))
     paths[:] = [problem.start, *BEST_KNOWN[workspace], problem.target]
     paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
-    values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]  # in parts, to save memory
+    values = [
+        fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)
+    ]  # in parts, to save memory
     return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": np.concatenate(values)})
 
 
 def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:
-    """Fitness (n,), in units, of Bezier curves with control points (n, k, 2), start and target included: length L (1 + beta V).
+    """Fitness (n,), in units, of Bezier curves with control points (n, k, 2), start and target
+    included: length L (1 + beta V).
 
-    The violation V is the sum over circles of the mean depth of the samples inside the circle, as a share of its radius (eqs. 19 to 22,
-    whose penalty is not printed).
+    The violation V is the sum over circles of the mean depth of the samples inside the circle, as a
+    share of its radius (eqs. 19 to 22, whose penalty is not printed).
     """
     points = curves.sample_matrix("bezier", paths.shape[1], samples) @ paths
     length = np.hypot(*np.moveaxis(np.diff(points, axis=1), -1, 0)).sum(axis=1)
@@ -295,7 +410,9 @@ def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> n
 
 
 def local_minima(values: np.ndarray) -> np.ndarray:
-    """Which values of a grid (n, m) are below all eight neighbours, never those at its edge: (n, m)."""
+    """Which values of a grid (n, m) are below all eight neighbours, never those at its edge: (n,
+    m).
+    """
     inner = values[1:-1, 1:-1]
     rows, columns = inner.shape
     lower = np.ones(inner.shape, dtype=bool)
@@ -309,8 +426,9 @@ def local_minima(values: np.ndarray) -> np.ndarray:
 def valleys(values: np.ndarray) -> np.ndarray:
     """Which values of a grid (n, m) are the lowest of a valley of their own: (n, m).
 
-    A local minimum belongs to another's valley if a path over neighbouring nodes leads from it to a lower node and climbs by no more than
-    `RIM`. A narrow valley oblique to the grid has many such minima.
+    A local minimum belongs to another's valley if a path over neighbouring nodes leads from it to a
+    lower node and climbs by no more than `RIM`. A narrow valley oblique to the grid has many such
+    minima.
     """
     from scipy import ndimage
 
@@ -324,9 +442,11 @@ def valleys(values: np.ndarray) -> np.ndarray:
 def several_homotopy_classes(
     check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C17: the number of classes in which runs converge; two paths of one class pass every circle on the same side.
+    """Claim C17: the number of classes in which runs converge; two paths of one class pass every
+    circle on the same side.
 
-    A class counts if two or more runs end within 1 % of the shortest path that any run has in it: they have reached the same optimum.
+    A class counts if two or more runs end within 1 % of the shortest path that any run has in it:
+    they have reached the same optimum.
     """
     found = results[check.experiment]
     runs = select(found.runs, check.where)
@@ -339,29 +459,42 @@ def several_homotopy_classes(
 
 
 def least_above(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: int
+    check: "function.Options",
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    limit: int,
 ) -> tuple[str, float, None, int]:
     """Claim C3: whether the least mean value belongs to more particles than a limit.
 
-    The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal numbers start alike and are drawn
-    together.
+    The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal
+    numbers start alike and are drawn together.
     """
     runs = select(results[check.experiment].runs, check.where)
     values = runs.pivot_table(index="repeat", columns="particles", values=check.metric).dropna()
     rng = generator("tharwat2018/C3")
-    means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(axis=1)
+    means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(
+        axis=1
+    )
     share = float((values.columns.to_numpy()[means.argmin(axis=1)] > limit).mean())
     return _surely(share), share, None, len(values)
 
 
 def fewer_outliers(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, runs_drawn: int, margin: float
+    check: "function.Options",
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    runs_drawn: int,
+    margin: float,
 ) -> tuple[str, float, tuple[float, float], int]:
-    """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less often than for the other maps.
+    """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less
+    often than for the other maps.
 
-    That one figure shows none for Singer says little: with ten runs, any map shows none in many draws. The effect is the share of draws
-    of `runs_drawn` runs in which neither variant has an outlier, for Singer less the mean of the other maps; its interval comes from
-    resamples of our runs.
+    That one figure shows none for Singer says little: with ten runs, any map shows none in many
+    draws. The effect is the share of draws of `runs_drawn` runs in which neither variant has an
+    outlier, for Singer less the mean of the other maps; its interval comes from resamples of our
+    runs.
     """
     runs = select(results[check.experiment].runs, check.where)
     rng = generator("tharwat2018/C20")
@@ -371,7 +504,10 @@ def fewer_outliers(
         for variant in ("cpso1", "cpso2"):
             values = runs.loc[runs["method"] == f"{variant}_{name}", check.metric].to_numpy()
             resampled = values[rng.integers(len(values), size=(RESAMPLES, len(values)))]
-            drawn = resampled[np.arange(RESAMPLES)[:, None, None], rng.integers(len(values), size=(RESAMPLES, BOXES, runs_drawn))]
+            drawn = resampled[
+                np.arange(RESAMPLES)[:, None, None],
+                rng.integers(len(values), size=(RESAMPLES, BOXES, runs_drawn)),
+            ]
             low, high = np.quantile(drawn, [0.25, 0.75], axis=-1, keepdims=True)
             reach = WHISKER * (high - low)
             inside &= ((low - reach <= drawn) & (drawn <= high + reach)).all(axis=-1)
@@ -379,7 +515,9 @@ def fewer_outliers(
     effects = clear.pop("singer") - np.mean(list(clear.values()), axis=0)
     effect, (low, high) = float(effects.mean()), interval(effects)
     within = "0" if -margin <= low and high <= margin else "?"
-    mark = "+" if effect >= margin and low > 0 else "-" if effect <= -margin and high < 0 else within
+    mark = (
+        "+" if effect >= margin and low > 0 else "-" if effect <= -margin and high < 0 else within
+    )
     return mark, effect, (low, high), len(runs) // (2 * len(CHAOTIC))
 
 
@@ -391,34 +529,80 @@ def _surely(share: float) -> str:
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     """Printed numbers that are impossible, or contradict others.
 
-    No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. Statements in the text about best values and the
-    second population of Section 5.5 are checked against the tables, and against each other.
+    No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. Statements in
+    the text about best values and the second population of Section 5.5 are checked against the
+    tables, and against each other.
     """
     tables = {name: published[name] for name in RANKED}
     rows = []
     straight = float(_said(published, "straight_line_length")[0])
     for name, table in tables.items():
         for row in _cells(table, "objective").itertuples():
-            rows.append(_row(name, _place(row), "no path is shorter than the straight line", row.value, straight, row.value >= straight))
+            rows.append(
+                _row(
+                    name,
+                    _place(row),
+                    "no path is shorter than the straight line",
+                    row.value,
+                    straight,
+                    row.value >= straight,
+                )
+            )
     before = pd.concat([tables["table3"], tables["table4"]])
     for metric in ("collisions_c", "objective"):
         first = _by_method(before, metric)
         for row in _cells(tables["table5"], metric).itertuples():
             if row.method in first:
                 rule = "Table 5 has the number of Table 3 or 4"
-                rows.append(_row("table5", _place(row), rule, row.value, first[row.method], row.value == first[row.method]))
-    best = _by_method(pd.concat(list(tables.values())[:3]).drop_duplicates(["method", "metric"]), "objective")
+                rows.append(
+                    _row(
+                        "table5",
+                        _place(row),
+                        rule,
+                        row.value,
+                        first[row.method],
+                        row.value == first[row.method],
+                    )
+                )
+    best = _by_method(
+        pd.concat(list(tables.values())[:3]).drop_duplicates(["method", "metric"]), "objective"
+    )
     for place, better, worse in published["said"].itertuples(index=False):
         table = "table5" if worse == "pso" else "table4" if better.startswith("cpso2") else "table3"
         rule = f"the text ({place}) has {better} better than {worse}"
-        rows.append(_row(table, f"method={better}, metric=objective", rule, best[better], best[worse], best[better] < best[worse]))
+        rows.append(
+            _row(
+                table,
+                f"method={better}, metric=objective",
+                rule,
+                best[better],
+                best[worse],
+                best[better] < best[worse],
+            )
+        )
     first, second = _said(published, "population_of_second_experiment")
-    rows.append(_row("text", "5.5", "one number for the second population of Section 5.5", first, second, first == second))
+    rows.append(
+        _row(
+            "text",
+            "5.5",
+            "one number for the second population of Section 5.5",
+            first,
+            second,
+            first == second,
+        )
+    )
     return rows
 
 
 def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {"item": item, "place": place, "rule": rule, "printed": printed, "limit": limit, "consistent": bool(consistent)}
+    return {
+        "item": item,
+        "place": place,
+        "rule": rule,
+        "printed": printed,
+        "limit": limit,
+        "consistent": bool(consistent),
+    }
 
 
 def _cells(table: pd.DataFrame, metric: str) -> pd.DataFrame:

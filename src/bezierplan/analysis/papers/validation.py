@@ -1,4 +1,6 @@
-"""The rules by which elhoseny2017 accepts control points and curves (Section 3.2.2), one point at a time, as its figures show them."""
+"""The rules by which elhoseny2017 accepts control points and curves (Section 3.2.2), one point at a
+time, as its figures show them.
+"""
 
 import math
 from typing import NamedTuple
@@ -11,14 +13,17 @@ from bezierplan.workspaces.problem import Path
 
 
 class Verdict(NamedTuple):
-    """The verdict of Section 3.2.2 on a candidate control point: obstacle, too near, or accepted."""
+    """The verdict of Section 3.2.2 on a candidate control point: obstacle, too near, or
+    accepted.
+    """
 
     point: tuple[int, int]
     word: str
 
 
 def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
-    """The subprocesses `Obstacles` and `Distance Threshold` of Section 3.2.2, applied to points (n, 2) in turn, in units of cells.
+    """The subprocesses `Obstacles` and `Distance Threshold` of Section 3.2.2, applied to points (n,
+    2) in turn, in units of cells.
 
     least: the smallest allowed distance from the points accepted before.
     """
@@ -35,13 +40,19 @@ def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
     return verdicts_made
 
 
-def curve_through(points: list[tuple[int, int]], start: tuple[int, int], target: tuple[int, int]) -> Path:
-    """The Bezier curve of control points, ordered by their projection on the line from start to target."""
+def curve_through(
+    points: list[tuple[int, int]], start: tuple[int, int], target: tuple[int, int]
+) -> Path:
+    """The Bezier curve of control points, ordered by their projection on the line from start to
+    target.
+    """
     along = np.subtract(target, start)
     order = sorted(points, key=lambda point: float(np.dot(np.subtract(point, start), along)))
     return Path("bezier", np.array([start, *order, target], dtype=float))
 
 
 def is_free(path: Path, grid: Grid) -> bool:
-    """The subprocess `Valid Path` of Section 3.2.2: whether no cell that the curve touches is occupied."""
+    """The subprocess `Valid Path` of Section 3.2.2: whether no cell that the curve touches is
+    occupied.
+    """
     return occupied_cells(*touched_cells(*samples(path, grid)), grid.occupied) == 0

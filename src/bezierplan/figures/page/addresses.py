@@ -8,29 +8,54 @@ from typing import Any
 
 def address(*parts: Any) -> str:
     """A path of names; what an address cannot hold, such as a space, becomes _."""
-    return "/".join(re.sub(r"[^\w.+~-]", "_", f"{part:g}" if isinstance(part, float) else str(part)) for part in parts)
+    return "/".join(
+        re.sub(r"[^\w.+~-]", "_", f"{part:g}" if isinstance(part, float) else str(part))
+        for part in parts
+    )
 
 
-def of_cells(table: str, cells: Sequence[Mapping[str, Any]], primary: Mapping[str, Any]) -> list[str]:
+def of_cells(
+    table: str, cells: Sequence[Mapping[str, Any]], primary: Mapping[str, Any]
+) -> list[str]:
     """Addresses of the cells of a table, each with its key columns, then `metric` and `statistic`.
 
-    A key is left out where it has the value of the primary interpretation, and for a column with one value only, unless two cells would
-    then have the same address: these name all their keys.
+    A key is left out where it has the value of the primary interpretation, and for a column with
+    one value only, unless two cells would then have the same address: these name all their keys.
 
     >>> of_cells("one/table1", [{"map": "a", "method": "x", "metric": "length", "statistic": "mean"},
     ...                         {"map": "b", "method": "x", "metric": "length", "statistic": "mean"}], {"map": "a"})
     ['one/table1/length/mean', 'one/table1/b/length/mean']
     """
-    single = {column for column in (cells[0] if cells else ()) if len({cell[column] for cell in cells}) == 1} - {"metric", "statistic"}
+    single = {
+        column
+        for column in (cells[0] if cells else ())
+        if len({cell[column] for cell in cells}) == 1
+    } - {"metric", "statistic"}
     short = [
-        "/".join([table, address(*(value for column, value in cell.items() if column not in single and primary.get(column) != value))])
+        "/".join(
+            [
+                table,
+                address(
+                    *(
+                        value
+                        for column, value in cell.items()
+                        if column not in single and primary.get(column) != value
+                    )
+                ),
+            ]
+        )
         for cell in cells
     ]
     count = Counter(short)
-    return [name if count[name] == 1 else f"{table}/{address(*cell.values())}" for name, cell in zip(short, cells, strict=True)]
+    return [
+        name if count[name] == 1 else f"{table}/{address(*cell.values())}"
+        for name, cell in zip(short, cells, strict=True)
+    ]
 
 
 def heading(name: str) -> str:
-    """The name of a table or figure as printed: `table3` as Table 3, `figure_gallery` as Figure gallery."""
+    """The name of a table or figure as printed: `table3` as Table 3, `figure_gallery` as Figure
+    gallery.
+    """
     words = re.sub(r"(?<=[a-z])(?=[0-9])", " ", name.replace("_", " "))
     return words[:1].upper() + words[1:]

@@ -1,4 +1,6 @@
-"""What follows the headline in a few short sentences, computed from the content of the page: what fails in each paper, and how surely."""
+"""What follows the headline in a few short sentences, computed from the content of the page: what
+fails in each paper, and how surely.
+"""
 
 from collections import Counter
 
@@ -19,12 +21,31 @@ _LIKELY = 0.8
 
 
 def answer(studies: dict[str, Study]) -> list[Sentence]:
-    """Sentences: one of each study, then how certain this is. Without numbers and claims, one that says so."""
+    """Sentences: one of each study, then how certain this is. Without numbers and claims, one that
+    says so.
+    """
     claims = [claim for study in studies.values() for claim in _sentences(study)]
     if not claims and not any(_counted(study) for study in studies.values()):
-        runs = sum(shown.count for study in studies.values() for shown in study.shown if not shown.problem) or "no"
-        return [[Part(text=f"A subset that shows how the page works: {runs} runs, too few to judge numbers or claims.")]]
-    of_studies = [_of_study(key, study) for key, study in studies.items() if study.claims or _counted(study)]
+        runs = (
+            sum(
+                shown.count
+                for study in studies.values()
+                for shown in study.shown
+                if not shown.problem
+            )
+            or "no"
+        )
+        return [
+            [
+                Part(
+                    text=f"A subset that shows how the page works: {runs} runs, too few to judge "
+                    f"numbers or claims."
+                )
+            ]
+        ]
+    of_studies = [
+        _of_study(key, study) for key, study in studies.items() if study.claims or _counted(study)
+    ]
     sentences = [*of_studies, _replication(claims), _interpretations(claims), _audit(studies)]
     return [sentence for sentence in sentences if sentence]
 
@@ -32,36 +53,65 @@ def answer(studies: dict[str, Study]) -> list[Sentence]:
 def about_scale(scale: str, repeats: dict[str, list[list[int]]]) -> list[str]:
     """How many runs the results of a scale rest on, and how this differs from the README's numbers.
 
-    repeats: scale -> of each study, the least and the largest number of runs of a method under a condition.
+    repeats: scale -> of each study, the least and the largest number of runs of a method under a
+    condition.
     """
-    runs = {name: _span([number for pair in pairs for number in pair]) for name, pairs in repeats.items()}
+    runs = {
+        name: _span([number for pair in pairs for number in pair])
+        for name, pairs in repeats.items()
+    }
     first = {
-        "smoke": f"Scale smoke is a small subset, of {runs[scale]} runs per method and condition, which shows that everything works.",
-        "full": f"Scale full has as many runs as the papers report: {runs[scale]} per method and condition.",
-        "extended": f"Scale extended has {runs[scale]} runs per method and condition, so its verdicts are about methods.",
+        "smoke": f"Scale smoke is a small subset, of {runs[scale]} runs per method and condition, "
+        f"which shows that everything works.",
+        "full": f"Scale full has as many runs as the papers report: {runs[scale]} per method and "
+        f"condition.",
+        "extended": f"Scale extended has {runs[scale]} runs per method and condition, so its "
+        f"verdicts are about methods.",
     }[scale]
     if scale == "extended":
         return [first, "The README's numbers are of this scale."]
-    return [first, f"The README's numbers rest on scale extended ({runs['extended']} runs; make extended), so they can differ from these."]
+    return [
+        first,
+        f"The README's numbers rest on scale extended ({runs['extended']} runs; make extended), "
+        f"so they can differ from these.",
+    ]
 
 
 def _span(numbers: list[int]) -> str:
-    return f"{min(numbers):,}" if min(numbers) == max(numbers) else f"{min(numbers):,} to {max(numbers):,}"
+    return (
+        f"{min(numbers):,}"
+        if min(numbers) == max(numbers)
+        else f"{min(numbers):,} to {max(numbers):,}"
+    )
 
 
 def reliable(studies: dict[str, Study]) -> list[tuple[str, Worth]]:
-    """Methods that are feasible as often as the baseline, each with the name of its study, the shortest paths first."""
-    found = [(key, row) for key, study in studies.items() for row in study.worth if row.feasible >= row.feasible_baseline]
+    """Methods that are feasible as often as the baseline, each with the name of its study, the
+    shortest paths first.
+    """
+    found = [
+        (key, row)
+        for key, study in studies.items()
+        for row in study.worth
+        if row.feasible >= row.feasible_baseline
+    ]
     return sorted(found, key=lambda each: each[1].length or float("inf"))
 
 
 def failing(studies: dict[str, Study]) -> list[tuple[str, Claim]]:
     """Sentences of papers that fail, each with the name of its study."""
-    return [(key, claim) for key, study in studies.items() for claim in _sentences(study) if _fails(claim)]
+    return [
+        (key, claim)
+        for key, study in studies.items()
+        for claim in _sentences(study)
+        if _fails(claim)
+    ]
 
 
 def _in_short(claim: Claim) -> str:
-    """What the verdict on a claim says; a sentence that fails by a criterion of ours alone is no failure of the paper."""
+    """What the verdict on a claim says; a sentence that fails by a criterion of ours alone is no
+    failure of the paper.
+    """
     said = IN_SHORT.get(claim.verdict, "undecided")
     return _OWN if said == "fail" and claim.own_criterion else said
 
@@ -82,32 +132,46 @@ def _sentences(study: Study) -> list[Claim]:
 def _of_study(key: str, study: Study) -> Sentence:
     """How many numbers of a study agree, how many of its claims are supported, and which fail."""
     counted, claims = Counter(number.verdict for number in _counted(study)), _sentences(study)
-    parts, failed = [Part(text=key, address=study.address)], [claim for claim in claims if _fails(claim)]
+    parts, failed = (
+        [Part(text=key, address=study.address)],
+        [claim for claim in claims if _fails(claim)],
+    )
     said = []
     if counted:
         agree, disagree = counted["identified"] + counted["agrees"], counted["disagrees"]
         numbers = (
-            f"{agree} of {counted.total()} numbers {_verb(agree, 'agrees', 'agree')}, {disagree} {_verb(disagree, 'disagrees', 'disagree')}"
+            f"{agree} of {counted.total()} numbers {_verb(agree, 'agrees', 'agree')}, "
+            f"{disagree} {_verb(disagree, 'disagrees', 'disagree')}"
         )
         said.append(numbers)
     if claims:
         supported = sum(claim.verdict == "supported" for claim in claims)
         said.append(
-            f"{supported} of {_count(len(claims), 'claim')} {_verb(supported, 'is', 'are')} supported, {'' if failed else 'none fails'}"
+            f"{supported} of {_count(len(claims), 'claim')} {_verb(supported, 'is', 'are')} "
+            f"supported, {'' if failed else 'none fails'}"
         )
     parts.append(Part(text=": " + "; ".join(said)))
     if failed:
-        parts += [*_listed([(claim.id, claim.address) for claim in failed]), Part(text=_verb(len(failed), " fails", " fail"))]
+        parts += [
+            *_listed([(claim.id, claim.address) for claim in failed]),
+            Part(text=_verb(len(failed), " fails", " fail")),
+        ]
     return [*parts, Part(text=".")]
 
 
 def _replication(claims: list[Claim]) -> Sentence:
-    known = [claim.replication for claim in claims if claim.verdict == "supported" and claim.replication is not None]
+    known = [
+        claim.replication
+        for claim in claims
+        if claim.verdict == "supported" and claim.replication is not None
+    ]
     if not known:
         return []
     likely = sum(share >= _LIKELY for share in known)
     all_or_some = f"All {likely}" if likely == len(known) > 1 else f"{likely} of {len(known)}"
-    again = f"would show again in at least {100 * _LIKELY:g}\u00a0% of experiments of the paper's size"
+    again = (
+        f"would show again in at least {100 * _LIKELY:g}\u00a0% of experiments of the paper's size"
+    )
     return [Part(text=f"{all_or_some} supported claims that can be resampled {again}.")]
 
 
@@ -115,19 +179,35 @@ def _interpretations(claims: list[Claim]) -> Sentence:
     several = [claim for claim in claims if claim.interpretations]
     if not several:
         return []
-    same = sum(all(interpretation.verdict == claim.verdict for interpretation in claim.interpretations) for claim in several)
+    same = sum(
+        all(interpretation.verdict == claim.verdict for interpretation in claim.interpretations)
+        for claim in several
+    )
     text = f"{same} of {_count(len(several), 'claim')} that can be interpreted in more than one way"
-    return [Part(text=f"{text} {_verb(same, 'keeps its', 'keep their')} verdict in every interpretation.")]
+    return [
+        Part(
+            text=f"{text} {_verb(same, 'keeps its', 'keep their')} verdict in every interpretation."
+        )
+    ]
 
 
 def _audit(studies: dict[str, Study]) -> Sentence:
     """What is wrong with the printed numbers themselves."""
-    checked = [row for study in studies.values() for row in study.audit if row.consistent is not None]
+    checked = [
+        row for study in studies.values() for row in study.audit if row.consistent is not None
+    ]
     if not checked:
         return []
     bad = sum(not row.consistent for row in checked)
-    where = [(key, f"{study.address}/audit") for key, study in studies.items() if any(row.consistent is False for row in study.audit)]
-    text = f"The papers' own numbers contradict each other or an exact bound in {bad} of {_count(len(checked), 'check')}"
+    where = [
+        (key, f"{study.address}/audit")
+        for key, study in studies.items()
+        if any(row.consistent is False for row in study.audit)
+    ]
+    text = (
+        f"The papers' own numbers contradict each other or an exact bound in {bad} of "
+        f"{_count(len(checked), 'check')}"
+    )
     return [Part(text=text + (": " if where else "")), *_listed(where), Part(text=".")]
 
 

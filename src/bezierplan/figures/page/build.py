@@ -1,4 +1,6 @@
-"""The page as text: its content in templates, with style, scripts and the table library in the same file."""
+"""The page as text: its content in templates, with style, scripts and the table library in the same
+file.
+"""
 
 import base64
 import zlib
@@ -9,7 +11,16 @@ from typing import Any, NamedTuple
 
 from bezierplan.analysis import worth
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.figures.page import HERE, addresses, answer, charts, content, glossary, pictures, search
+from bezierplan.figures.page import (
+    HERE,
+    addresses,
+    answer,
+    charts,
+    content,
+    glossary,
+    pictures,
+    search,
+)
 from bezierplan.figures.page.gather import printed_key
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
@@ -27,17 +38,29 @@ LOOKS = {
 }
 _OTHER = ("open", "·")
 # Mark of a comparison -> the class that colours it, and what it says.
-MARKS = {"+": ("good", "holds"), "-": ("bad", "the opposite holds"), "0": ("part", "neither holds"), "?": ("open", "not known")}
+MARKS = {
+    "+": ("good", "holds"),
+    "-": ("bad", "the opposite holds"),
+    "0": ("part", "neither holds"),
+    "?": ("open", "not known"),
+}
 
 
 def html(page: content.Page, folder: Path) -> str:
-    """The page as one html text that needs no other file. folder: where the pictures of its figures are."""
+    """The page as one html text that needs no other file. folder: where the pictures of its figures
+    are.
+    """
     import jinja2
     from markupsafe import Markup
 
     loader = jinja2.FileSystemLoader([HERE / "templates", HERE / "static"])
     environment = jinja2.Environment(
-        loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
+        loader=loader,
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+        keep_trailing_newline=True,
     )
     environment.filters |= {
         "look": look,
@@ -65,14 +88,18 @@ def html(page: content.Page, folder: Path) -> str:
         "words": glossary.WORDS,
         "baseline": worth.BASELINE,
         "address": addresses.address,
-        "methods_shown": {method.address for study in page.studies.values() for method in study.methods},
+        "methods_shown": {
+            method.address for study in page.studies.values() for method in study.methods
+        },
         "reliable": answer.reliable,
         "times_as_long": times_as_long,
         "marks": MARKS,
         "picture": lambda figure: Markup(pictures.data_uri(folder / figure.svg)),
         "size": lambda figure: pictures.size(folder / figure.svg),
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
-        "table_library": _packed(resources.files("itables").joinpath("html/dt_bundle.js").read_text(encoding="utf-8")),
+        "table_library": _packed(
+            resources.files("itables").joinpath("html/dt_bundle.js").read_text(encoding="utf-8")
+        ),
     }
     data, schema = page.model_dump(mode="json"), content.Page.model_json_schema()
     return environment.get_template("page.html.jinja").render(page=page, data=data, schema=schema)
@@ -90,7 +117,9 @@ def _json_text(value: Any) -> Any:
     from markupsafe import Markup
 
     text = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    return Markup(text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029"))
+    return Markup(
+        text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    )
 
 
 def look(verdict: str) -> tuple[str, str]:
@@ -117,12 +146,16 @@ def times_as_long(ratio: float) -> str:
 def counts(verdicts: list[str]) -> list[tuple[str, int]]:
     """How many there are of each verdict, in the order of `LOOKS`."""
     found = Counter(verdict for verdict in verdicts if verdict)
-    return [(name, found[name]) for name in [*LOOKS, *sorted(found.keys() - LOOKS.keys())] if found[name]]
+    return [
+        (name, found[name])
+        for name in [*LOOKS, *sorted(found.keys() - LOOKS.keys())]
+        if found[name]
+    ]
 
 
 class Row(NamedTuple):
-    """A row of a table of numbers: its keys as printed, each with the address of the method that it may name; its cells in the order of the
-    columns; whether it is the paper's interpretation.
+    """A row of a table of numbers: its keys as printed, each with the address of the method that it
+    may name; its cells in the order of the columns; whether it is the paper's interpretation.
     """
 
     keys: list[tuple[str, str]]
@@ -131,7 +164,9 @@ class Row(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """Numbers as rows and columns. same: keys that all rows share, as printed. decimals: of each column."""
+    """Numbers as rows and columns. same: keys that all rows share, as printed. decimals: of each
+    column.
+    """
 
     keys: list[str]
     columns: list[str]
@@ -141,8 +176,8 @@ class Grid(NamedTuple):
 
 
 def grid(table: content.Table, labels: dict[str, str]) -> Grid:
-    """The numbers of a table: a row for each combination of keys, the paper's interpretation first, a column for each metric and
-    statistic.
+    """The numbers of a table: a row for each combination of keys, the paper's interpretation first,
+    a column for each metric and statistic.
     """
     keys = list(table.numbers[0].keys) if table.numbers else []
     values = {key: {number.keys[key] for number in table.numbers} for key in keys}
@@ -160,13 +195,26 @@ def grid(table: content.Table, labels: dict[str, str]) -> Grid:
         for cells in rows.values()
     ]
     listed.sort(key=lambda row: not row.primary)
-    decimals = [max((_decimals(n.published) for n in table.numbers if n.column == column), default=0) for column in columns]
-    same = [f"{key.replace('_', ' ')}: {printed_key(key, next(iter(values[key])), labels)}" for key in keys if key not in told]
-    return Grid([labels.get(key, key.replace("_", " ")) for key in told], columns, listed, same, decimals)
+    decimals = [
+        max((_decimals(n.published) for n in table.numbers if n.column == column), default=0)
+        for column in columns
+    ]
+    same = [
+        f"{key.replace('_', ' ')}: {printed_key(key, next(iter(values[key])), labels)}"
+        for key in keys
+        if key not in told
+    ]
+    return Grid(
+        [labels.get(key, key.replace("_", " ")) for key in told], columns, listed, same, decimals
+    )
 
 
-def _key(key: str, value: content.Cell, labels: dict[str, str], table: content.Table) -> tuple[str, str]:
-    """A key in a column that names it, where a number stands alone, and the address of the method of this name."""
+def _key(
+    key: str, value: content.Cell, labels: dict[str, str], table: content.Table
+) -> tuple[str, str]:
+    """A key in a column that names it, where a number stands alone, and the address of the method
+    of this name.
+    """
     words = short(value) if isinstance(value, int | float) else printed_key(key, value, labels)
     return words, addresses.address(table.address.partition("/")[0], "method", value)
 
@@ -176,12 +224,16 @@ def _decimals(value: float | None) -> int:
 
 
 def settings(item: content.Table | content.Figure) -> str:
-    """The methods, settings and repeats of a table or figure: its caption without the title; empty for a drawing without runs."""
+    """The methods, settings and repeats of a table or figure: its caption without the title; empty
+    for a drawing without runs.
+    """
     return item.caption.removeprefix(f"{item.title}.").strip()
 
 
 def deviation(number: content.Number) -> str:
-    """How far ours lies from the published number, in per cent of it; empty if that is 0 or one of them is unknown."""
+    """How far ours lies from the published number, in per cent of it; empty if that is 0 or one of
+    them is unknown.
+    """
     if not number.published or number.ours is None:
         return ""
     percent = 100 * (number.beside / number.published - 1)
@@ -201,11 +253,17 @@ def tip(number: content.Number) -> str:
     if number.scaled not in (None, number.ours):
         parts.append(f"of the paper's number of runs {short(number.scaled, 5)}")
     if number.predicted != (None, None):
-        parts.append(f"an experiment of the paper's size: {' to '.join(short(end, 5) for end in number.predicted)}")
+        parts.append(
+            f"an experiment of the paper's size: "
+            f"{' to '.join(short(end, 5) for end in number.predicted)}"
+        )
     if number.share_feasible is not None:
         parts.append(f"feasible {100 * number.share_feasible:.0f} %")
     if number.bound is not None:
-        parts.append(f"exact bound {number.bound:.5g}" + ("" if number.gap is None else f", gap {100 * number.gap:.1f} %"))
+        parts.append(
+            f"exact bound {number.bound:.5g}"
+            + ("" if number.gap is None else f", gap {100 * number.gap:.1f} %")
+        )
     return "; ".join(parts)
 
 
@@ -213,13 +271,29 @@ def evidence(claim: content.Claim) -> str:
     """The comparison that determines the verdict on a claim, in words; empty if there is none."""
     if claim.decisive is None:
         return ""
-    comparison, (low, high) = claim.comparisons[claim.decisive], claim.comparisons[claim.decisive].interval
+    comparison, (low, high) = (
+        claim.comparisons[claim.decisive],
+        claim.comparisons[claim.decisive].interval,
+    )
     what = f"{meaning(comparison.metric) or comparison.metric.replace('_', ' ')}, {comparison.name}"
     if comparison.effect is None:
-        return f"{what}: a value in {comparison.counted.replace(', ', ' and ')} runs" if comparison.counted else what
-    unit = "" if comparison.unit in ("", "-") or comparison.test == "share" else f" {comparison.unit}"
-    interval = "" if low is None or high is None else f" (95\u00a0% interval {short(low, 3)} to {short(high, 3)})"
-    return f"{what}: {'share' if comparison.test == 'share' else 'effect'} {short(comparison.effect, 3)}{unit}{interval}"
+        return (
+            f"{what}: a value in {comparison.counted.replace(', ', ' and ')} runs"
+            if comparison.counted
+            else what
+        )
+    unit = (
+        "" if comparison.unit in ("", "-") or comparison.test == "share" else f" {comparison.unit}"
+    )
+    interval = (
+        ""
+        if low is None or high is None
+        else f" (95\u00a0% interval {short(low, 3)} to {short(high, 3)})"
+    )
+    return (
+        f"{what}: {'share' if comparison.test == 'share' else 'effect'} "
+        f"{short(comparison.effect, 3)}{unit}{interval}"
+    )
 
 
 def meaning(metric: str) -> str:

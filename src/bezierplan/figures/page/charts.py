@@ -1,7 +1,8 @@
-"""Charts of the page, in Vega-Lite: numbers and claims by verdict, ours over published, and methods compared with the baseline.
+"""Charts of the page, in Vega-Lite: numbers and claims by verdict, ours over published, and methods
+compared with the baseline.
 
-Colours of text and lines are names of the page's style, which differ in a light and a dark page; those of verdicts and papers are the same
-in both, and in a print.
+Colours of text and lines are names of the page's style, which differ in a light and a dark page;
+those of verdicts and papers are the same in both, and in a print.
 """
 
 import math
@@ -17,7 +18,8 @@ from bezierplan.figures.page.addresses import heading
 
 VEGA_LITE = "6.1"
 
-# Verdict -> colour and mark of its points. Neighbours differ in lightness, so no two are alike in a grey print or to colour-blind eyes.
+# Verdict -> colour and mark of its points. Neighbours differ in lightness, so no two are alike in a
+# grey print or to colour-blind eyes.
 _VERDICTS = {
     "identified": ("#3f8fd0", "diamond"),
     "agrees": ("#009e73", "circle"),
@@ -32,7 +34,16 @@ _VERDICTS = {
 }
 # Colours and marks of papers.
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8c510a", "#7e67d6")
-_MARKS = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down", "triangle-right", "triangle-left")
+_MARKS = (
+    "circle",
+    "square",
+    "triangle-up",
+    "diamond",
+    "cross",
+    "triangle-down",
+    "triangle-right",
+    "triangle-left",
+)
 # An axis of ratios reaches at most from one over this to this.
 _MOST_TIMES = 8.0
 # Heights of a bar and of a row of points, in pixels.
@@ -76,7 +87,9 @@ _STYLE = {
 
 
 class Chart(NamedTuple):
-    """A chart: its title, what it shows in words, its specification, and its picture as svg for a page without scripts."""
+    """A chart: its title, what it shows in words, its specification, and its picture as svg for a
+    page without scripts.
+    """
 
     title: str
     text: str
@@ -88,24 +101,46 @@ def charts(page: content.Page) -> dict[str, Chart]:
     """The charts that the page has data for, by name."""
     import vl_convert
 
-    written = {"numbers": _numbers_by_verdict(page), "claims": _claims_by_verdict(page), "ratios": _ratios(page), "methods": _methods(page)}
+    written = {
+        "numbers": _numbers_by_verdict(page),
+        "claims": _claims_by_verdict(page),
+        "ratios": _ratios(page),
+        "methods": _methods(page),
+    }
     drawn = {}
     for name, (title, text, own) in ((name, each) for name, each in written.items() if each):
-        spec = {"$schema": f"https://vega.github.io/schema/vega-lite/v{VEGA_LITE}.json", "config": _STYLE, "width": "container"}
+        spec = {
+            "$schema": f"https://vega.github.io/schema/vega-lite/v{VEGA_LITE}.json",
+            "config": _STYLE,
+            "width": "container",
+        }
         spec |= {"autosize": {"type": "fit-x", "contains": "padding"}} | own
-        drawn[name] = Chart(title, text, spec, _named(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE), name))
+        drawn[name] = Chart(
+            title, text, spec, _named(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE), name)
+        )
     return drawn
 
 
 def _named(svg: str, chart: str) -> str:
-    """A picture whose parts have names of their own in the page; Vega counts them through all pictures of a process."""
-    names = {name: f"page-chart-{chart}-{n}" for n, name in enumerate(dict.fromkeys(re.findall(r'\bid="([^"]*)"', svg)))}
-    return re.sub(r'(\bid="|url\(#|href="#)([^")]*)', lambda found: found[1] + names.get(found[2], found[2]), svg)
+    """A picture whose parts have names of their own in the page; Vega counts them through all
+    pictures of a process.
+    """
+    names = {
+        name: f"page-chart-{chart}-{n}"
+        for n, name in enumerate(dict.fromkeys(re.findall(r'\bid="([^"]*)"', svg)))
+    }
+    return re.sub(
+        r'(\bid="|url\(#|href="#)([^")]*)',
+        lambda found: found[1] + names.get(found[2], found[2]),
+        svg,
+    )
 
 
 @cache
 def script() -> str:
-    """The script that draws charts in a browser: `vegaEmbed` of the element to draw in, a specification, and options."""
+    """The script that draws charts in a browser: `vegaEmbed` of the element to draw in, a
+    specification, and options.
+    """
     import vl_convert
 
     return vl_convert.javascript_bundle(vl_version=VEGA_LITE)
@@ -116,34 +151,66 @@ Written = tuple[str, str, dict[str, Any]]
 
 def _numbers_by_verdict(page: content.Page) -> Written | None:
     title = "Published numbers by verdict"
-    text = "Stacked bars: how many of the published numbers of each paper agree with our runs, disagree, or are inconclusive."
+    text = (
+        "Stacked bars: how many of the published numbers of each paper agree with our runs, "
+        "disagree, or are inconclusive."
+    )
     spec = _stacked(page, comparison.VERDICTS)
     return (title, text, spec) if spec else None
 
 
 def _claims_by_verdict(page: content.Page) -> Written | None:
-    text = "Stacked bars: how many of the claims of each paper are supported, hold in part, are contradicted, or are undecided."
+    text = (
+        "Stacked bars: how many of the claims of each paper are supported, hold in part, are "
+        "contradicted, or are undecided."
+    )
     spec = _stacked(page, VERDICTS)
     return ("Claims by verdict", text, spec) if spec else None
 
 
 def _stacked(page: content.Page, verdicts: Iterable[str]) -> dict[str, Any] | None:
-    """Bars of one length, a row per study, divided by its counts of verdicts, which are printed where there is room."""
+    """Bars of one length, a row per study, divided by its counts of verdicts, which are printed
+    where there is room.
+    """
     ordered, rows = [name for name in _VERDICTS if name in set(verdicts)], []
     for key, study in page.studies.items():
         total = sum(study.outcome.get(name, 0) for name in ordered)
         before = 0
         for name in ordered:
             if count := study.outcome.get(name, 0):
-                place = {"from": before / total, "to": (before + count) / total, "middle": (before + count / 2) / total}
+                place = {
+                    "from": before / total,
+                    "to": (before + count) / total,
+                    "middle": (before + count / 2) / total,
+                }
                 tip = f"{key}; {count} of {total} {name}"
-                rows.append({"study": key, "verdict": name, "count": count, "tip": tip, "address": study.address} | place)
+                rows.append(
+                    {
+                        "study": key,
+                        "verdict": name,
+                        "count": count,
+                        "tip": tip,
+                        "address": study.address,
+                    }
+                    | place
+                )
                 before += count
     if not rows:
         return None
     shown = [name for name in ordered if any(row["verdict"] == name for row in rows)]
-    y = {"field": "study", "type": "nominal", "sort": list(page.studies), "title": None, "axis": {"domain": False, "ticks": False}}
-    colour = {"field": "verdict", "type": "nominal", "scale": _scale(shown, 0), "legend": {"title": None}}
+    y = {
+        "field": "study",
+        "type": "nominal",
+        "sort": list(page.studies),
+        "title": None,
+        "axis": {"domain": False, "ticks": False},
+    }
+    colour = {
+        "field": "verdict",
+        "type": "nominal",
+        "scale": _scale(shown, 0),
+        "legend": {"title": None},
+    }
     return {
         "data": {"values": rows},
         "height": _BAR * len({row["study"] for row in rows}),
@@ -152,7 +219,11 @@ def _stacked(page: content.Page, verdicts: Iterable[str]) -> dict[str, Any] | No
             {
                 "mark": {"type": "bar", "stroke": "var(--paper)", "height": {"band": 0.82}},
                 "encoding": {
-                    "x": {"field": "from", "type": "quantitative", "axis": {"format": "%", "title": None, "tickCount": 5}},
+                    "x": {
+                        "field": "from",
+                        "type": "quantitative",
+                        "axis": {"format": "%", "title": None, "tickCount": 5},
+                    },
                     "x2": {"field": "to"},
                     "color": colour,
                 },
@@ -160,7 +231,10 @@ def _stacked(page: content.Page, verdicts: Iterable[str]) -> dict[str, Any] | No
             {
                 "transform": [{"filter": "datum.to - datum.from > 0.045"}],
                 "mark": {"type": "text", "color": "#000000"},
-                "encoding": {"x": {"field": "middle", "type": "quantitative"}, "text": {"field": "count"}},
+                "encoding": {
+                    "x": {"field": "middle", "type": "quantitative"},
+                    "text": {"field": "count"},
+                },
             },
         ],
     }
@@ -172,25 +246,51 @@ def _scale(names: list[str], part: int) -> dict[str, list[str]]:
 
 
 def _ratios(page: content.Page) -> Written | None:
-    """All published numbers as ours over published, a row per table, each with the interval that its verdict rests on."""
-    rows = [row for study in page.studies.values() for table in study.tables for row in _of_table(study, table)]
+    """All published numbers as ours over published, a row per table, each with the interval that
+    its verdict rests on.
+    """
+    rows = [
+        row
+        for study in page.studies.values()
+        for table in study.tables
+        for row in _of_table(study, table)
+    ]
     if not rows:
         return None
     reach = min(_MOST_TIMES, 1.05 * max(max(row["ratio"], 1 / row["ratio"]) for row in rows))
     shown = [name for name in _VERDICTS if any(row["verdict"] == name for row in rows)]
     scale = {"type": "log", "domain": [1 / reach, reach], "clamp": True, "nice": False}
     ticks = [each for each in (1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8) if 1 / reach <= each <= reach]
-    y = {"field": "table", "type": "nominal", "sort": list(dict.fromkeys(row["table"] for row in rows)), "title": None}
+    y = {
+        "field": "table",
+        "type": "nominal",
+        "sort": list(dict.fromkeys(row["table"] for row in rows)),
+        "title": None,
+    }
     y |= {"axis": {"grid": True, "tickBand": "extent", "ticks": False, "domain": False}}
     above = {"field": "height", "type": "quantitative", "scale": {"domain": [-0.08, 1.08]}}
-    verdict = {"field": "verdict", "type": "nominal", "scale": _scale(shown, 0), "legend": {"title": None, "columns": 2}}
-    mark = {"field": "verdict", "type": "nominal", "scale": _scale(shown, 1), "legend": {"title": None, "columns": 2}}
+    verdict = {
+        "field": "verdict",
+        "type": "nominal",
+        "scale": _scale(shown, 0),
+        "legend": {"title": None, "columns": 2},
+    }
+    mark = {
+        "field": "verdict",
+        "type": "nominal",
+        "scale": _scale(shown, 1),
+        "legend": {"title": None, "columns": 2},
+    }
     spec = {
         "data": {"values": rows},
         "height": _ROW * len({row["table"] for row in rows}),
         "encoding": {"y": y, "yOffset": above, "color": verdict, "tooltip": {"field": "address"}},
         "layer": [
-            {"data": {"values": [{"one": 1}]}, "mark": {"type": "rule", "color": _SOFT}, "encoding": _only("x", "one")},
+            {
+                "data": {"values": [{"one": 1}]},
+                "mark": {"type": "rule", "color": _SOFT},
+                "encoding": _only("x", "one"),
+            },
             {
                 "mark": {"type": "rule", "opacity": 0.55, "clip": True},
                 "encoding": {
@@ -204,36 +304,60 @@ def _ratios(page: content.Page) -> Written | None:
                 },
             },
             {
-                "mark": {"type": "point", "filled": True, "size": 34, "opacity": 1, "strokeWidth": 0},
+                "mark": {
+                    "type": "point",
+                    "filled": True,
+                    "size": 34,
+                    "opacity": 1,
+                    "strokeWidth": 0,
+                },
                 "encoding": {"x": {"field": "ratio", "type": "quantitative"}, "shape": mark},
             },
         ],
     }
     text = (
-        f"Dots: {len(rows)} published numbers, ours divided by the published one, on a logarithmic axis, one row per table; lines: the "
-        "range (95 %) that an experiment of the paper's size would print. A line that does not reach 1 is a number that disagrees."
+        f"Dots: {len(rows)} published numbers, ours divided by the published one, on a "
+        f"logarithmic axis, one row per table; lines: the "
+        "range (95 %) that an experiment of the paper's size would print. A line that does not "
+        "reach 1 is a number that disagrees."
     )
     return "Ours over published, every number", text, spec
 
 
 def _only(channel: str, field: str) -> dict[str, Any]:
     """The encoding of a mark that crosses the whole chart: none of the channels of the others."""
-    return dict.fromkeys(("y", "yOffset", "color", "tooltip")) | {channel: {"field": field, "type": "quantitative"}}
+    return dict.fromkeys(("y", "yOffset", "color", "tooltip")) | {
+        channel: {"field": field, "type": "quantitative"}
+    }
 
 
 def _of_table(study: content.Study, table: content.Table) -> list[dict[str, Any]]:
-    """Rows of a table: ratios to its published numbers, from the lowest to the highest; none where a ratio is undefined."""
+    """Rows of a table: ratios to its published numbers, from the lowest to the highest; none where
+    a ratio is undefined.
+    """
     numbers_shown = [
-        number for number in table.numbers if number.counted and number.published and (number.beside or 0) / number.published > 0
+        number
+        for number in table.numbers
+        if number.counted and number.published and (number.beside or 0) / number.published > 0
     ]
     numbers_shown.sort(key=lambda number: number.beside / number.published)
     rows = []
     for place, number in enumerate(numbers_shown):
         low, high = (None if end is None else end / number.published for end in number.predicted)
-        given = {"address": number.address, "table": f"{study.address} {heading(table.name)}", "verdict": number.verdict}
-        given |= {"ratio": _digits(number.beside / number.published), "height": _digits((place + 0.5) / len(numbers_shown))}
+        given = {
+            "address": number.address,
+            "table": f"{study.address} {heading(table.name)}",
+            "verdict": number.verdict,
+        }
+        given |= {
+            "ratio": _digits(number.beside / number.published),
+            "height": _digits((place + 0.5) / len(numbers_shown)),
+        }
         # A range without an end reaches to the edge.
-        given |= {"low": _digits(max(low or 0, 1 / _MOST_TIMES)), "high": _digits(min(high or math.inf, _MOST_TIMES))}
+        given |= {
+            "low": _digits(max(low or 0, 1 / _MOST_TIMES)),
+            "high": _digits(min(high or math.inf, _MOST_TIMES)),
+        }
         rows.append(given)
     return rows
 
@@ -245,21 +369,51 @@ def _digits(value: float) -> float:
 
 def _methods(page: content.Page) -> Written | None:
     """All methods by feasible runs, length and CPU time, the last two over the baseline's."""
-    rows = [_of_method(key, study, row) for key, study in page.studies.items() for row in study.worth if row.length and row.cpu]
+    rows = [
+        _of_method(key, study, row)
+        for key, study in page.studies.items()
+        for row in study.worth
+        if row.length and row.cpu
+    ]
     if not rows:
         return None
     names = list(dict.fromkeys(row["study"] for row in rows))
-    colours, marks = ({"domain": names, "range": [looks[n % len(looks)] for n in range(len(names))]} for looks in (_COLOURS, _MARKS))
+    colours, marks = (
+        {"domain": names, "range": [looks[n % len(looks)] for n in range(len(names))]}
+        for looks in (_COLOURS, _MARKS)
+    )
     feasible = min(row.feasible_baseline for study in page.studies.values() for row in study.worth)
     # Axes stay as they are when methods are hidden.
-    lengths, shares = _span([1.0, *(row["length"] for row in rows)]), _span([feasible, *(row["feasible"] for row in rows)])
+    lengths, shares = (
+        _span([1.0, *(row["length"] for row in rows)]),
+        _span([feasible, *(row["feasible"] for row in rows)]),
+    )
     times = _span([row["cpu"] for row in rows])
-    x = {"field": "length", "type": "quantitative", "scale": {"type": "log", "domain": lengths, "nice": False, "padding": 12}}
+    x = {
+        "field": "length",
+        "type": "quantitative",
+        "scale": {"type": "log", "domain": lengths, "nice": False, "padding": 12},
+    }
     x |= {"axis": {"title": "path length / baseline's", "format": "~g", "tickCount": 6}}
-    y = {"field": "feasible", "type": "quantitative", "scale": {"domain": shares, "zero": False, "padding": 12}}
+    y = {
+        "field": "feasible",
+        "type": "quantitative",
+        "scale": {"domain": shares, "zero": False, "padding": 12},
+    }
     y |= {"axis": {"title": "feasible runs", "format": "%", "tickCount": 6}}
-    size = {"field": "cpu", "type": "quantitative", "scale": {"type": "log", "domain": times, "range": [40, 420]}}
-    size |= {"legend": {"title": "CPU time / baseline's", "values": _powers(row["cpu"] for row in rows), "format": "~g"} | _BELOW}
+    size = {
+        "field": "cpu",
+        "type": "quantitative",
+        "scale": {"type": "log", "domain": times, "range": [40, 420]},
+    }
+    size |= {
+        "legend": {
+            "title": "CPU time / baseline's",
+            "values": _powers(row["cpu"] for row in rows),
+            "format": "~g",
+        }
+        | _BELOW
+    }
     of_study = {"field": "study", "type": "nominal", "legend": {"title": None}}
     spec = {
         "params": [{"name": "hidden", "value": []}],
@@ -268,7 +422,13 @@ def _methods(page: content.Page) -> Written | None:
             {
                 "data": {"values": rows},
                 "transform": [{"filter": "indexof(hidden, datum.address) < 0"}],
-                "mark": {"type": "point", "filled": True, "opacity": 0.75, "stroke": "var(--paper)", "strokeWidth": 0.7},
+                "mark": {
+                    "type": "point",
+                    "filled": True,
+                    "opacity": 0.75,
+                    "stroke": "var(--paper)",
+                    "strokeWidth": 0.7,
+                },
                 "encoding": {
                     "x": x,
                     "y": y,
@@ -281,24 +441,49 @@ def _methods(page: content.Page) -> Written | None:
             {
                 "data": {"values": [{"length": 1, "feasible": feasible}]},
                 "layer": [
-                    {"mark": {"type": "point", "shape": _STAR, "size": 160, "filled": True, "color": _TEXT, "opacity": 1}},
                     {
-                        "mark": {"type": "text", "align": "left", "dx": 12, "dy": -12, "color": _TEXT},
+                        "mark": {
+                            "type": "point",
+                            "shape": _STAR,
+                            "size": 160,
+                            "filled": True,
+                            "color": _TEXT,
+                            "opacity": 1,
+                        }
+                    },
+                    {
+                        "mark": {
+                            "type": "text",
+                            "align": "left",
+                            "dx": 12,
+                            "dy": -12,
+                            "color": _TEXT,
+                        },
                         "encoding": {"text": {"value": "the baseline"}},
                     },
                 ],
-                "encoding": {"x": {"field": "length", "type": "quantitative"}, "y": {"field": "feasible", "type": "quantitative"}},
+                "encoding": {
+                    "x": {"field": "length", "type": "quantitative"},
+                    "y": {"field": "feasible", "type": "quantitative"},
+                },
             },
         ],
     }
     text = (
-        f"Dots: {len(rows)} methods by the share of their runs that are feasible, and by the median length of their paths over that of the "
-        f"baseline (star), {worth.BASELINE}; the larger a dot, the more CPU time. Best is high up at the left, and small."
+        f"Dots: {len(rows)} methods by the share of their runs that are feasible, and by the "
+        f"median length of their paths over that of the "
+        f"baseline (star), {worth.BASELINE}; the larger a dot, the more CPU time. Best is high up "
+        f"at the left, and small."
     )
     return "Methods compared with the baseline", text, spec
 
 
-_BELOW = {"orient": "bottom", "direction": "horizontal", "symbolFillColor": _SOFT, "symbolStrokeColor": _SOFT}
+_BELOW = {
+    "orient": "bottom",
+    "direction": "horizontal",
+    "symbolFillColor": _SOFT,
+    "symbolStrokeColor": _SOFT,
+}
 # The outline of a star with five points, in the unit of Vega's marks.
 _STAR = "M0,-1L0.2245,-0.309L0.9511,-0.309L0.3633,0.118L0.5878,0.809L0,0.382L-0.5878,0.809L-0.3633,0.118L-0.9511,-0.309L-0.2245,-0.309Z"
 
@@ -311,13 +496,23 @@ def _span(values: list[float]) -> list[float]:
 
 def _of_method(key: str, study: content.Study, row: content.Worth) -> dict[str, Any]:
     name = study.labels.get(row.method, row.method)
-    tip = f"{name} ({key}); feasible {100 * row.feasible:.1f} %; length {row.length:.4g} times the baseline's; CPU time {row.cpu:.3g} times"
+    tip = (
+        f"{name} ({key}); feasible {100 * row.feasible:.1f} %; length {row.length:.4g} times "
+        f"the baseline's; CPU time {row.cpu:.3g} times"
+    )
     given = {"study": key, "name": name, "address": row.address, "tip": tip}
-    return given | {"length": _digits(row.length), "feasible": _digits(row.feasible), "cpu": _digits(row.cpu)}
+    return given | {
+        "length": _digits(row.length),
+        "feasible": _digits(row.feasible),
+        "cpu": _digits(row.cpu),
+    }
 
 
 def _powers(values: Iterable[float]) -> list[float]:
     """Powers of ten in the range of values, or the range itself."""
     known = sorted(values)
-    powers = [10.0**n for n in range(math.ceil(math.log10(known[0])), math.floor(math.log10(known[-1])) + 1)]
+    powers = [
+        10.0**n
+        for n in range(math.ceil(math.log10(known[0])), math.floor(math.log10(known[-1])) + 1)
+    ]
     return powers or [known[0], known[-1]]

@@ -1,7 +1,9 @@
-"""What the page holds, as frozen models: the page is drawn from them, and their JSON stands in it with the schema that describes it.
+"""What the page holds, as frozen models: the page is drawn from them, and their JSON stands in it
+with the schema that describes it.
 
-An address names a place on the page, and is what follows `#` in a link to it. It reads like a path: study, table, the keys that tell the
-row from others of the table's primary interpretation, metric, statistic; study and claim; study and figure; the id of a run.
+An address names a place on the page, and is what follows `#` in a link to it. It reads like a path:
+study, table, the keys that tell the row from others of the table's primary interpretation, metric,
+statistic; study and claim; study and figure; the id of a run.
 """
 
 from typing import Annotated, Any
@@ -33,27 +35,41 @@ class Number(Record):
     """A cell of a table: a published number beside ours."""
 
     address: Address
-    keys: dict[str, Cell] = Field(description="column of the runs table -> value, as in the csv file")
+    keys: dict[str, Cell] = Field(
+        description="column of the runs table -> value, as in the csv file"
+    )
     row: str = Field(description="the keys as printed")
     column: str = Field(description="metric and statistic as printed")
     metric: str
     statistic: str
     unit: str
-    published: float | None = Field(description="the published number; null if the paper prints none")
+    published: float | None = Field(
+        description="the published number; null if the paper prints none"
+    )
     n_published: float | None = Field(description="number of runs behind it, if stated")
     ours: float | None
     scaled: float | None = Field(
-        None, description="ours as the published number of runs would print it: a count in proportion, a median extreme"
+        None,
+        description="ours as the published number of runs would print it: a count in proportion, "
+        "a median extreme",
     )
     n: float | None = Field(description="number of our runs that count")
     interval: Interval = Field(description="95 % bootstrap interval of ours")
-    predicted: Interval = Field(description="95 % prediction interval of an experiment of the published size")
-    verdict: str = Field(description="identified, agrees, disagrees or inconclusive; empty if not judged")
+    predicted: Interval = Field(
+        description="95 % prediction interval of an experiment of the published size"
+    )
+    verdict: str = Field(
+        description="identified, agrees, disagrees or inconclusive; empty if not judged"
+    )
     why: str = Field("", description="why it is inconclusive")
     primary: bool = Field(description="whether the row is the paper's interpretation")
     counted: bool = Field(description="whether it counts in the outcome")
-    share_feasible: float | None = Field(description="share of all runs whose path the certified checker accepts")
-    bound: float | None = Field(description="exact shortest length of the problem, in the unit of length")
+    share_feasible: float | None = Field(
+        description="share of all runs whose path the certified checker accepts"
+    )
+    bound: float | None = Field(
+        description="exact shortest length of the problem, in the unit of length"
+    )
     gap: float | None = Field(description="median over the feasible runs of length / bound - 1")
 
     @property
@@ -63,7 +79,9 @@ class Number(Record):
 
 
 class Table(Record):
-    """A table: with `numbers` if it is compared with published ones, otherwise with `columns` and `rows` as in its csv file."""
+    """A table: with `numbers` if it is compared with published ones, otherwise with `columns` and
+    `rows` as in its csv file.
+    """
 
     address: Address
     name: str
@@ -82,8 +100,13 @@ class Figure(Record):
     name: str
     title: str
     caption: str = Field(description="title, methods, settings in force and repeats")
-    told: str = Field("", description="by panel, the run that it shows, and the runs that it counts")
-    svg: str = Field(description="its picture, relative to the page; beside it lie others that end in .png and .pdf")
+    told: str = Field(
+        "", description="by panel, the run that it shows, and the runs that it counts"
+    )
+    svg: str = Field(
+        description="its picture, relative to the page; beside it lie others that end in .png and "
+        ".pdf"
+    )
     csv: str = Field(description="exactly the data that it shows, relative to the page")
 
 
@@ -97,15 +120,23 @@ class Comparison(Record):
     statistic: str
     unit: str
     name: str = Field(description="what is compared, and where")
-    mark: str = Field(description="+ holds, - the opposite holds, 0 neither, ? not known; in the family of all deciding comparisons")
+    mark: str = Field(
+        description="+ holds, - the opposite holds, 0 neither, ? not known; in the family of all "
+        "deciding comparisons"
+    )
     effect: float | None
     interval: Interval = Field(description="95 % interval of the effect")
     margin: float | None = Field(description="the smallest effect that matters")
-    reference: float = Field(0.0, description="the effect on whose other side the claim fails: 0, or the share that it needs")
+    reference: float = Field(
+        0.0,
+        description="the effect on whose other side the claim fails: 0, or the share that it needs",
+    )
     effect_published: float | None = Field(description="the effect in the printed numbers")
     p: float | None
     n: float | None = Field(description="number of replicates")
-    counted: str = Field("", description="how many replicates of each group have a value, out of how many")
+    counted: str = Field(
+        "", description="how many replicates of each group have a value, out of how many"
+    )
     reason: str
 
 
@@ -124,7 +155,9 @@ class Choice(Record):
     alternative: str
     claim: str = Field(description="id of the claim")
     verdict: str = Field(description="with the alternative in force")
-    changed: bool = Field(description="whether this differs from the verdict with the default, both being decided")
+    changed: bool = Field(
+        description="whether this differs from the verdict with the default, both being decided"
+    )
 
 
 class Claim(Record):
@@ -135,18 +168,26 @@ class Claim(Record):
     place: str = Field(description="where the paper says it")
     statement: str
     finding: bool = Field(description="our own finding rather than a sentence of the paper")
-    own_criterion: bool = Field(False, description="the paper gives no number, and the threshold or margin that decides is ours")
+    own_criterion: bool = Field(
+        False,
+        description="the paper gives no number, and the threshold or margin that decides is ours",
+    )
     verdict: str
     holds: str = Field(description="how many comparisons hold")
     where: str = Field(description="where it holds, in words")
     published: str = Field(description="how many of those with printed numbers hold in these")
     reason: str
-    replication: float | None = Field(description="share of experiments of the paper's size, drawn from our runs, in which it holds")
+    replication: float | None = Field(
+        description="share of experiments of the paper's size, drawn from our runs, in which it "
+        "holds"
+    )
     size: str = Field(description="our effect compared with the printed one")
     shown_in: list[Address] = Field(description="the tables and figures that show it")
     comparisons: list[Comparison]
     why: str = Field("", description="the decisive comparison in a plain sentence")
-    decisive: int | None = Field(None, description="index in `comparisons` of the one that determines the verdict")
+    decisive: int | None = Field(
+        None, description="index in `comparisons` of the one that determines the verdict"
+    )
     variant: str = Field(description="the primary values")
     interpretations: list[Interpretation]
     choices: list[Choice]
@@ -177,7 +218,9 @@ class Audited(Record):
     printed: Cell
     limit: Cell
     consistent: bool | None
-    arithmetic: str = Field(description="how it was checked, for rules that hold for any paper; otherwise empty")
+    arithmetic: str = Field(
+        description="how it was checked, for rules that hold for any paper; otherwise empty"
+    )
 
 
 class Method(Record):
@@ -186,24 +229,35 @@ class Method(Record):
     address: Address
     name: str
     planner: str = Field(description="name of the planner, or its file")
-    about: list[str] = Field(description="paragraphs that say what the planner does, and what of the paper it follows")
+    about: list[str] = Field(
+        description="paragraphs that say what the planner does, and what of the paper it follows"
+    )
     settings: dict[str, str] = Field(
-        description="its settings in this study as text, by name; the planner's own defaults hold for the others"
+        description="its settings in this study as text, by name; the planner's own defaults hold "
+        "for the others"
     )
 
 
 class Worth(Record):
-    """A method beside a baseline that needs no search: medians over conditions of its median over the baseline's."""
+    """A method beside a baseline that needs no search: medians over conditions of its median over
+    the baseline's.
+    """
 
     address: Address
     method: str
     baseline: str
     conditions: int = Field(description="conditions under which both have runs")
-    feasible: float = Field(description="share of its runs whose path the certified checker accepts")
+    feasible: float = Field(
+        description="share of its runs whose path the certified checker accepts"
+    )
     feasible_baseline: float
     length: float | None = Field(description="length over the baseline's, feasible runs only")
-    curvature: float | None = Field(description="largest curvature over the baseline's; null also for paths with corners")
-    cornered: bool = Field(description="whether its paths have corners, where the curvature is infinite")
+    curvature: float | None = Field(
+        description="largest curvature over the baseline's; null also for paths with corners"
+    )
+    cornered: bool = Field(
+        description="whether its paths have corners, where the curvature is infinite"
+    )
     cpu: float | None = Field(description="CPU time over the baseline's")
 
 
@@ -211,9 +265,14 @@ class Explanation(Record):
     """How many published numbers an interpretation of what the paper leaves open explains."""
 
     interpretation: str = Field(description="its choices; `default` without any")
-    in_range: int = Field(description="numbers in the central 95 % of what experiments of the paper's size would print")
+    in_range: int = Field(
+        description="numbers in the central 95 % of what experiments of the paper's size would "
+        "print"
+    )
     numbers: int = Field(description="of how many")
-    by_chance: float | None = Field(description="how many would be on average if each were exchanged with another of its kind")
+    by_chance: float | None = Field(
+        description="how many would be on average if each were exchanged with another of its kind"
+    )
 
 
 class Explained(Record):
@@ -227,14 +286,18 @@ class Explained(Record):
 
 
 class Shown(Record):
-    """Runs of a method in the viewer, by their ids in `runs`: on one problem, or on all of an experiment."""
+    """Runs of a method in the viewer, by their ids in `runs`: on one problem, or on all of an
+    experiment.
+    """
 
     experiment: str
     problem: str = Field(description="empty for all problems of the experiment together")
     method: str
     count: int = Field(description="number of runs")
     feasible: int = Field(description="number of feasible runs")
-    best: str | None = Field(description="the feasible run with the least length over the exact bound")
+    best: str | None = Field(
+        description="the feasible run with the least length over the exact bound"
+    )
     median: str | None
     worst: str | None
     failed: list[str] = Field(description="runs without a feasible path, the first few")
@@ -262,29 +325,48 @@ class Study(Record):
     latex: str = Field("", description="its tables as LaTeX, relative to the page")
     audit: list[Audited]
     assumptions: list[Assumption]
-    gap: float | None = Field(None, description="median gap of the numbers that count in the outcome")
+    gap: float | None = Field(
+        None, description="median gap of the numbers that count in the outcome"
+    )
     worth: list[Worth] = []
     worth_in_words: str = Field("", description="what follows from `worth`")
-    explanations: list[Explanation] = Field([], description="the best interpretations tried, the best first, and the default")
-    interpretations_in_words: str = Field("", description="which interpretation is the most likely, and what none explains")
+    explanations: list[Explanation] = Field(
+        [], description="the best interpretations tried, the best first, and the default"
+    )
+    interpretations_in_words: str = Field(
+        "", description="which interpretation is the most likely, and what none explains"
+    )
     explained: list[Explained] = []
     shown: list[Shown]
     labels: dict[str, str] = Field(description="name -> how it is printed")
 
 
 class World(Record):
-    """How obstacles move while a robot drives: circles, or cells that change. Time is counted in steps."""
+    """How obstacles move while a robot drives: circles, or cells that change. Time is counted in
+    steps.
+    """
 
-    walls: list[float] = Field([], description="lowest and highest x, lowest and highest y of centres, which are reflected there")
-    circles: list[list[float]] = Field([], description="x, y, velocity in x and in y per step, radius; a straight line within a step")
+    walls: list[float] = Field(
+        [],
+        description="lowest and highest x, lowest and highest y of centres, which are reflected "
+        "there",
+    )
+    circles: list[list[float]] = Field(
+        [],
+        description="x, y, velocity in x and in y per step, radius; a straight line within a step",
+    )
     moments: list[float] = Field([], description="when cells change, in steps")
-    changed: list[list[int]] = Field([], description="the cells that change at each moment, row by row from the top left one")
+    changed: list[list[int]] = Field(
+        [], description="the cells that change at each moment, row by row from the top left one"
+    )
 
 
 class Problem(Record):
     """A workspace with start, target and the exact shortest path."""
 
-    workspace: str = Field(description="key in `workspaces`; of a world that moves, the workspace at its beginning")
+    workspace: str = Field(
+        description="key in `workspaces`; of a world that moves, the workspace at its beginning"
+    )
     world: World | None = Field(None, description="how the obstacles move, if they do")
     start: tuple[float, float]
     target: tuple[float, float]
@@ -293,28 +375,41 @@ class Problem(Record):
 
 
 class Run(Record):
-    """A run. Points are rounded to what a picture shows; the parquet files have them to the last bit."""
+    """A run. Points are rounded to what a picture shows; the parquet files have them to the last
+    bit.
+    """
 
     problem: str = Field(description="key in `problems`")
     feasible: bool
     claimed: bool = Field(description="the planner's own opinion")
     length: float | None
     clearance: float | None
-    collision: tuple[float, float] | None = Field(description="where the path first meets an obstacle or leaves the border")
+    collision: tuple[float, float] | None = Field(
+        description="where the path first meets an obstacle or leaves the border"
+    )
     depth: float | None = Field(description="depth of the path in obstacles or beyond the border")
     evaluations: int
     stop: str
     curve: str
     path: list[float] = Field(description="x0, y0, x1, y1, ... along the path")
     control: list[float] = Field(description="control points; empty if some are tangents")
-    history: list[tuple[int, float]] = Field(description="generation and best objective, where it changes; of a drive, each plan's")
+    history: list[tuple[int, float]] = Field(
+        description="generation and best objective, where it changes; of a drive, each plan's"
+    )
     steps: float | None = Field(None, description="of a drive: time until its end, in steps")
-    driven: list[float] = Field([], description="of a drive: length of the way along `path` at step 0, 1, ... and at the end")
-    collision_step: float | None = Field(None, description="of a drive: time of the first collision, in steps")
+    driven: list[float] = Field(
+        [],
+        description="of a drive: length of the way along `path` at step 0, 1, ... and at the end",
+    )
+    collision_step: float | None = Field(
+        None, description="of a drive: time of the first collision, in steps"
+    )
 
 
 class Verified(Record):
-    """What was judged again from stored points when the page was made, all of it without a difference."""
+    """What was judged again from stored points when the page was made, all of it without a
+    difference.
+    """
 
     files: int = Field(description="files of runs")
     runs: int
@@ -337,12 +432,18 @@ class Page(Record):
 
     format: int = FORMAT
     scale: str
-    about_scale: list[str] = Field([], description="sentences: how many runs there are, and what the README's numbers rest on")
+    about_scale: list[str] = Field(
+        [], description="sentences: how many runs there are, and what the README's numbers rest on"
+    )
     made_by: str = Field("bezierplan", description="version and commit")
-    headline: Headline | None = Field(None, description="the outcome; null at a scale that judges nothing")
+    headline: Headline | None = Field(
+        None, description="the outcome; null at a scale that judges nothing"
+    )
     answer: list[list[Part]] = Field(description="further sentences, each in parts")
     verified: Verified | None = Field(None, description="the check of the runs that the page shows")
     studies: dict[str, Study]
-    workspaces: dict[str, dict[str, Any]] = Field(description="kind, unit, bounds and shapes, by the first problem in each")
+    workspaces: dict[str, dict[str, Any]] = Field(
+        description="kind, unit, bounds and shapes, by the first problem in each"
+    )
     problems: dict[str, Problem]
     runs: dict[str, Run]

@@ -1,4 +1,6 @@
-"""The content of the page, from the csv files of a scale. Columns are read by name, and those that a file lacks stay empty."""
+"""The content of the page, from the csv files of a scale. Columns are read by name, and those that
+a file lacks stay empty.
+"""
 
 from pathlib import Path
 from statistics import median
@@ -13,7 +15,8 @@ from bezierplan.figures.page import content, other, why
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.schema.model import one_or_list
 
-# Columns of claims.csv that the page shows in places of their own, or that repeat the comparison that decides.
+# Columns of claims.csv that the page shows in places of their own, or that repeat the comparison
+# that decides.
 _CLAIM_COLUMNS = {
     *(
         "study",
@@ -30,7 +33,19 @@ _CLAIM_COLUMNS = {
         "published",
         "reason",
     ),
-    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family", "replication_probability", "size"),
+    *(
+        "effect",
+        "effect_size_name",
+        "effect_size",
+        "low95",
+        "high95",
+        "n",
+        "counted",
+        "p",
+        "p_family",
+        "replication_probability",
+        "size",
+    ),
     *("artefact", "timed"),
 }
 
@@ -67,27 +82,53 @@ def _flag(row: pd.Series, column: str) -> bool:
 
 
 def studies(
-    job: dict[str, dict], folder: Path, numbers: pd.DataFrame | None, claims: pd.DataFrame | None, measured: pd.DataFrame | None
+    job: dict[str, dict],
+    folder: Path,
+    numbers: pd.DataFrame | None,
+    claims: pd.DataFrame | None,
+    measured: pd.DataFrame | None,
 ) -> dict[str, content.Study]:
-    """All studies without the runs that the viewer shows, from the csv files in the folder of a scale.
+    """All studies without the runs that the viewer shows, from the csv files in the folder of a
+    scale.
 
-    job: study -> `title`, `labels`, `tables` and `figures` (name -> `title`, `caption` and, of tables, `spec`), `assumptions`, `files` (its
-    claims, comparisons of claims, audit, alternatives and interpretations, as far as there are any). numbers, claims, measured: those of
-    all studies (`analysis.summary`, `analysis.worth`), if the scale has them.
+    job: study -> `title`, `labels`, `tables` and `figures` (name -> `title`, `caption` and, of
+    tables, `spec`), `assumptions`, `files` (its claims, comparisons of claims, audit, alternatives
+    and interpretations, as far as there are any). numbers, claims, measured: those of all studies
+    (`analysis.summary`, `analysis.worth`), if the scale has them.
     """
-    outcome = headline.outcome(numbers, claims).to_dict("index") if numbers is not None and claims is not None else {}
-    return {key: _study(key, own, folder, numbers, measured, outcome.get(key, {})) for key, own in job.items()}
+    outcome = (
+        headline.outcome(numbers, claims).to_dict("index")
+        if numbers is not None and claims is not None
+        else {}
+    )
+    return {
+        key: _study(key, own, folder, numbers, measured, outcome.get(key, {}))
+        for key, own in job.items()
+    }
 
 
 def _study(
-    key: str, job: dict, folder: Path, numbers: pd.DataFrame | None, measured: pd.DataFrame | None, outcome: dict[str, int]
+    key: str,
+    job: dict,
+    folder: Path,
+    numbers: pd.DataFrame | None,
+    measured: pd.DataFrame | None,
+    outcome: dict[str, int],
 ) -> content.Study:
     files = {name: read(file) for name, file in job["files"].items()}
     judged = files.get("claims", pd.DataFrame(columns=["study", "id", "primary", "verdict"]))
     choices = _choices(files.get("sensitivity"), judged)
     own = None if numbers is None else numbers[numbers["study"] == key]
-    tables = [_table(key, name, table, folder, own, job["labels"]) for name, table in job["tables"].items()]
-    gaps = [number.gap for table in tables for number in table.numbers if number.counted and number.gap is not None]
+    tables = [
+        _table(key, name, table, folder, own, job["labels"])
+        for name, table in job["tables"].items()
+    ]
+    gaps = [
+        number.gap
+        for table in tables
+        for number in table.numbers
+        if number.counted and number.gap is not None
+    ]
     return content.Study(
         address=address(key),
         title=job["title"],
@@ -104,37 +145,74 @@ def _study(
         shown=[],
         labels=job["labels"],
         **(other.of_worth(key, measured) if measured is not None else {}),
-        **(other.of_interpretations(files["interpretations"], files["explained"], files["held_out"]) if "interpretations" in files else {}),
+        **(
+            other.of_interpretations(
+                files["interpretations"], files["explained"], files["held_out"]
+            )
+            if "interpretations" in files
+            else {}
+        ),
     )
 
 
 def _figure(study: str, name: str, job: dict, folder: Path) -> content.Figure:
     place = f"{study}/figures/{name}"
     told = (folder / f"{place}.txt").read_text(encoding="utf-8").strip()
-    named = {"address": address(study, name), "name": name, "title": job["title"], "caption": job["caption"], "told": told}
+    named = {
+        "address": address(study, name),
+        "name": name,
+        "title": job["title"],
+        "caption": job["caption"],
+        "told": told,
+    }
     return content.Figure(**named, svg=f"{place}.svg", csv=f"{place}.csv")
 
 
-def _table(study: str, name: str, job: dict, folder: Path, numbers: pd.DataFrame | None, labels: dict[str, str]) -> content.Table:
+def _table(
+    study: str,
+    name: str,
+    job: dict,
+    folder: Path,
+    numbers: pd.DataFrame | None,
+    labels: dict[str, str],
+) -> content.Table:
     file = f"{study}/tables/{name}.csv"
     compared = folder / study / "tables" / f"{name}.comparison.csv"
-    named = {"address": address(study, name), "name": name, "title": job["title"], "caption": job["caption"], "csv": file}
+    named = {
+        "address": address(study, name),
+        "name": name,
+        "title": job["title"],
+        "caption": job["caption"],
+        "csv": file,
+    }
     if job["spec"].get("published") and job["spec"]["kind"] == "pivot":
         cells = _numbers(named["address"], read(compared), job["spec"], numbers, labels)
-        return content.Table(**named | {"csv": f"{study}/tables/{name}.comparison.csv"}, numbers=cells)
+        return content.Table(
+            **named | {"csv": f"{study}/tables/{name}.comparison.csv"}, numbers=cells
+        )
     plain = read(folder / file)
     rows = [[cell(value) for value in row] for row in plain.itertuples(index=False)]
     return content.Table(**named, columns=[str(column) for column in plain], rows=rows)
 
 
-def _numbers(table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFrame | None, labels: dict[str, str]) -> list[content.Number]:
-    """The cells of a table: those with a published number, and what other methods have in the same column."""
+def _numbers(
+    table: str,
+    compared: pd.DataFrame,
+    spec: dict,
+    numbers: pd.DataFrame | None,
+    labels: dict[str, str],
+) -> list[content.Number]:
+    """The cells of a table: those with a published number, and what other methods have in the same
+    column.
+    """
     keys = list(compared.columns[: compared.columns.get_loc("metric")])
     published = compared["value_published"].notna()
     compared = compared.assign(counted=False)
     if numbers is not None:
         # `summary.numbers` keeps the order of a table's rows.
-        compared.loc[published, "counted"] = numbers.loc[numbers["table"] == table.partition("/")[2], "counted"].to_numpy()
+        compared.loc[published, "counted"] = numbers.loc[
+            numbers["table"] == table.partition("/")[2], "counted"
+        ].to_numpy()
     printed = compared.loc[published, ["metric", "statistic"]].drop_duplicates()
     shown = compared.merge(printed, on=["metric", "statistic"])
     places = shown[[*keys, "metric", "statistic"]].to_dict("records")
@@ -171,7 +249,13 @@ def _numbers(table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFra
 
 def printed_key(column: str, value: content.Cell, labels: dict[str, str]) -> str:
     """The value of a key column as printed; a number is named."""
-    return "" if value is None else str(value) if isinstance(value, bool) else style.printed(value, column, labels)
+    return (
+        ""
+        if value is None
+        else str(value)
+        if isinstance(value, bool)
+        else style.printed(value, column, labels)
+    )
 
 
 def _heading(metric: str, statistic: str, spec: dict, labels: dict[str, str]) -> str:
@@ -184,16 +268,26 @@ def _heading(metric: str, statistic: str, spec: dict, labels: dict[str, str]) ->
 
 
 def _claims(
-    study: str, judged: pd.DataFrame, checks: pd.DataFrame | None, choices: list[content.Choice], job: dict[str, Any]
+    study: str,
+    judged: pd.DataFrame,
+    checks: pd.DataFrame | None,
+    choices: list[content.Choice],
+    job: dict[str, Any],
 ) -> list[content.Claim]:
     """Claims of a study; job: what the page knows of it, with the checks of its claims."""
     claims, labels, there = [], job["labels"], job["tables"].keys() | job["figures"].keys()
     for identity, rows in judged.groupby("id", sort=False):
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
-        compared = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
+        compared = (
+            checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)]
+            if checks is not None
+            else pd.DataFrame()
+        )
         written = [check_of(each) for each in job["checks"].get(identity, [])]
-        decisive = next((n for n, (_, each) in enumerate(compared.iterrows()) if _flag(each, "decisive")), None)
+        decisive = next(
+            (n for n, (_, each) in enumerate(compared.iterrows()) if _flag(each, "decisive")), None
+        )
         claims.append(
             content.Claim(
                 address=address(study, identity),
@@ -209,12 +303,21 @@ def _claims(
                 reason=_text(row, "reason"),
                 replication=_number(row, "replication_probability"),
                 size=_text(row, "size"),
-                shown_in=[address(study, name) for name in _text(row, "artefact").replace(",", " ").split() if name in there],
+                shown_in=[
+                    address(study, name)
+                    for name in _text(row, "artefact").replace(",", " ").split()
+                    if name in there
+                ],
                 comparisons=[_comparison(each, labels, written) for _, each in compared.iterrows()],
                 decisive=decisive,
-                why=_why(compared.iloc[decisive], written, labels, row) if decisive is not None else "",
+                why=_why(compared.iloc[decisive], written, labels, row)
+                if decisive is not None
+                else "",
                 variant=_labelled(variant, labels),
-                interpretations=[_interpretation(each, labels) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
+                interpretations=[
+                    _interpretation(each, labels)
+                    for _, each in rows[~rows["primary"].astype(bool)].iterrows()
+                ],
                 choices=[choice for choice in choices if choice.claim == identity],
                 more={name: cell(row[name]) for name in judged if name not in _CLAIM_COLUMNS},
             )
@@ -223,16 +326,23 @@ def _claims(
 
 
 def _why(decisive: pd.Series, checks: list[Check], labels: dict[str, str], claim: pd.Series) -> str:
-    """The sentence that says why (`why`), from the decisive comparison; empty for a check that the study has no more."""
+    """The sentence that says why (`why`), from the decisive comparison; empty for a check that the
+    study has no more.
+    """
     number = int(decisive["check"])
     if number > len(checks):
         return ""
     words = (_labelled(_text(decisive, name), labels) for name in ("comparison", "condition"))
-    return why.why(decisive, checks[number - 1], *words, own_criterion=_flag(claim, "own_criterion"))
+    return why.why(
+        decisive, checks[number - 1], *words, own_criterion=_flag(claim, "own_criterion")
+    )
 
 
 def _comparison(row: pd.Series, labels: dict[str, str], checks: list[Check]) -> content.Comparison:
-    words = [_labelled(_text(row, "comparison"), labels), _labelled(_text(row, "condition"), labels)]
+    words = [
+        _labelled(_text(row, "comparison"), labels),
+        _labelled(_text(row, "condition"), labels),
+    ]
     return content.Comparison(
         check=(number := int(row["check"])),
         reference=why.reference(checks[number - 1]) if number <= len(checks) else 0.0,
@@ -255,7 +365,9 @@ def _comparison(row: pd.Series, labels: dict[str, str], checks: list[Check]) -> 
 
 
 def _labelled(words: str, labels: dict[str, str]) -> str:
-    """Words such as `mga lower than prm` or `problem=0_15, obstacles=5` with names as they are printed."""
+    """Words such as `mga lower than prm` or `problem=0_15, obstacles=5` with names as they are
+    printed.
+    """
     parts = []
     for part in words.split(", "):
         key, equals, value = part.partition("=")
@@ -268,12 +380,16 @@ def _labelled(words: str, labels: dict[str, str]) -> str:
 
 def _interpretation(row: pd.Series, labels: dict[str, str]) -> content.Interpretation:
     return content.Interpretation(
-        variant=_labelled(_text(row, "variant"), labels), verdict=_text(row, "verdict"), holds=_text(row, "holds")
+        variant=_labelled(_text(row, "variant"), labels),
+        verdict=_text(row, "verdict"),
+        holds=_text(row, "holds"),
     )
 
 
 def _choices(tried: pd.DataFrame | None, judged: pd.DataFrame) -> list[content.Choice]:
-    """Alternatives tried on claims; those that were judged beside another verdict than today's are out of date and left out."""
+    """Alternatives tried on claims; those that were judged beside another verdict than today's are
+    out of date and left out.
+    """
     if tried is None:
         return []
     today = judged[judged["primary"].astype(bool)].set_index("id")["verdict"]
@@ -296,7 +412,9 @@ def _assumption(study: str, job: dict, choices: list[content.Choice]) -> content
         address=address(study, job["id"]),
         id=job["id"],
         detail=job["detail"],
-        default=", ".join(f"{name}: {value}" for name, value in default.items()) if isinstance(default, dict) else str(default),
+        default=", ".join(f"{name}: {value}" for name, value in default.items())
+        if isinstance(default, dict)
+        else str(default),
         alternatives=[str(value) for value in job["alternatives"]],
         reason=job["reason"],
         source=job["source"],

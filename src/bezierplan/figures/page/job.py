@@ -19,53 +19,89 @@ from bezierplan.figures.page import answer, build, content, gather, runs
 from bezierplan.running.watchdog import end_with_parent
 
 
-def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes: int = 1, verified: str | None = None) -> content.Page:
+def page(
+    job: dict[str, Any],
+    folder: Path,
+    summary: list[str] | None,
+    processes: int = 1,
+    verified: str | None = None,
+) -> content.Page:
     """The content of the page.
 
-    job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name -> `methods`, `repeats` and the files `runs`,
-    `problems`, `bounds` and, of drives, `traces`). folder: that of the scale. summary: files of all studies together,
-    numbers.csv, claims.csv and worth.csv, if the scale has them. processes: how many look for runs, if more than one beside this one.
-    verified: the file of the check of these runs (`running.recheck`), if there is one.
+    job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name ->
+    `methods`, `repeats` and the files `runs`, `problems`, `bounds` and, of drives, `traces`).
+    folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
+    worth.csv, if the scale has them. processes: how many look for runs, if more than one beside
+    this one. verified: the file of the check of these runs (`running.recheck`), if there is one.
     """
-    experiments = [(key, *each) for key, own in job["studies"].items() for each in own["experiments"].items()]
+    experiments = [
+        (key, *each) for key, own in job["studies"].items() for each in own["experiments"].items()
+    ]
     shown: dict[str, list[content.Shown]] = {key: [] for key in job["studies"]}
     workspaces: dict[str, dict[str, Any]] = {}
     problems: dict[str, content.Problem] = {}
     kept: dict[str, content.Run] = {}
     with _mapping(processes) as mapped:
         found = mapped(_chosen, experiments)
-        tables: list[pd.DataFrame | None] = [gather.read(file) for file in summary] if summary else [None, None, None]
+        tables: list[pd.DataFrame | None] = (
+            [gather.read(file) for file in summary] if summary else [None, None, None]
+        )
         studies = gather.studies(job["studies"], folder, *tables)
         for (key, *_), chosen in zip(experiments, found, strict=True):
             shown[key] += chosen.shown
             workspaces |= chosen.workspaces
             problems |= chosen.problems
             kept |= chosen.runs
-    studies = {key: study.model_copy(update={"shown": shown[key]}) for key, study in studies.items()}
+    studies = {
+        key: study.model_copy(update={"shown": shown[key]}) for key, study in studies.items()
+    }
     shared = {"workspaces": workspaces, "problems": problems}
     checked = content.Verified(**json.loads(Path(verified).read_text())) if verified else None
     said = answer.answer(studies)
     first = _headline(tables, {key: own["title"] for key, own in job["studies"].items()})
-    about = {"about_scale": answer.about_scale(job["scale"], _repeats(job["studies"])), "made_by": _made_by()}
+    about = {
+        "about_scale": answer.about_scale(job["scale"], _repeats(job["studies"])),
+        "made_by": _made_by(),
+    }
     return content.Page(
-        scale=job["scale"], **about, headline=first, answer=said, verified=checked, studies=studies, runs=kept, **_once(**shared)
+        scale=job["scale"],
+        **about,
+        headline=first,
+        answer=said,
+        verified=checked,
+        studies=studies,
+        runs=kept,
+        **_once(**shared),
     )
 
 
 def _headline(tables: list[pd.DataFrame | None], titles: dict[str, str]) -> content.Headline | None:
-    """The headline (`analysis.headline`) of numbers, claims and methods beside the baseline; None without them."""
+    """The headline (`analysis.headline`) of numbers, claims and methods beside the baseline; None
+    without them.
+    """
     if any(table is None for table in tables):
         return None
     found = headline.headline(*tables, titles)
     shown = found.table.loc[:, (found.table != "").any()]
-    rows = {str(study): list(map(str, row)) for study, row in zip(shown.index, shown.to_numpy(), strict=True)}
-    return content.Headline(sentences=found.sentences, columns=[headline.COLUMNS[name] for name in shown], rows=rows)
+    rows = {
+        str(study): list(map(str, row))
+        for study, row in zip(shown.index, shown.to_numpy(), strict=True)
+    }
+    return content.Headline(
+        sentences=found.sentences, columns=[headline.COLUMNS[name] for name in shown], rows=rows
+    )
 
 
 def _repeats(studies: dict[str, dict[str, Any]]) -> dict[str, list[list[int]]]:
-    """Scale -> of each study, the least and the largest number of runs of a method under a condition."""
+    """Scale -> of each study, the least and the largest number of runs of a method under a
+    condition.
+    """
     scales = {scale for study in studies.values() for scale in study["repeats"]}
-    return {scale: [study["repeats"][scale] for study in studies.values() if study["repeats"][scale]] or [[0, 0]] for scale in scales}
+    return {
+        scale: [study["repeats"][scale] for study in studies.values() if study["repeats"][scale]]
+        or [[0, 0]]
+        for scale in scales
+    }
 
 
 def _made_by() -> str:
@@ -83,11 +119,15 @@ def _made_by() -> str:
 
 @contextmanager
 def _mapping(processes: int) -> Iterator[Callable[..., Any]]:
-    """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they would begin with a job's script anew."""
+    """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they
+    would begin with a job's script anew.
+    """
     if processes == 1 or sys.platform != "linux":
         yield map
         return
-    with ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), end_with_parent) as pool:
+    with ProcessPoolExecutor(
+        processes, multiprocessing.get_context("fork"), end_with_parent
+    ) as pool:
         yield pool.map
 
 
@@ -95,16 +135,34 @@ def _chosen(experiment: tuple[str, str, dict[str, Any]]) -> runs.Chosen:
     return runs.chosen(*experiment)
 
 
-def _once(workspaces: dict[str, dict[str, Any]], problems: dict[str, content.Problem]) -> dict[str, dict[str, Any]]:
-    """Workspaces without those that equal an earlier one, and problems that name the earlier one."""
+def _once(
+    workspaces: dict[str, dict[str, Any]], problems: dict[str, content.Problem]
+) -> dict[str, dict[str, Any]]:
+    """Workspaces without those that equal an earlier one, and problems that name the earlier
+    one.
+    """
     first: dict[str, str] = {}
-    names = {name: first.setdefault(json.dumps(shapes), name) for name, shapes in workspaces.items()}
+    names = {
+        name: first.setdefault(json.dumps(shapes), name) for name, shapes in workspaces.items()
+    }
     return {
         "workspaces": {name: workspaces[name] for name in first.values()},
-        "problems": {name: each.model_copy(update={"workspace": names[each.workspace]}) for name, each in problems.items()},
+        "problems": {
+            name: each.model_copy(update={"workspace": names[each.workspace]})
+            for name, each in problems.items()
+        },
     }
 
 
-def write(job: dict[str, Any], folder: Path, summary: list[str] | None, file: str, processes: int = 1, verified: str | None = None) -> None:
+def write(
+    job: dict[str, Any],
+    folder: Path,
+    summary: list[str] | None,
+    file: str,
+    processes: int = 1,
+    verified: str | None = None,
+) -> None:
     """Write the page."""
-    Path(file).write_text(build.html(page(job, folder, summary, processes, verified), folder), encoding="utf-8")
+    Path(file).write_text(
+        build.html(page(job, folder, summary, processes, verified), folder), encoding="utf-8"
+    )

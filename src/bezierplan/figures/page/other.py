@@ -1,4 +1,6 @@
-"""Content of the page from tables beside those of the paper: its methods, what they are worth, and which interpretations explain it."""
+"""Content of the page from tables beside those of the paper: its methods, what they are worth, and
+which interpretations explain it.
+"""
 
 import ast
 from pathlib import Path
@@ -18,24 +20,41 @@ MOST_INTERPRETATIONS = 10
 
 
 def of_method(study: str, name: str, method: dict[str, Any]) -> content.Method:
-    """A method, from `planner` and `settings`. What its planner does stands in the planner's file, which is read and not imported."""
+    """A method, from `planner` and `settings`. What its planner does stands in the planner's file,
+    which is read and not imported.
+    """
     planner = method["planner"]
-    file = Path(planner) if planner.endswith(".py") else Path(planners.__file__).with_name(f"{planner}.py")
+    file = (
+        Path(planner)
+        if planner.endswith(".py")
+        else Path(planners.__file__).with_name(f"{planner}.py")
+    )
     told = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     about = [" ".join(paragraph.replace("`", "").split()) for paragraph in told.split("\n\n")]
     settings = {setting: str(value) for setting, value in method["settings"].items()}
-    return content.Method(address=address(study, "method", name), name=name, planner=planner, about=about, settings=settings)
+    return content.Method(
+        address=address(study, "method", name),
+        name=name,
+        planner=planner,
+        about=about,
+        settings=settings,
+    )
 
 
 def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
-    """Fields `worth` and `worth_in_words` of a study, from worth.csv; none for a study without methods there."""
+    """Fields `worth` and `worth_in_words` of a study, from worth.csv; none for a study without
+    methods there.
+    """
     rows_of_study = measured[measured["study"] == study]
     if rows_of_study.empty:
         return {}
     rows = [
         content.Worth(
             address=address(study, "worth", row["method"]),
-            **{name: row[name] for name in ("method", "baseline", "conditions", "feasible", "feasible_baseline")},
+            **{
+                name: row[name]
+                for name in ("method", "baseline", "conditions", "feasible", "feasible_baseline")
+            },
             length=_known(row["length"]),
             curvature=_known(row["curvature"]),
             cornered=bool(np.isinf(row["curvature"])),
@@ -46,10 +65,16 @@ def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
     return {"worth": rows, "worth_in_words": worth.sentence(rows_of_study)}
 
 
-def of_interpretations(tried: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> dict[str, Any]:
-    """Fields `explanations`, `interpretations_in_words` and `explained` of a study, from the tables of `analysis.explained`."""
+def of_interpretations(
+    tried: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame
+) -> dict[str, Any]:
+    """Fields `explanations`, `interpretations_in_words` and `explained` of a study, from the tables
+    of `analysis.explained`.
+    """
     named = tried["interpretation"] == DEFAULT
-    shown = pd.concat([tried[:MOST_INTERPRETATIONS], tried[MOST_INTERPRETATIONS:][named[MOST_INTERPRETATIONS:]]])
+    shown = pd.concat(
+        [tried[:MOST_INTERPRETATIONS], tried[MOST_INTERPRETATIONS:][named[MOST_INTERPRETATIONS:]]]
+    )
     tables = [
         content.Explained(
             table=str(table),
@@ -61,8 +86,15 @@ def of_interpretations(tried: pd.DataFrame, explained: pd.DataFrame, held_out: p
         for table, rows in explained.groupby("table", sort=False)
     ]
     columns = ["interpretation", "in_range", "numbers", "by_chance"]
-    rows = [content.Explanation(**row | {"by_chance": _known(row["by_chance"])}) for row in shown[columns].to_dict("records")]
-    return {"explanations": rows, "interpretations_in_words": sentences(tried, explained, held_out), "explained": tables}
+    rows = [
+        content.Explanation(**row | {"by_chance": _known(row["by_chance"])})
+        for row in shown[columns].to_dict("records")
+    ]
+    return {
+        "explanations": rows,
+        "interpretations_in_words": sentences(tried, explained, held_out),
+        "explained": tables,
+    }
 
 
 def _known(value: float) -> float | None:

@@ -1,4 +1,6 @@
-"""Pictures in the page: figures made smaller, and the intervals of a claim's comparisons as strips."""
+"""Pictures in the page: figures made smaller, and the intervals of a claim's comparisons as
+strips.
+"""
 
 import re
 from collections.abc import Sequence
@@ -12,8 +14,16 @@ from bezierplan.figures.page.content import Comparison
 # Coordinates are in points, so two decimals are finer than any screen or printer.
 _TAG, _LONG_NUMBER = re.compile(r"<[^/>][^>]*>"), re.compile(r"-?\d+\.\d{3,}")
 _HEAD = re.compile(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<metadata>.*?</metadata>", re.DOTALL)
-_STYLE, _CLIP, _ID = re.compile(r'\bstyle="([^"]*)"'), re.compile(r'\bclip-path="([^"]*)"'), re.compile(r'\bid="([^"]*)"')
-_OUTLINE, _STEP, _REFERENCE = re.compile(r'\bd="([^"]*)"'), re.compile(r"([A-Za-z])([^A-Za-z]*)"), re.compile(r'(?:url\(|href=")#([^)"]*)')
+_STYLE, _CLIP, _ID = (
+    re.compile(r'\bstyle="([^"]*)"'),
+    re.compile(r'\bclip-path="([^"]*)"'),
+    re.compile(r'\bid="([^"]*)"'),
+)
+_OUTLINE, _STEP, _REFERENCE = (
+    re.compile(r'\bd="([^"]*)"'),
+    re.compile(r"([A-Za-z])([^A-Za-z]*)"),
+    re.compile(r'(?:url\(|href=")#([^)"]*)'),
+)
 # What may not stand in a quoted attribute as part of a data URI.
 _UNSAFE = re.compile(r"""[^-.\w /:;,=<>()'!*@$+?\[\]{}|^`~]""", re.ASCII)
 
@@ -21,11 +31,13 @@ _UNSAFE = re.compile(r"""[^-.\w /:;,=<>()'!*@$+?\[\]{}|^`~]""", re.ASCII)
 def data_uri(file: Path) -> str:
     """An svg file as the address of an image that needs no other file.
 
-    It says the same in fewer letters, without a minifier, which would take a second and more for each figure: each style once, outlines by
-    their steps, short numbers and names, no metadata.
+    It says the same in fewer letters, without a minifier, which would take a second and more for
+    each figure: each style once, outlines by their steps, short numbers and names, no metadata.
     """
     text = _HEAD.sub("", file.read_text(encoding="utf-8"))
-    names = {name: f"n{number}" for number, name in enumerate(dict.fromkeys(_REFERENCE.findall(text)))}
+    names = {
+        name: f"n{number}" for number, name in enumerate(dict.fromkeys(_REFERENCE.findall(text)))
+    }
     styles: dict[str, str] = {}
 
     def classed(rules: str) -> str:
@@ -38,24 +50,43 @@ def data_uri(file: Path) -> str:
         if "#" in text:
             clip = _CLIP.search(text)
             if clip and _STYLE.search(text):
-                text = _STYLE.sub(lambda found: f'style="{found.group(1)}; clip-path: {clip.group(1)}"', _CLIP.sub("", text))
-            text = _REFERENCE.sub(lambda found: found.group().replace(f"#{found.group(1)}", f"#{names[found.group(1)]}"), text)
+                text = _STYLE.sub(
+                    lambda found: f'style="{found.group(1)}; clip-path: {clip.group(1)}"',
+                    _CLIP.sub("", text),
+                )
+            text = _REFERENCE.sub(
+                lambda found: found.group().replace(
+                    f"#{found.group(1)}", f"#{names[found.group(1)]}"
+                ),
+                text,
+            )
         if 'id="' in text:
-            text = _ID.sub(lambda found: f'id="{names[found.group(1)]}"' if found.group(1) in names else "", text)
+            text = _ID.sub(
+                lambda found: f'id="{names[found.group(1)]}"' if found.group(1) in names else "",
+                text,
+            )
         if "style=" in text:
             text = _STYLE.sub(lambda found: classed(found.group(1)), text)
-        text = " ".join(_LONG_NUMBER.sub(_rounded, text).split()).replace(" >", ">").replace(" />", "/>")
+        text = (
+            " ".join(_LONG_NUMBER.sub(_rounded, text).split())
+            .replace(" >", ">")
+            .replace(" />", "/>")
+        )
         return text if "'" in text else text.replace('"', "'")
 
     text = _TAG.sub(shorter, text)
     rules = "".join(f".{name}{{{rule}}}" for rule, name in styles.items())
     text = text.replace("</style>", f"{rules}</style>", 1)
-    return "data:image/svg+xml," + _UNSAFE.sub(lambda letter: quote(letter.group(), safe=""), re.sub(r">\s+<", "><", text.strip()))
+    return "data:image/svg+xml," + _UNSAFE.sub(
+        lambda letter: quote(letter.group(), safe=""), re.sub(r">\s+<", "><", text.strip())
+    )
 
 
 @lru_cache(maxsize=10_000)  # the outlines of letters and marks come back in every figure
 def _stepwise(outline: str) -> str:
-    """An outline whose steps (M, L, Q, C and z, each with its name) are relative, in hundredths that add up without drift."""
+    """An outline whose steps (M, L, Q, C and z, each with its name) are relative, in hundredths
+    that add up without drift.
+    """
     parts, x, y, first = [], 0, 0, (0, 0)
     for name, numbers in _STEP.findall(outline):
         places = [round(100 * float(each)) for each in numbers.split()]
@@ -74,7 +105,9 @@ def _stepwise(outline: str) -> str:
 
 @lru_cache(maxsize=100_000)
 def _hundredths(value: int) -> str:
-    """A number of hundredths as short as svg allows: a sign separates it from the number before, otherwise a space does."""
+    """A number of hundredths as short as svg allows: a sign separates it from the number before,
+    otherwise a space does.
+    """
     whole, rest = divmod(abs(value), 100)
     decimals = f".{rest:02d}".rstrip("0") if rest else ""
     return ("-" if value < 0 else " ") + (f"{whole or ''}{decimals}" or "0")
@@ -83,7 +116,9 @@ def _hundredths(value: int) -> str:
 def size(file: Path) -> tuple[int, int]:
     """Width and height of an svg file, in points."""
     head = file.read_text(encoding="utf-8")[:2000]
-    width, height = (float(re.search(rf'\b{name}="([\d.]+)pt"', head).group(1)) for name in ("width", "height"))
+    width, height = (
+        float(re.search(rf'\b{name}="([\d.]+)pt"', head).group(1)) for name in ("width", "height")
+    )
     return round(width), round(height)
 
 
@@ -92,10 +127,11 @@ def _rounded(number: re.Match) -> str:
 
 
 class Strip(NamedTuple):
-    """A comparison of a forest plot, all of whose strips share one scale from 0 to 100; None where there is nothing to draw.
+    """A comparison of a forest plot, all of whose strips share one scale from 0 to 100; None where
+    there is nothing to draw.
 
-    low, high: ends of the interval. cut: whether an end lies beyond the strip. margin: the two ends of the effects that do not matter.
-    printed: the effect in the paper's own numbers.
+    low, high: ends of the interval. cut: whether an end lies beyond the strip. margin: the two ends
+    of the effects that do not matter. printed: the effect in the paper's own numbers.
     """
 
     comparison: Comparison
@@ -123,22 +159,39 @@ def forests(comparisons: Sequence[Comparison]) -> list[Forest]:
     """Comparisons by check and metric, in order."""
     groups: dict[tuple, list[Comparison]] = {}
     for each in comparisons:
-        groups.setdefault((each.check, each.test, each.metric, each.statistic, each.unit, each.deciding), []).append(each)
+        groups.setdefault(
+            (each.check, each.test, each.metric, each.statistic, each.unit, each.deciding), []
+        ).append(each)
     return [Forest(*key[1:], _strips(own)) for key, own in groups.items()]
 
 
 def _strips(comparisons: Sequence[Comparison]) -> list[Strip]:
-    """Comparisons on one scale, which holds every effect, also the printed ones, and intervals up to three times the largest."""
-    effects = [effect for each in comparisons for effect in (each.effect, each.effect_published) if effect is not None]
+    """Comparisons on one scale, which holds every effect, also the printed ones, and intervals up
+    to three times the largest.
+    """
+    effects = [
+        effect
+        for each in comparisons
+        for effect in (each.effect, each.effect_published)
+        if effect is not None
+    ]
     most = 3 * max(map(abs, effects), default=0.0) or 1.0
     ends = [end for each in comparisons for end in each.interval if end is not None]
-    reach = [*(each.reference for each in comparisons), *effects, *(min(max(end, -most), most) for end in ends)]
+    reach = [
+        *(each.reference for each in comparisons),
+        *effects,
+        *(min(max(end, -most), most) for end in ends),
+    ]
     low, high = min(reach), max(reach)
     pad = 0.06 * (high - low) or 1.0
     low, high = low - pad, high + pad
 
     def place(value: float | None) -> float | None:
-        return None if value is None else round(100 * (min(max(value, low), high) - low) / (high - low), 2)
+        return (
+            None
+            if value is None
+            else round(100 * (min(max(value, low), high) - low) / (high - low), 2)
+        )
 
     return [
         Strip(

@@ -1,6 +1,8 @@
-"""The runs that the viewer shows: of each method on each problem, and on all of an experiment, some of the feasible and the failed.
+"""The runs that the viewer shows: of each method on each problem, and on all of an experiment, some
+of the feasible and the failed.
 
-Runs are ranked by their length over the exact bound of their problem, so that those on different problems compare.
+Runs are ranked by their length over the exact bound of their problem, so that those on different
+problems compare.
 """
 
 import json
@@ -20,14 +22,26 @@ from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import MovingCircles, World
 
-# An experiment with more problems than this is shown as a whole only. Failed runs shown of a method.
+# An experiment with more problems than this is shown as a whole only. Failed runs shown of a
+# method.
 MOST_PROBLEMS, MOST_FAILED = 8, 2
-# Points along a path are left out where the path stays within this share of the workspace's longer side. At most so many steps of history.
+# Points along a path are left out where the path stays within this share of the workspace's longer
+# side. At most so many steps of history.
 _FLAT, _MOST_STEPS = 5e-4, 80
 
 
 _RANKED = ["id", "problem", "method", "repeat", "feasible", "length"]
-_DRAWN = ["claimed_feasible", "collision_at", "collision_depth", "clearance", "evaluations", "stop", "history", "path_curve", "path_points"]
+_DRAWN = [
+    "claimed_feasible",
+    "collision_at",
+    "collision_depth",
+    "clearance",
+    "evaluations",
+    "stop",
+    "history",
+    "path_curve",
+    "path_points",
+]
 
 
 class Chosen(NamedTuple):
@@ -42,42 +56,76 @@ class Chosen(NamedTuple):
 def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
     """The runs of an experiment that the viewer shows.
 
-    described: `methods`, those that are shown; `repeats`; and the files `runs`, `problems`, `bounds` and, of drives, `traces`. Of the runs
-    that are not shown only the lengths are kept.
+    described: `methods`, those that are shown; `repeats`; and the files `runs`, `problems`,
+    `bounds` and, of drives, `traces`. Of the runs that are not shown only the lengths are kept.
     """
     bounds = parquet.read_table(described["bounds"]).to_pandas().set_index("problem")
     columns = [*_RANKED, *_DRAWN, *(["steps"] if described.get("traces") else [])]
     tables = {file: parquet.read_table(file, columns=columns) for file in described["runs"]}
-    ranked = pd.concat([table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()])
-    ranked = ranked[(ranked["repeat"] < described["repeats"]) & ranked["method"].isin(described["methods"])]
+    ranked = pd.concat(
+        [table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()]
+    )
+    ranked = ranked[
+        (ranked["repeat"] < described["repeats"]) & ranked["method"].isin(described["methods"])
+    ]
     ranked["gap"] = ranked["length"] / ranked["problem"].map(bounds["bound"]) - 1
     groups = [("", ranked)]
     if len(bounds) <= MOST_PROBLEMS:
         groups = [*ranked.groupby("problem", sort=False), *(groups if len(bounds) > 1 else [])]
     shown = []
     for problem, runs in groups:
-        by_method = dict(list(runs[["method", "id", "gap", "feasible"]].groupby("method", sort=False)))
-        shown += [_shown(experiment, problem, method, by_method[method]) for method in described["methods"] if method in by_method]
-    named = {name for each in shown for name in (each.best, each.median, each.worst, *each.failed) if name}
-    kept = [_drawn(tables[file], rows.index) for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)]
+        by_method = dict(
+            list(runs[["method", "id", "gap", "feasible"]].groupby("method", sort=False))
+        )
+        shown += [
+            _shown(experiment, problem, method, by_method[method])
+            for method in described["methods"]
+            if method in by_method
+        ]
+    named = {
+        name
+        for each in shown
+        for name in (each.best, each.median, each.worst, *each.failed)
+        if name
+    }
+    kept = [
+        _drawn(tables[file], rows.index)
+        for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)
+    ]
     rows = pd.concat(kept) if kept else ranked
-    made, moving = problem_files.read(described["problems"]), world_files.read(described["problems"])
+    made, moving = (
+        problem_files.read(described["problems"]),
+        world_files.read(described["problems"]),
+    )
     traces = _traces(described.get("traces", []), rows["id"].tolist())
     prefix = f"{study}/{experiment}/"
-    runs = {row["id"]: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"]) for _, row in rows.iterrows()}
+    runs = {
+        row["id"]: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
+        for _, row in rows.iterrows()
+    }
     for name, trace in traces.items():
         row = rows[rows["id"] == name].iloc[0]
         runs[name] = _drive(runs[name], trace, row, moving[row["problem"]].pace)
     named = rows["problem"].unique()
     workspaces = {prefix + name: _shapes(made[name]) for name in named}
-    problems = {prefix + name: _problem(prefix + name, made[name], moving.get(name), bounds.loc[name]) for name in named}
+    problems = {
+        prefix + name: _problem(prefix + name, made[name], moving.get(name), bounds.loc[name])
+        for name in named
+    }
     return Chosen(shown, runs, workspaces, problems)
 
 
 def _traces(named: list[str], ids: list[str]) -> dict[str, np.ndarray]:
     """Places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
-    tables = [parquet.read_table(file, columns=["id", "x", "y"], filters=[("id", "in", ids)]) for file in named]
-    return {row["id"]: np.column_stack([row["x"], row["y"]]) for table in tables for row in table.to_pylist()}
+    tables = [
+        parquet.read_table(file, columns=["id", "x", "y"], filters=[("id", "in", ids)])
+        for file in named
+    ]
+    return {
+        row["id"]: np.column_stack([row["x"], row["y"]])
+        for table in tables
+        for row in table.to_pylist()
+    }
 
 
 def _drawn(table: Any, rows: pd.Index) -> pd.DataFrame:
@@ -88,21 +136,38 @@ def _drawn(table: Any, rows: pd.Index) -> pd.DataFrame:
 def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> content.Shown:
     feasible = runs[runs["feasible"]]
     # Much faster than pandas, which first numbers the ids.
-    ordered = [name for _, name in sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))]
+    ordered = [
+        name for _, name in sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
+    ]
     failed = runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED]
-    best, median, worst = (ordered[0], ordered[(len(ordered) - 1) // 2], ordered[-1]) if ordered else (None, None, None)
+    best, median, worst = (
+        (ordered[0], ordered[(len(ordered) - 1) // 2], ordered[-1])
+        if ordered
+        else (None, None, None)
+    )
     number = {"count": len(runs), "feasible": len(ordered)}
     return content.Shown(
-        experiment=experiment, problem=problem, method=method, **number, best=best, median=median, worst=worst, failed=failed
+        experiment=experiment,
+        problem=problem,
+        method=method,
+        **number,
+        best=best,
+        median=median,
+        worst=worst,
+        failed=failed,
     )
 
 
 def _shapes(problem: Problem) -> dict[str, Any]:
-    shapes = json.loads(files.to_json(problem.workspace), parse_float=lambda text: float(f"{float(text):.7g}"))
+    shapes = json.loads(
+        files.to_json(problem.workspace), parse_float=lambda text: float(f"{float(text):.7g}")
+    )
     return shapes | {"bounds": list(problem.workspace.bounds)}
 
 
-def _problem(workspace: str, problem: Problem, world: World | None, bound: pd.Series) -> content.Problem:
+def _problem(
+    workspace: str, problem: Problem, world: World | None, bound: pd.Series
+) -> content.Problem:
     size = _size(problem.workspace.bounds)
     path = np.asarray(bound["bound_path"], dtype=float)
     return content.Problem(
@@ -118,16 +183,28 @@ def _problem(workspace: str, problem: Problem, world: World | None, bound: pd.Se
 def _world(world: World) -> content.World:
     if isinstance(world, MovingCircles):
         table = np.column_stack([world.centres, world.velocities, world.radii])
-        return content.World(walls=list(world.walls), circles=[[float(f"{value:.7g}") for value in circle] for circle in table])
+        return content.World(
+            walls=list(world.walls),
+            circles=[[float(f"{value:.7g}") for value in circle] for circle in table],
+        )
     cells = ["".join(grid.to_lines(each)) for each in world.maps]
-    changed = [[n for n, (was, now) in enumerate(zip(before, after, strict=True)) if was != now] for before, after in pairwise(cells)]
+    changed = [
+        [n for n, (was, now) in enumerate(zip(before, after, strict=True)) if was != now]
+        for before, after in pairwise(cells)
+    ]
     return content.World(moments=world.moments.tolist(), changed=changed)
 
 
 def _drive(run: content.Run, trace: np.ndarray, row: pd.Series, pace: float) -> content.Run:
-    """A run with what belongs to a drive; the place of its first collision is where the robot was then."""
+    """A run with what belongs to a drive; the place of its first collision is where the robot was
+    then.
+    """
     size = float(np.ptp(trace, axis=0).max()) or 1.0
-    driven, steps, collision = _driven(np.reshape(run.path, (-1, 2)), trace, pace), float(row["steps"]), None
+    driven, steps, collision = (
+        _driven(np.reshape(run.path, (-1, 2)), trace, pace),
+        float(row["steps"]),
+        None,
+    )
     if np.isfinite(row["collision_at"]):
         times = np.append(np.arange(len(trace) - 1), steps)
         collision = tuple(float(np.interp(row["collision_at"], times, along)) for along in trace.T)
@@ -142,7 +219,8 @@ def _drive(run: content.Run, trace: np.ndarray, row: pd.Series, pace: float) -> 
 
 
 def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
-    """Length of the way (n,) along a path (m, 2) at each place (n, 2) of a drive on it, which covers at most a pace from one to the next.
+    """Length of the way (n,) along a path (m, 2) at each place (n, 2) of a drive on it, which
+    covers at most a pace from one to the next.
 
     A way may cross itself, so each place is looked for within a pace of the one before.
     """
@@ -152,14 +230,21 @@ def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
     line, found = shapely.LineString(path if len(path) > 1 else np.repeat(path, 2, axis=0)), [0.0]
     for place in shapely.points(trace[1:].astype(float)):
         ahead = substring(line, found[-1], found[-1] + pace)
-        found.append(found[-1] + shapely.line_locate_point(ahead, place) if ahead.length > 0 else found[-1])
+        found.append(
+            found[-1] + shapely.line_locate_point(ahead, place) if ahead.length > 0 else found[-1]
+        )
     return np.array(found)
 
 
 def _run(row: pd.Series, bounds: tuple[float, float, float, float], problem: str) -> content.Run:
     path, size = results.path_of(row), _size(bounds)
     collision = None
-    if path is not None and "steps" not in row and not row["feasible"] and np.isfinite(row["collision_at"]):
+    if (
+        path is not None
+        and "steps" not in row
+        and not row["feasible"]
+        and np.isfinite(row["collision_at"])
+    ):
         collision = tuple(float(value) for value in curves.point_at(path, row["collision_at"]))
     return content.Run(
         problem=problem,
@@ -199,11 +284,17 @@ def _flattened(path: Path, tolerance: float) -> np.ndarray:
     from bezierplan.figures.panels.paths import steps
 
     points = steps(path)
-    return shapely.get_coordinates(shapely.simplify(shapely.LineString(points), tolerance)) if len(points) > 1 else points
+    return (
+        shapely.get_coordinates(shapely.simplify(shapely.LineString(points), tolerance))
+        if len(points) > 1
+        else points
+    )
 
 
 def _history(history: np.ndarray) -> list[tuple[int, float]]:
-    """Generation and objective where the best objective changes, and at the end; thinned out if there are many."""
+    """Generation and objective where the best objective changes, and at the end; thinned out if
+    there are many.
+    """
     values = np.asarray(history, dtype=float)
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
@@ -211,4 +302,7 @@ def _history(history: np.ndarray) -> list[tuple[int, float]]:
     turns = known[np.flatnonzero(np.diff(values[known], prepend=np.nan) != 0)]
     if len(turns) > _MOST_STEPS:
         turns = turns[np.unique(np.linspace(0, len(turns) - 1, _MOST_STEPS).astype(int))]
-    return [(int(at), float(f"{values[at]:.6g}")) for at in dict.fromkeys([*turns.tolist(), int(known[-1])])]
+    return [
+        (int(at), float(f"{values[at]:.6g}"))
+        for at in dict.fromkeys([*turns.tolist(), int(known[-1])])
+    ]

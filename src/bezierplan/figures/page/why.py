@@ -1,4 +1,5 @@
-"""Why a claim has its verdict, in a plain sentence: what is compared, by how much it differs, what the claim says, and who chose the limit.
+"""Why a claim has its verdict, in a plain sentence: what is compared, by how much it differs, what
+the claim says, and who chose the limit.
 
 There is a template for each kind of test (`analysis.claims.kinds`).
 """
@@ -14,9 +15,22 @@ from bezierplan.analysis.claims.kinds import Check, OfRuns, PublishedMargin, sha
 from bezierplan.analysis.metrics import METRICS
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import difference, equal_within, function, lower, ordered, trend
+    from bezierplan.analysis.claims.kinds import (
+        difference,
+        equal_within,
+        function,
+        lower,
+        ordered,
+        trend,
+    )
 
-EVENTS = {"below": "below", "above": "above", "at_most": "at most", "at_least": "at least", "equals": ""}
+EVENTS = {
+    "below": "below",
+    "above": "above",
+    "at_most": "at most",
+    "at_least": "at least",
+    "equals": "",
+}
 _TIMES = 2.0
 """Relative effects above this are told as multiples, not in per cent."""
 
@@ -26,18 +40,23 @@ _NEEDS = {"all": "in every run", "none": "in no run", "some": "in at least one r
 def why(row: pd.Series, check: Check, name: str, condition: str, own_criterion: bool) -> str:
     """The sentence about a claim's decisive comparison.
 
-    row: of claim_checks.csv. name, condition: what is compared, and where, as printed. own_criterion: whether the
-    limit is ours because the paper gives no number.
+    row: of claim_checks.csv. name, condition: what is compared, and where, as printed.
+    own_criterion: whether the limit is ours because the paper gives no number.
     """
     where = f"{condition}: " if condition else ""
     said = _TEMPLATES.get(row["test"], _effect)(row, check, name)
-    notes = [_seconds(check, row), "the paper gives no number, so this limit is ours" if own_criterion else ""]
+    notes = [
+        _seconds(check, row),
+        "the paper gives no number, so this limit is ours" if own_criterion else "",
+    ]
     text = "; ".join(filter(None, [where + said, *notes]))
     return f"{text[:1].upper()}{text[1:]}."
 
 
 def reference(check: Check) -> float:
-    """The effect on whose other side a claim fails: the share that it needs, 0 for any other test."""
+    """The effect on whose other side a claim fails: the share that it needs, 0 for any other
+    test.
+    """
     if not isinstance(check, share.Options):
         return 0.0
     return {"all": 1.0, "none": 0.0, "some": 0.0}.get(check.threshold, check.threshold)
@@ -47,8 +66,14 @@ def _between(row: pd.Series, check: lower.Options | ordered.Options, name: str) 
     """Of groups that should be lower, or higher, than others."""
     together = re.fullmatch(r"all (\d+) together", name)
     if together and not pd.isna(row["effect"]):
-        decisive = f"of {together[1]} comparisons in {_measured(row)}, the decisive one is {_apart(row, check).removesuffix(' than')}"
-        return f"{decisive}{_interval(row, check)}; the claim says {check.direction} in all of them{_margin(row, check)}"
+        decisive = (
+            f"of {together[1]} comparisons in {_measured(row)}, the decisive one is "
+            f"{_apart(row, check).removesuffix(' than')}"
+        )
+        return (
+            f"{decisive}{_interval(row, check)}; the claim says {check.direction} in all of "
+            f"them{_margin(row, check)}"
+        )
     match = re.fullmatch(r"(.+) (lower|higher) than (.+)", name)
     if not match or pd.isna(row["effect"]):
         return _effect(row, check, name)
@@ -73,9 +98,15 @@ def _equal(row: pd.Series, check: equal_within.Options, name: str) -> str:
     if pd.isna(row["effect"]) or not second:
         return _effect(row, check, name)
     target = check.target
-    says = "that they are alike" if not target else f"by how much: {_amount(abs(target), row, check)} {'lower' if target < 0 else 'higher'}"
+    says = (
+        "that they are alike"
+        if not target
+        else f"by how much: {_amount(abs(target), row, check)} "
+        f"{'lower' if target < 0 else 'higher'}"
+    )
     return (
-        f"in {_quantity(row)}, {group} is {_apart(row, check)} {second}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
+        f"in {_quantity(row)}, {group} is {_apart(row, check)} "
+        f"{second}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
     )
 
 
@@ -84,7 +115,10 @@ def _differ(row: pd.Series, check: difference.Options, name: str) -> str:
     if pd.isna(row["effect"]):
         return _effect(row, check, name)
     amount = f"{_amount(abs(row['effect']), row, check)}{_interval(row, check)}"
-    return f"{_quantity(row)} differs between {name} by {amount}; the claim says that it differs{_margin(row, check)}"
+    return (
+        f"{_quantity(row)} differs between {name} by {amount}; the claim says that it "
+        f"differs{_margin(row, check)}"
+    )
 
 
 def _trend(row: pd.Series, check: trend.Options, name: str) -> str:
@@ -95,7 +129,8 @@ def _trend(row: pd.Series, check: trend.Options, name: str) -> str:
     wanted = {"up": "rises", "down": "falls"}[check.direction]
     amount = f"{_amount(abs(row['effect']), row, check)}{_interval(row, check)}"
     return (
-        f"{_quantity(row)} {moves} by {amount} from the least to the largest {along}; the claim says that it {wanted}{_margin(row, check)}"
+        f"{_quantity(row)} {moves} by {amount} from the least to the largest {along}; the "
+        f"claim says that it {wanted}{_margin(row, check)}"
     )
 
 
@@ -106,12 +141,20 @@ def _share(row: pd.Series, check: share.Options, name: str) -> str:
     happens = _event(row, check)
     if check.pick:
         picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
-        return f"in {picked}, {happens if row['effect'] else f'it is not so that {happens}'}; the claim needs it there"
+        return (
+            f"in {picked}, {happens if row['effect'] else f'it is not so that {happens}'}; the "
+            f"claim needs it there"
+        )
     needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
     needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
     low, high = 100 * row["low95"], 100 * row["high95"]
-    interval = "" if pd.isna(low) or pd.isna(high) else f" (95 % interval {low:.3g} to {high:.3g} %)"
-    return f"{happens} in {100 * row['effect']:.3g} % of the runs{interval}; the claim needs it {needed}"
+    interval = (
+        "" if pd.isna(low) or pd.isna(high) else f" (95 % interval {low:.3g} to {high:.3g} %)"
+    )
+    return (
+        f"{happens} in {100 * row['effect']:.3g} % of the runs{interval}; the claim needs it "
+        f"{needed}"
+    )
 
 
 def _event(row: pd.Series, check: share.Options) -> str:
@@ -122,26 +165,36 @@ def _event(row: pd.Series, check: share.Options) -> str:
         unit = "" if str(row["unit"]) in meaning else _unit(row)
         return " ".join(f"{meaning} is {EVENTS[key]} {value:g}{unit}".split())
     return (
-        meaning.removeprefix("whether ") if meaning.startswith("whether ") else f"the path is {row['metric'].replace('_', ' ')} ({meaning})"
+        meaning.removeprefix("whether ")
+        if meaning.startswith("whether ")
+        else f"the path is {row['metric'].replace('_', ' ')} ({meaning})"
     )
 
 
 def _function(row: pd.Series, check: function.Options, name: str) -> str:
     """Of what a function of the study's own finds."""
-    value = "no value" if pd.isna(row["effect"]) else f"{_printed(row['effect'])}{_unit(row)}{_interval(row, check)}"
+    value = (
+        "no value"
+        if pd.isna(row["effect"])
+        else f"{_printed(row['effect'])}{_unit(row)}{_interval(row, check)}"
+    )
     return f"{check.effect}: {value}"
 
 
 def _arithmetic(row: pd.Series, check: Check, name: str) -> str:
     """Of printed numbers that should follow from each other."""
-    return f"the paper's own numbers give {row['effect']:.4g}, and it prints {row['effect_size']:.4g}"
+    return (
+        f"the paper's own numbers give {row['effect']:.4g}, and it prints {row['effect_size']:.4g}"
+    )
 
 
 def _effect(row: pd.Series, check: Check, name: str) -> str:
     """Of any other comparison."""
     if pd.isna(row["effect"]):
         counted = "" if pd.isna(row["counted"]) else str(row["counted"]).replace(", ", " and ")
-        return f"{_quantity(row)}, {name}: " + (f"a value in {counted} runs" if counted else "no value")
+        return f"{_quantity(row)}, {name}: " + (
+            f"a value in {counted} runs" if counted else "no value"
+        )
     return f"{_quantity(row)}, {name}: {_amount(row['effect'], row, check)}{_interval(row, check)}"
 
 
@@ -161,14 +214,20 @@ def _quantity(row: pd.Series) -> str:
     """What is measured, with its statistic: `exact arc length (mean)`."""
     metric = "" if pd.isna(row["metric"]) else str(row["metric"])
     meaning = METRICS[metric].meaning if metric in METRICS else metric.replace("_", " ")
-    statistic = "" if pd.isna(row["statistic"]) or row["statistic"] == "rank" else f" ({row['statistic']})"
+    statistic = (
+        "" if pd.isna(row["statistic"]) or row["statistic"] == "rank" else f" ({row['statistic']})"
+    )
     return f"{meaning}{statistic}"
 
 
 def _measured(row: pd.Series) -> str:
     """What is compared: of an event, the share of runs in which it happens."""
     quantity = _quantity(row)
-    return f"the share of runs in which {quantity.removeprefix('whether ')}" if quantity.startswith("whether ") else quantity
+    return (
+        f"the share of runs in which {quantity.removeprefix('whether ')}"
+        if quantity.startswith("whether ")
+        else quantity
+    )
 
 
 def _unit(row: pd.Series) -> str:
@@ -207,5 +266,7 @@ def _margin(row: pd.Series, check: Check) -> str:
 
 def _seconds(check: Check, row: pd.Series) -> str:
     return (
-        "judged on counted work, because seconds differ from machine to machine" if isinstance(check, OfRuns) and check.counted_work else ""
+        "judged on counted work, because seconds differ from machine to machine"
+        if isinstance(check, OfRuns) and check.counted_work
+        else ""
     )

@@ -1,17 +1,18 @@
 """One file per kind of panel.
 
-Every file has `Options`, the keys that a panel of this kind may have, of which a panel is an instance, and
+Every file has `Options`, the keys that a panel of this kind may have, of which a panel is an
+instance, and
 
-| name | means |
-| --- | --- |
-| `data(source, options)` | the table of what is drawn, from what `source` of the options finds: runs, a workspace, a function's table |
-| `draw(axes, frame, scene, options)` | draws the rows of its panel in that table, and returns a `Note`: what the panel says in words |
+| name | means | | --- | --- | | `data(source, options)` | the table of what is drawn, from what
+`source` of the options finds: runs, a workspace, a function's table | | `draw(axes, frame, scene,
+options)` | draws the rows of its panel in that table, and returns a `Note`: what the panel says in
+words |
 
-`draw` labels its artists for the legend, and computes no statistics. A kind whose panels are not flat has `PROJECTION`, matplotlib's name
-for it.
+`draw` labels its artists for the legend, and computes no statistics. A kind whose panels are not
+flat has `PROJECTION`, matplotlib's name for it.
 
-Options are read at every start of the workflow, so these files import libraries for drawing and tables inside the functions that
-need them.
+Options are read at every start of the workflow, so these files import libraries for drawing and
+tables inside the functions that need them.
 """
 
 from __future__ import annotations
@@ -59,8 +60,9 @@ MOST_PANELS = 26
 class Note(NamedTuple):
     """What a panel says in words.
 
-    shown: a few words below its title, if two lines are enough for both. told: what belongs into the figure's caption, such as the run that
-    it shows and the runs that it counts, in clauses joined by semicolons.
+    shown: a few words below its title, if two lines are enough for both. told: what belongs into
+    the figure's caption, such as the run that it shows and the runs that it counts, in clauses
+    joined by semicolons.
     """
 
     shown: str = ""
@@ -68,7 +70,8 @@ class Note(NamedTuple):
 
 
 EACH = (
-    "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, with its own keys and those beside "
+    "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, "
+    "with its own keys and those beside "
     "`each`; `where` may be given in both"
 )
 
@@ -77,8 +80,9 @@ EACH = (
 class Sources:
     """What the panels of a figure draw from.
 
-    results: by experiment. workspaces: by name. functions: those of the study's module, by name. published: all published tables by file
-    name. study: its name, from which with others the runs of panels that plan take their seeds.
+    results: by experiment. workspaces: by name. functions: those of the study's module, by name.
+    published: all published tables by file name. study: its name, from which with others the runs
+    of panels that plan take their seeds.
     """
 
     results: Mapping[str, Results] = field(default_factory=dict)
@@ -96,8 +100,9 @@ class Sources:
         return results._replace(runs=select(results.runs, where))
 
     def table(self, panel: TablePanel) -> pd.DataFrame:
-        """The table of a function, which is called once for all panels that draw the same one: with the workspace if they name one, with
-        the published tables if they ask for them, and with their arguments.
+        """The table of a function, which is called once for all panels that draw the same one: with
+        the workspace if they name one, with the published tables if they ask for them, and with
+        their arguments.
         """
         call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
         if call not in self._tables:
@@ -110,10 +115,11 @@ class Sources:
 class Panel(Model, ABC):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
-    published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps. plans: whether it
-    plans by itself, with a method of the study. one: columns of which the runs that it shows have one value. drives: whether these are
-    drives. tracks: whether their planner must have `track`. fewest_methods: how many methods it compares at least. named_rows: whether
-    names or last values stand beside it, which take the room of a second panel.
+    published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw
+    what no table keeps. plans: whether it plans by itself, with a method of the study. one: columns
+    of which the runs that it shows have one value. drives: whether these are drives. tracks:
+    whether their planner must have `track`. fewest_methods: how many methods it compares at least.
+    named_rows: whether names or last values stand beside it, which take the room of a second panel.
     """
 
     published_drawn: ClassVar[bool] = False
@@ -126,7 +132,9 @@ class Panel(Model, ABC):
     named_rows: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
-    title: Label = Field(None, description="one line above the panel, at most 80 characters, 30 a word")
+    title: Label = Field(
+        None, description="one line above the panel, at most 80 characters, 30 a word"
+    )
     each: list[dict[str, Any]] = Field(None, min_length=2, description=EACH)
 
     _place: str = PrivateAttr("")
@@ -145,7 +153,10 @@ class RunsPanel(Panel):
     """A panel that shows runs."""
 
     experiment: Experiment = Field(description="the name of an experiment")
-    where: Where = Field({}, description="column of the runs table → value or list of values: the runs that are shown")
+    where: Where = Field(
+        {},
+        description="column of the runs table → value or list of values: the runs that are shown",
+    )
 
     def source(self, sources: Sources) -> Any:
         """Results of the experiment, with the runs that are shown."""
@@ -156,13 +167,18 @@ class TablePanel(Panel):
     """A panel that shows a table of a function of the study's module."""
 
     data: Function = Field(
-        description="the name of a function of the study's module that returns a table; with `workspace` it is called with that, with "
+        description="the name of a function of the study's module that returns a table; with "
+        "`workspace` it is called with that, with "
         "`published: true` with the published tables by file name"
     )
-    published: Flag = Field(False, description="whether the function is called with the published tables, true or false")
+    published: Flag = Field(
+        False, description="whether the function is called with the published tables, true or false"
+    )
     workspace: Workspace = Field(None, description="the name of a workspace")
     arguments: Arguments = Field({}, description=ARGUMENTS)
-    where: Where = Field({}, description="column of the table → value or list of values: the rows that are shown")
+    where: Where = Field(
+        {}, description="column of the table → value or list of values: the rows that are shown"
+    )
 
     def source(self, sources: Sources) -> Any:
         """The rows of the function's table that are shown."""
@@ -174,21 +190,35 @@ class TablePanel(Panel):
 class Pick(Model):
     """One run."""
 
-    lowest: Quantity = Field(None, description="a column of numbers of the runs table: the feasible run with its lowest value")
-    median: Quantity = Field(None, description="a column of numbers of the runs table: the feasible run with its median value")
+    lowest: Quantity = Field(
+        None,
+        description="a column of numbers of the runs table: the feasible run with its lowest value",
+    )
+    median: Quantity = Field(
+        None,
+        description="a column of numbers of the runs table: the feasible run with its median value",
+    )
     repeat: Repeat = Field(None, description="a whole number: the run of that repeat")
-    having: Metric = Field(None, description="beside one of these, the name of a metric: only runs that have more than 0 of it count")
+    having: Metric = Field(
+        None,
+        description="beside one of these, the name of a metric: only runs that have more than 0 "
+        "of it count",
+    )
 
     @model_validator(mode="after")
     def _check_one(self) -> Pick:
         ways = self.model_fields_set - {"having"}
         if len(ways) != 1:
-            raise wrong(f"{len(ways)} keys; expected {{lowest: column}}, {{median: column}} or {{repeat: number}}")
+            raise wrong(
+                f"{len(ways)} keys; expected {{lowest: column}}, {{median: column}} or {{repeat: "
+                f"number}}"
+            )
         return self
 
 
 PICK = (
-    "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; with having: metric, only of those that "
+    "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
+    "with having: metric, only of those that "
     "have more than 0 of it"
 )
 
@@ -198,7 +228,10 @@ def _check_view(view: list[float]) -> list[float]:
     sides = sorted([east - west, north - south])
     # Ticks of narrower ones do not tell their ends apart, and longer ones are no more than a line.
     if not (sides[0] >= 1e-6 and sides[1] <= 100 * sides[0] and max(map(abs, view)) <= 1e6):
-        limits = "1e-6 apart at least, one side at most 100 times the other, numbers of at most 1e6 in absolute value"
+        limits = (
+            "1e-6 apart at least, one side at most 100 times the other, numbers of at most "
+            "1e6 in absolute value"
+        )
         raise wrong(f"{view}: expected [lowest x, highest x, lowest y, highest y], {limits}")
     return view
 

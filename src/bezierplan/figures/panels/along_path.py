@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 # Those of the metric that claims judge.
 _SAMPLES = CURVATURE_SAMPLES
 
-# A peak higher than this many limits would flatten the curve onto the axis: then the scale ends lower, and an arrow marks the peak.
+# A peak higher than this many limits would flatten the curve onto the axis: then the scale ends
+# lower, and an arrow marks the peak.
 _HIGHEST_PEAK = 10
 _CUT_SCALE = 4
 
@@ -43,11 +44,11 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, pieces (that the path
-    is made of), t (0 to 1), value.
+    """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`,
+    quantity, limit, pieces (that the path is made of), t (0 to 1), value.
 
-    The value of curvature has its sign, with left turns positive, in 1/unit, and is empty where the speed is zero. Without a path, one row
-    without t and value.
+    The value of curvature has its sign, with left turns positive, in 1/unit, and is empty where the
+    speed is zero. Without a path, one row without t and value.
 
     Raises ValueError unless all runs are of one problem and one method.
     """
@@ -56,7 +57,10 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     from bezierplan.analysis.results import path_of
 
     run, names = picked(results, options.pick)
-    names |= {"quantity": options.quantity, "limit": math.nan if options.limit is None else options.limit}
+    names |= {
+        "quantity": options.quantity,
+        "limit": math.nan if options.limit is None else options.limit,
+    }
     path = None if run is None else path_of(run)
     if path is None:
         return pd.DataFrame([names | {"pieces": 0, "t": math.nan, "value": math.nan}])
@@ -76,11 +80,19 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.grid(visible=True)
     if not math.isnan(row["limit"]):
         axes.axhline(
-            row["limit"], label=f"published limit: {row['limit']:g} 1/{unit}, for turns to either side", zorder=3, **style.PUBLISHED
+            row["limit"],
+            label=f"published limit: {row['limit']:g} 1/{unit}, for turns to either side",
+            zorder=3,
+            **style.PUBLISHED,
         )
         axes.axhline(-row["limit"], zorder=3, **style.PUBLISHED)
     if frame["value"].isna().all():
-        return Note("", run_note(frame, "no path" if frame["t"].isna().all() else "the curve is a single point"))
+        return Note(
+            "",
+            run_note(
+                frame, "no path" if frame["t"].isna().all() else "the curve is a single point"
+            ),
+        )
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
     for joint in range(1, int(row["pieces"])):
         axes.axvline(joint / row["pieces"], label="joint of two pieces", zorder=2, **_JOINT)
@@ -88,15 +100,28 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
-    """Mark the value of largest magnitude and fit the scale to it; returns what to say about it and about the samples left out."""
+    """Mark the value of largest magnitude and fit the scale to it; returns what to say about it and
+    about the samples left out.
+    """
     highest = frame.loc[frame["value"].abs().idxmax()]
     limit, magnitude, side = highest["limit"], abs(highest["value"]), np.sign(highest["value"])
     cut = magnitude > _HIGHEST_PEAK * limit
     top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([magnitude, limit, 1e-3])
     axes.set_ylim(-top, top)
     marker = ("^" if side > 0 else "v") if cut else "o"
-    mark = {"marker": marker, "markersize": 5, "color": style.BLACK, "linestyle": "", "label": "largest magnitude"}
+    mark = {
+        "marker": marker,
+        "markersize": 5,
+        "color": style.BLACK,
+        "linestyle": "",
+        "label": "largest magnitude",
+    }
     axes.plot(highest["t"], side * min(magnitude, top), clip_on=False, zorder=4, **mark)
     still = int(frame["value"].isna().sum())
-    left_out = [f"{still} of {len(frame)} samples left out, where the curve stands still"] if still else []
-    return Note(f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}", run_note(frame, *left_out))
+    left_out = (
+        [f"{still} of {len(frame)} samples left out, where the curve stands still"] if still else []
+    )
+    return Note(
+        f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}",
+        run_note(frame, *left_out),
+    )

@@ -10,7 +10,14 @@ from pydantic import Field
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, RunsPanel
-from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, published, runs_note, shared_limits
+from bezierplan.figures.panels.lines import (
+    LIMITS,
+    axis_label,
+    constants,
+    published,
+    runs_note,
+    shared_limits,
+)
 from bezierplan.schema.model import Column, Flag, Metric, Number
 
 if TYPE_CHECKING:
@@ -27,7 +34,8 @@ _REACH = 1.5
 _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3", "high": "whishi"}
 
 
-# Published means farther away than this many times the range of our values are drawn at the edge, with their value.
+# Published means farther away than this many times the range of our values are drawn at the edge,
+# with their value.
 _FAR = 0.25
 
 # So that a number can be read where it lies on a whisker.
@@ -41,18 +49,26 @@ class Options(RunsPanel):
     published_drawn: ClassVar[bool] = True
 
     metric: Metric = Field(description="the name of a metric")
-    by: Column = Field("method", description="a column of the runs table: a box for each of its values; left out: method")
-    limits: Flag = Field(False, description="whether the exact bound and the reference are drawn, true or false")
+    by: Column = Field(
+        "method",
+        description="a column of the runs table: a box for each of its values; left out: method",
+    )
+    limits: Flag = Field(
+        False, description="whether the exact bound and the reference are drawn, true or false"
+    )
     limit: Number = Field(None, description="the published limit of the metric, a number")
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
+    """One row per part of a box; columns: those of `lines.constants`, `by` by its own name, runs
+    and feasible_runs (counts), part, value.
 
-    Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
-    mean that the paper prints, and published_end, the least and the largest value that it prints. Values are in the metric's unit, for
-    runs that have the metric. A group without such runs has a row: none. Rows without a group: limit; and, with limits, reference (the best
-    known path of the kind) and bound (the exact shortest length), each if all runs share it.
+    Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value
+    beyond the whiskers; mean; published, the mean that the paper prints, and published_end, the
+    least and the largest value that it prints. Values are in the metric's unit, for runs that have
+    the metric. A group without such runs has a row: none. Rows without a group: limit; and, with
+    limits, reference (the best known path of the kind) and bound (the exact shortest length), each
+    if all runs share it.
 
     Raises KeyError for an unknown metric or column.
     """
@@ -62,13 +78,24 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
     for group, own in runs.groupby(by):
-        named = constants(runs) | {by: group, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
+        named = constants(runs) | {
+            by: group,
+            "runs": len(own),
+            "feasible_runs": int(own["feasible"].sum()),
+        }
         parts = _box(np.sort(own["value"].dropna().to_numpy())) or [("none", np.nan)]
-        for part, statistic in (("published", "mean"), ("published_end", "min"), ("published_end", "max")):
+        for part, statistic in (
+            ("published", "mean"),
+            ("published_end", "min"),
+            ("published_end", "max"),
+        ):
             parts += [(part, value) for value in published(results, own, metric, statistic)]
         rows += [named | {"part": part, "value": value} for part, value in parts]
     if options.limits:
-        rows += [constants(runs) | {"part": name, "value": value} for name, value in shared_limits(runs).items()]
+        rows += [
+            constants(runs) | {"part": name, "value": value}
+            for name, value in shared_limits(runs).items()
+        ]
     if options.limit is not None:
         rows.append(constants(runs) | {"part": "limit", "value": options.limit})
     return pd.DataFrame(rows)
@@ -82,7 +109,14 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
     reach = _REACH * (third - first)
     inside = (values >= first - reach) & (values <= third + reach)
     low, high = values[inside][[0, -1]]
-    box = [("low", low), ("quartile1", first), ("median", median), ("quartile3", third), ("high", high), ("mean", values.mean())]
+    box = [
+        ("low", low),
+        ("quartile1", first),
+        ("median", median),
+        ("quartile3", third),
+        ("high", high),
+        ("mean", values.mean()),
+    ]
     return box + [("beyond", value) for value in values[~inside]]
 
 
@@ -90,37 +124,70 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, the first box on top."""
     by = options.by
     groups = style.in_order(frame[by], options.where)
-    boxes = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
+    boxes = [
+        frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups
+    ]
     _draw_boxes(axes, boxes)
     for name, look in LIMITS.items():
         for value in frame.loc[frame["part"] == name, "value"]:
             axes.axvline(value, zorder=1.5, **look)
     for value in frame.loc[frame["part"] == "limit", "value"]:
-        axes.axvline(value, zorder=1.5, label=f"published limit: {value:g} {scene.unit}", **style.PUBLISHED)
+        axes.axvline(
+            value, zorder=1.5, label=f"published limit: {value:g} {scene.unit}", **style.PUBLISHED
+        )
     axes.set_xlabel(axis_label(options.metric, scene))
     medians = frame.loc[frame["part"] == "median", "value"]
-    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # labels such as 0.0025 would touch each other
+    axes.locator_params(
+        axis="x", nbins=4, steps=[1, 2, 5, 10]
+    )  # labels such as 0.0025 would touch each other
     if style.is_wide(medians):
         style.fit(axes.xaxis, frame["value"], medians)
         far = set()
     else:
         far = _draw_far(axes, boxes, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
     marks = {
-        "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "alpha": 0.6, "label": "outlier", "zorder": 1},
+        "beyond": {
+            "color": style.BLUE,
+            "marker": ".",
+            "markersize": 1.6,
+            "alpha": 0.6,
+            "label": "outlier",
+            "zorder": 1,
+        },
         "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
-        "published_end": {"color": style.BLACK, "marker": "|", "markersize": 9, "label": "published minimum and maximum", "zorder": 5},
+        "published_end": {
+            "color": style.BLACK,
+            "marker": "|",
+            "markersize": 9,
+            "label": "published minimum and maximum",
+            "zorder": 5,
+        },
         "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
     }
     for part, look in marks.items():
-        points = [(value, height) for height, parts in enumerate(boxes) for value in parts.get(part, []) if value not in far]
+        points = [
+            (value, height)
+            for height, parts in enumerate(boxes)
+            for value in parts.get(part, [])
+            if value not in far
+        ]
         if points:
             axes.plot(*zip(*points), **({"linestyle": ""} | look))
     none = [height for height, parts in enumerate(boxes) if "none" in parts]
     if none:
-        cross = {"color": style.BLACK, "linestyle": "", "marker": "x", "markersize": 4, "clip_on": False, "label": "no value"}
+        cross = {
+            "color": style.BLACK,
+            "linestyle": "",
+            "marker": "x",
+            "markersize": 4,
+            "clip_on": False,
+            "label": "no value",
+        }
         axes.plot(np.ones(len(none)), none, transform=axes.get_yaxis_transform(), **cross)
     axes.set_ylim(len(groups) - 0.4, -0.6)
-    axes.set_yticks(range(len(groups)), [style.printed(group, by, scene.labels) for group in groups])
+    axes.set_yticks(
+        range(len(groups)), [style.printed(group, by, scene.labels) for group in groups]
+    )
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=True, axis="x")
     style.in_milliseconds(axes.xaxis, frame["value"])
@@ -128,11 +195,18 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:
-    """Mark published means that would compress the boxes at the edge of the scale that they lie beyond, and return them.
+    """Mark published means that would compress the boxes at the edge of the scale that they lie
+    beyond, and return them.
 
     groups: values by part. limits: other values that are shown.
     """
-    values_shown = limits + [value for parts in groups for part, values in parts.items() if part != "published" for value in values]
+    values_shown = limits + [
+        value
+        for parts in groups
+        for part, values in parts.items()
+        if part != "published"
+        for value in values
+    ]
     if not values_shown:
         return set()
     low, high = min(values_shown), max(values_shown)
@@ -140,23 +214,50 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
     far = set()
     for height, parts in enumerate(groups):
         for above in (False, True):
-            beyond = sorted(value for value in parts.get("published", []) if (value > high + reach if above else value < low - reach))
+            beyond = sorted(
+                value
+                for value in parts.get("published", [])
+                if (value > high + reach if above else value < low - reach)
+            )
             if not beyond:
                 continue
             far.update(beyond)
             # Several, of several conditions, by their range: one text each would lie on the other.
             told = " to ".join(dict.fromkeys(f"{value:.4g}" for value in (beyond[0], beyond[-1])))
-            # On the right, beside the panel, where they hide no data; on the left are the names of the rows.
-            at = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "xytext": (7, 0), "va": "center", "ha": "left"}
+            # On the right, beside the panel, where they hide no data; on the left are the names of
+            # the rows.
+            at = {
+                "xycoords": ("axes fraction", "data"),
+                "textcoords": "offset points",
+                "xytext": (7, 0),
+                "va": "center",
+                "ha": "left",
+            }
             behind = None if above else _BEHIND_TEXT
             axes.annotate(told, (1.0 if above else 0.0, height), zorder=5, bbox=behind, **at)
-            edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, off the scale"}
-            axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
+            edge = style.PUBLISHED_MARK | {
+                "marker": ">" if above else "<",
+                "label": "published mean, off the scale",
+            }
+            axes.plot(
+                1.0 if above else 0.0,
+                height,
+                transform=axes.get_yaxis_transform(),
+                clip_on=False,
+                zorder=5,
+                **edge,
+            )
     if far:
-        # Ends of the scale: the threshold for far means, if there are any; otherwise everything shown, with a small margin.
-        shown = values_shown + [value for parts in groups for value in parts.get("published", []) if value not in far]
+        # Ends of the scale: the threshold for far means, if there are any; otherwise everything
+        # shown, with a small margin.
+        shown = values_shown + [
+            value for parts in groups for value in parts.get("published", []) if value not in far
+        ]
         room = 0.05 * (high - low)
-        axes.set_xlim(low - reach if min(far) < low else min(shown) - room, high + reach if max(far) > high else max(shown) + room)
+        axes.set_xlim(
+            low - reach if min(far) < low else min(shown) - room,
+            high + reach if max(far) > high else max(shown) + room,
+        )
     return far
 
 
@@ -165,5 +266,19 @@ def _draw_boxes(axes: Axes, groups: list[dict[str, list[float]]]) -> None:
     there = {height: parts for height, parts in enumerate(groups) if "median" in parts}
     boxes = [{name: parts[part][0] for part, name in _PARTS.items()} for parts in there.values()]
     thin = {"color": style.BLUE, "linewidth": 0.7}
-    looks = {"boxprops": style.BOX, "whiskerprops": thin, "capprops": thin, "medianprops": {"color": style.BLUE, "linewidth": 1.6}}
-    axes.bxp(boxes, list(there), orientation="horizontal", widths=0.6, patch_artist=True, showfliers=False, manage_ticks=False, **looks)
+    looks = {
+        "boxprops": style.BOX,
+        "whiskerprops": thin,
+        "capprops": thin,
+        "medianprops": {"color": style.BLUE, "linewidth": 1.6},
+    }
+    axes.bxp(
+        boxes,
+        list(there),
+        orientation="horizontal",
+        widths=0.6,
+        patch_artist=True,
+        showfliers=False,
+        manage_ticks=False,
+        **looks,
+    )

@@ -1,4 +1,6 @@
-"""How near obstacles come to a robot in a world that moves: the least distance in each step of a drive, a line for each method."""
+"""How near obstacles come to a robot in a world that moves: the least distance in each step of a
+drive, a line for each method.
+"""
 
 from __future__ import annotations
 
@@ -25,12 +27,15 @@ class Options(RunsPanel):
     one: ClassVar[tuple[str, ...]] = ("problem",)
     drives: ClassVar[bool] = True
 
-    repeat: Repeat = Field(0, description="which run of each method is shown, a whole number; left out: 0")
+    repeat: Repeat = Field(
+        0, description="which run of each method is shown, a whole number; left out: 0"
+    )
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per step; columns: problem, method, run (its id), step (its end), clearance (least distance to an obstacle in it, in units,
-    negative inside a circle), arrived. Raises ValueError for runs of several problems.
+    """One row per step; columns: problem, method, run (its id), step (its end), clearance (least
+    distance to an obstacle in it, in units, negative inside a circle), arrived. Raises ValueError
+    for runs of several problems.
     """
     import pandas as pd
 
@@ -38,15 +43,22 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     if results.runs["problem"].nunique() != 1:
         raise ValueError(
-            f"clearance over time needs runs of one problem, not of {results.runs['problem'].nunique()}; see the panel's `where`"
+            f"clearance over time needs runs of one problem, not of "
+            f"{results.runs['problem'].nunique()}; see the panel's `where`"
         )
     parts = []
     for _, run in results.runs[results.runs["repeat"] == options.repeat].iterrows():
         given = (results.problems[run["problem"]], results.worlds[run["problem"]])
-        ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], options.repeat, *given)
+        ride, verdict = rides.rerun(
+            results.jobs[run["method"]], run["condition"], options.repeat, *given
+        )
         names = {"problem": run["problem"], "method": run["method"], "run": run["id"]}
         steps = np.arange(1, len(verdict.clearance) + 1)
-        parts.append(pd.DataFrame({**names, "step": steps, "clearance": verdict.clearance, "arrived": ride.arrived}))
+        parts.append(
+            pd.DataFrame(
+                {**names, "step": steps, "clearance": verdict.clearance, "arrived": ride.arrived}
+            )
+        )
     return pd.concat(parts, ignore_index=True)
 
 
@@ -56,7 +68,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     for method, look in zip(methods, style.lines(methods, scene.looks)):
         own = frame[frame["method"] == method]
         axes.plot(
-            own["step"], own["clearance"], label=style.printed(method, "method", scene.labels), **look | {"marker": "", "linewidth": 1.0}
+            own["step"],
+            own["clearance"],
+            label=style.printed(method, "method", scene.labels),
+            **look | {"marker": "", "linewidth": 1.0},
         )
     axes.axhline(0.0, label="obstacle", **style.BOUND)
     axes.set_xlabel("step")

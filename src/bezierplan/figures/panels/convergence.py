@@ -1,4 +1,5 @@
-"""The best objective of each generation: one picked run with median and spread of all runs, or one line per method or value of a factor.
+"""The best objective of each generation: one picked run with median and spread of all runs, or one
+line per method or value of a factor.
 
 A study's label of `generation` names the axis, such as `iteration` for a swarm.
 """
@@ -13,7 +14,14 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import statistics
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
-from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published, runs_note, shared_limits
+from bezierplan.figures.panels.lines import (
+    LIMITS,
+    constants,
+    interval_band,
+    published,
+    runs_note,
+    shared_limits,
+)
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
 from bezierplan.schema.model import Column, Flag, PrintedTable, Whole, wrong
 from bezierplan.workspaces.seeds import generator
@@ -28,12 +36,14 @@ if TYPE_CHECKING:
 # Marks on the line of a group, at generations that differ from those of the other lines.
 _MARKS = 5
 
-# The strip of last values beside a panel: its width and its distance, as shares of the panel's width.
+# The strip of last values beside a panel: its width and its distance, as shares of the panel's
+# width.
 _STRIP, _APART = 0.34, 0.04
 
 _PRINTED = style.PUBLISHED_MARK | {"markersize": 3.5}
 
-# Published means farther beyond our values than this share of their range are drawn at the end of the axis, with the range of theirs.
+# Published means farther beyond our values than this share of their range are drawn at the end of
+# the axis, with the range of theirs.
 _FAR = 0.5
 
 
@@ -43,11 +53,26 @@ class Options(RunsPanel):
     named_rows: ClassVar[bool] = True
 
     pick: Pick = Field(None, description=PICK)
-    hue: Column = Field(None, description="in place of pick, a column of the runs table: a line for each of its values")
-    statistic: Literal["mean", "median"] = Field("mean", description="with hue, of its runs: mean (left out: this) or median")
-    reference: Flag = Field(False, description="whether the reference of the problem is drawn, true or false")
-    until: Whole = Field(None, description="the generation at which the axis ends; left out: the last one of the longest run")
-    printed: PrintedTable = Field(None, description="with hue, the name of a published table whose means are marked beside the last values")
+    hue: Column = Field(
+        None,
+        description="in place of pick, a column of the runs table: a line for each of its values",
+    )
+    statistic: Literal["mean", "median"] = Field(
+        "mean", description="with hue, of its runs: mean (left out: this) or median"
+    )
+    reference: Flag = Field(
+        False, description="whether the reference of the problem is drawn, true or false"
+    )
+    until: Whole = Field(
+        None,
+        description="the generation at which the axis ends; left out: the last one of the longest "
+        "run",
+    )
+    printed: PrintedTable = Field(
+        None,
+        description="with hue, the name of a published table whose means are marked beside the "
+        "last values",
+    )
 
     @property
     def published_drawn(self) -> bool:
@@ -70,20 +95,26 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per generation, and with `hue` also per value of it. A run that stopped early keeps its last objective.
+    """One row per generation, and with `hue` also per value of it. A run that stopped early keeps
+    its last objective.
 
-    Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact shortest length.
+    Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact
+    shortest length.
 
-    With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty without one), median, quartile1 and
-    quartile3, bound. With `hue`, columns: those of `lines.constants`, the hue's own name, runs and feasible_runs (counts), generation,
-    objective (the statistic), low95 and high95 (its 95 % bootstrap interval), bound (empty if problems differ in it). With `reference`, a
-    column of that name: the length of the best known path of the methods' own kind, empty if problems differ in it. With `printed`, a
-    column of that name: the mean that this published table has for a group, in the row of the last generation.
+    With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty
+    without one), median, quartile1 and quartile3, bound. With `hue`, columns: those of
+    `lines.constants`, the hue's own name, runs and feasible_runs (counts), generation, objective
+    (the statistic), low95 and high95 (its 95 % bootstrap interval), bound (empty if problems differ
+    in it). With `reference`, a column of that name: the length of the best known path of the
+    methods' own kind, empty if problems differ in it. With `printed`, a column of that name: the
+    mean that this published table has for a group, in the row of the last generation.
 
-    Rows end at the generation `until`, unless a run is longer. Raises ValueError with `pick` unless all runs are of one problem and one
-    method.
+    Rows end at the generation `until`, unless a run is longer. Raises ValueError with `pick` unless
+    all runs are of one problem and one method.
     """
-    generations = max(results.runs["history"].map(len).max(), 0 if options.until is None else options.until + 1)
+    generations = max(
+        results.runs["history"].map(len).max(), 0 if options.until is None else options.until + 1
+    )
     if options.pick is not None:
         frame = _of_one_run(results, options.pick, generations)
     else:
@@ -91,7 +122,11 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     if options.printed is not None and results.published is not None:
         table = results.published[results.published["table"] == options.printed]
         frame["printed"] = _published_ends(results._replace(published=table), frame, options.hue)
-    return frame.assign(reference=shared_limits(results.runs).get("reference", np.nan)) if options.reference else frame
+    return (
+        frame.assign(reference=shared_limits(results.runs).get("reference", np.nan))
+        if options.reference
+        else frame
+    )
 
 
 def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
@@ -100,9 +135,13 @@ def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
     run, names = picked(results, pick)
     histories = np.array([_lengthened(history, generations) for history in results.runs["history"]])
     low, median, high = np.quantile(histories, [0.25, 0.5, 0.75], axis=0)
-    shown = np.full(generations, np.nan) if run is None else _lengthened(run["history"], generations)
+    shown = (
+        np.full(generations, np.nan) if run is None else _lengthened(run["history"], generations)
+    )
     frame = pd.DataFrame({"generation": range(generations), "objective": shown})
-    frame = frame.assign(median=median, quartile1=low, quartile3=high, bound=results.runs["bound"].iloc[0], **names)
+    frame = frame.assign(
+        median=median, quartile1=low, quartile3=high, bound=results.runs["bound"].iloc[0], **names
+    )
     return frame[[*names, "generation", "objective", "median", "quartile1", "quartile3", "bound"]]
 
 
@@ -114,16 +153,32 @@ def _of_groups(results: Results, hue: str, statistic: str, generations: int) -> 
     frames = []
     for value, own in runs.groupby(hue):
         histories = np.array([_lengthened(history, generations) for history in own["history"]])
-        named = constants(runs) | {hue: value, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
+        named = constants(runs) | {
+            hue: value,
+            "runs": len(own),
+            "feasible_runs": int(own["feasible"].sum()),
+        }
         objective = statistics.STATISTICS[statistic](histories.T)
         low, high = _intervals(histories, statistic, f"convergence/{hue}={value}")
-        frames.append(pd.DataFrame(named | {"generation": range(generations), "objective": objective, "low95": low, "high95": high}))
+        frames.append(
+            pd.DataFrame(
+                named
+                | {
+                    "generation": range(generations),
+                    "objective": objective,
+                    "low95": low,
+                    "high95": high,
+                }
+            )
+        )
     bound = runs["bound"].iloc[0] if runs["bound"].nunique() == 1 else np.nan
     return pd.concat(frames, ignore_index=True).assign(bound=bound)
 
 
 def _intervals(histories: np.ndarray, statistic: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of the 95 % interval of a statistic of histories (n, generations): (generations,) each, from the same draws of runs."""
+    """Ends of the 95 % interval of a statistic of histories (n, generations): (generations,) each,
+    from the same draws of runs.
+    """
     ends = []
     for generation, values in enumerate(histories.T):
         held = generation > 0 and np.array_equal(values, histories[:, generation - 1])
@@ -137,7 +192,9 @@ def _published_ends(results: Results, frame: pd.DataFrame, hue: str) -> np.ndarr
     printed = np.full(len(frame), np.nan)
     last = frame["generation"] == frame["generation"].max()
     for value, own in results.runs.groupby(hue):
-        printed[last & (frame[hue] == value)] = next(iter(published(results, own, "objective")), np.nan)
+        printed[last & (frame[hue] == value)] = next(
+            iter(published(results, own, "objective")), np.nan
+        )
     return printed
 
 
@@ -180,9 +237,21 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
     for number, (group, rows, look) in enumerate(zip(groups, lines, looks)):
         step = max(1, len(rows) // _MARKS)
         if len(groups) <= style.MOST_BANDS:
-            interval_band(axes, rows["generation"], rows["low95"], rows["high95"], look["color"], "95 % interval")
+            interval_band(
+                axes,
+                rows["generation"],
+                rows["low95"],
+                rows["high95"],
+                look["color"],
+                "95 % interval",
+            )
         named = look | {"label": style.printed(group, hue, scene.labels)}
-        axes.plot(rows["generation"], rows["objective"], markevery=(number * step // len(groups), step), **named)
+        axes.plot(
+            rows["generation"],
+            rows["objective"],
+            markevery=(number * step // len(groups), step),
+            **named,
+        )
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
     axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)
     axes.autoscale_view()
@@ -193,9 +262,16 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
 
 
 def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: str) -> None:
-    """The last value of each line with its interval, and the published one, side by side in a strip that shares the vertical axis."""
+    """The last value of each line with its interval, and the published one, side by side in a strip
+    that shares the vertical axis.
+    """
     low, high = axes.get_ylim()
-    known = [each[name] for each in ends for name in ("objective", "low95", "high95") if np.isfinite(each[name])]
+    known = [
+        each[name]
+        for each in ends
+        for name in ("objective", "low95", "high95")
+        if np.isfinite(each[name])
+    ]
     reach = _FAR * (max(known) - min(known))
     printed = [each.get("printed", np.nan) for each in ends]
     near = [value for value in printed if min(known) - reach <= value <= max(known) + reach]
@@ -205,10 +281,18 @@ def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: 
     strip.tick_params(labelleft=False, left=False)
     strip.set_xticks([])
     strip.set_xlim(-0.7, len(ends) - 0.3)
-    strip.set_xlabel(f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8)  # level with that of the panel, below its last number
+    strip.set_xlabel(
+        f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8
+    )  # level with that of the panel, below its last number
     strip.grid(visible=True, axis="y")
     for column, (end, look, value) in enumerate(zip(ends, looks, printed)):
-        strip.plot([column, column], [end["low95"], end["high95"]], color=look["color"], linewidth=0.9, zorder=2)
+        strip.plot(
+            [column, column],
+            [end["low95"], end["high95"]],
+            color=look["color"],
+            linewidth=0.9,
+            zorder=2,
+        )
         strip.plot(column, end["objective"], zorder=3, **look | {"linestyle": ""})
         if not np.isfinite(value):
             continue
@@ -216,7 +300,11 @@ def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: 
             strip.plot(column, value, label="published final mean", zorder=4, **_PRINTED)
         else:
             above = value > high
-            edge = _PRINTED | {"marker": "^" if above else "v", "clip_on": False, "label": "published, off the scale"}
+            edge = _PRINTED | {
+                "marker": "^" if above else "v",
+                "clip_on": False,
+                "label": "published, off the scale",
+            }
             strip.plot(column, high if above else low, zorder=4, **edge)
     _tell_far(strip, sorted(value for value in printed if value > high), above=True)
     _tell_far(strip, sorted(value for value in printed if value < low), above=False)
@@ -227,4 +315,12 @@ def _tell_far(strip: Axes, values: list[float], *, above: bool) -> None:
     """Write the range of values beyond an end of the axis there."""
     if values:
         told = " to ".join(dict.fromkeys(f"{value:.3g}" for value in (values[0], values[-1])))
-        strip.text(0.5, 0.95 if above else 0.05, told, transform=strip.transAxes, ha="center", va="top" if above else "bottom", zorder=5)
+        strip.text(
+            0.5,
+            0.95 if above else 0.05,
+            told,
+            transform=strip.transAxes,
+            ha="center",
+            va="top" if above else "bottom",
+            zorder=5,
+        )

@@ -1,6 +1,8 @@
-"""A metric's statistic with its interval as dots, in rows for the values of one column, side by side for those of another.
+"""A metric's statistic with its interval as dots, in rows for the values of one column, side by
+side for those of another.
 
-The shortest path is a line. A dot is hollow if not all of its runs are feasible, and a cross at the edge stands for no feasible run.
+The shortest path is a line. A dot is hollow if not all of its runs are feasible, and a cross at the
+edge stands for no feasible run.
 """
 
 from __future__ import annotations
@@ -31,7 +33,13 @@ _FILLED = 0.8
 # Height of a row, and of each of its dots, as a share of the panel's width.
 _ROW, _DOT = 0.035, 0.014
 
-_HOLLOW = {"linestyle": "", "marker": "o", "markersize": 3.5, "color": style.BLACK, "markerfacecolor": style.FREE}
+_HOLLOW = {
+    "linestyle": "",
+    "marker": "o",
+    "markersize": 3.5,
+    "color": style.BLACK,
+    "markerfacecolor": style.FREE,
+}
 _NONE = {"linestyle": "", "marker": "x", "markersize": 3.5, "color": style.BLACK}
 
 
@@ -43,15 +51,21 @@ class Options(RunsPanel):
 
     metric: Metric = Field(description="the name of a metric")
     x: Column = Field(description="a column of the runs table: a row for each of its values")
-    hue: Column = Field(description="a column of the runs table: a dot in each row for each of its values")
-    statistic: Literal["mean", "median", "share"] = Field("mean", description="mean (left out: this), median or share")
+    hue: Column = Field(
+        description="a column of the runs table: a dot in each row for each of its values"
+    )
+    statistic: Literal["mean", "median", "share"] = Field(
+        "mean", description="mean (left out: this), median or share"
+    )
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per dot; columns: those of `lines.summary`, with x and hue by their own names, bound, and published.
+    """One row per dot; columns: those of `lines.summary`, with x and hue by their own names, bound,
+    and published.
 
-    bound is the mean exact shortest length of the problems of a dot's feasible runs (those that count for a length), in units; empty for
-    metrics that it does not bound. published is the number that the paper prints, if it prints one.
+    bound is the mean exact shortest length of the problems of a dot's feasible runs (those that
+    count for a length), in units; empty for metrics that it does not bound. published is the number
+    that the paper prints, if it prints one.
 
     Raises KeyError for an unknown metric or column.
     """
@@ -60,10 +74,19 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     x, hue, metric, statistic = options.x, options.hue, options.metric, options.statistic
     frame = summary(results, [x, hue], metric, statistic)
     feasible = results.runs[results.runs["feasible"]].sort_values("id")
-    bounds = feasible.groupby([x, hue])["bound"].mean().rename("bound") if metric in _BOUNDED else pd.Series(dtype=float)
-    printed = {dot: next(iter(published(results, own, metric, statistic)), np.nan) for dot, own in results.runs.groupby([x, hue])}
+    bounds = (
+        feasible.groupby([x, hue])["bound"].mean().rename("bound")
+        if metric in _BOUNDED
+        else pd.Series(dtype=float)
+    )
+    printed = {
+        dot: next(iter(published(results, own, metric, statistic)), np.nan)
+        for dot, own in results.runs.groupby([x, hue])
+    }
     dots = list(zip(frame[x], frame[hue]))
-    return frame.assign(bound=[bounds.get(dot, np.nan) for dot in dots], published=[printed[dot] for dot in dots])
+    return frame.assign(
+        bound=[bounds.get(dot, np.nan) for dot in dots], published=[printed[dot] for dot in dots]
+    )
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -72,22 +95,46 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     rows, dots = style.in_order(frame[x], options.where), style.in_order(frame[hue], options.where)
     axes.set_xlabel(axis_label(options.metric, scene, options.statistic))
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    axes.set_yticks(range(len(rows)), [scene.labels.get(row, row) if isinstance(row, str) else f"{row:g}" for row in rows])
+    axes.set_yticks(
+        range(len(rows)),
+        [scene.labels.get(row, row) if isinstance(row, str) else f"{row:g}" for row in rows],
+    )
     axes.tick_params(axis="y", length=0)
     axes.set_box_aspect(0.1 + (_ROW + _DOT * len(dots)) * len(rows))
-    axes.hlines(np.arange(len(rows) - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), color="0.8", linewidth=0.5, zorder=0.5)
+    axes.hlines(
+        np.arange(len(rows) - 1) + 0.5,
+        0,
+        1,
+        transform=axes.get_yaxis_transform(),
+        color="0.8",
+        linewidth=0.5,
+        zorder=0.5,
+    )
     axes.grid(visible=True, axis="x")
     for number, (dot, look) in enumerate(zip(dots, style.lines(dots, scene.looks))):
         own = frame[frame[hue] == dot]
         at = own[x].map(rows.index).to_numpy() + _FILLED * ((number + 0.5) / len(dots) - 0.5)
-        _draw_dots(axes, own, at, look | {"label": style.printed(dot, hue, scene.labels), "linestyle": ""})
+        _draw_dots(
+            axes, own, at, look | {"label": style.printed(dot, hue, scene.labels), "linestyle": ""}
+        )
     axes.autoscale_view(scaley=False)
-    style.fit(axes.xaxis, [*frame["value"], *frame["low95"], *frame["high95"]], frame.groupby(hue)["value"].median())
+    style.fit(
+        axes.xaxis,
+        [*frame["value"], *frame["low95"], *frame["high95"]],
+        frame.groupby(hue)["value"].median(),
+    )
     style.in_milliseconds(axes.xaxis, frame["value"])
     bounds = frame[frame["bound"].notna()].groupby(x)["bound"].mean()
     for row, bound in bounds.items():
         middle = rows.index(row)
-        axes.vlines(bound, middle - 0.45, middle + 0.45, label="exact shortest path", zorder=1.5, **style.BOUND)
+        axes.vlines(
+            bound,
+            middle - 0.45,
+            middle + 0.45,
+            label="exact shortest path",
+            zorder=1.5,
+            **style.BOUND,
+        )
     return Note("", runs_note(frame, options.statistic, "dot"))
 
 
@@ -99,7 +146,12 @@ def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> N
     axes.plot(frame["value"][whole], at[whole], zorder=4, **look)
     none = frame["value"].isna().to_numpy()
     if not (whole | none).all():
-        axes.plot(frame["value"][~whole], at[~whole], zorder=4, **look | {"markerfacecolor": style.FREE, "label": None})
+        axes.plot(
+            frame["value"][~whole],
+            at[~whole],
+            zorder=4,
+            **look | {"markerfacecolor": style.FREE, "label": None},
+        )
         axes.plot([], [], label="hollow: some runs are not feasible", **_HOLLOW)
     if none.any():
         at_edge = {"transform": axes.get_yaxis_transform(), "clip_on": False, "zorder": 4}

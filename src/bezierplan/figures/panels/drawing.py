@@ -1,4 +1,6 @@
-"""A drawing made of marks: what a procedure does, step by step, without a run; over a workspace if the panel names one."""
+"""A drawing made of marks: what a procedure does, step by step, without a run; over a workspace if
+the panel names one.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ _NEEDED = {
     "text": ["text"],
 }
 
-# Colours of fills and lines, and marks of single points, by role. Neighbours differ in lightness or in shape.
+# Colours of fills and lines, and marks of single points, by role. Neighbours differ in lightness or
+# in shape.
 _FILL = {
     "obstacle": {"facecolor": style.OCCUPIED, "edgecolor": "0.4"},
     "muted": {"facecolor": style.SURPLUS, "edgecolor": style.CELL_LINE},
@@ -62,11 +65,13 @@ class Options(TablePanel):
 
 
 def data(marks: pd.DataFrame, options: Options) -> pd.DataFrame:
-    """One row per mark, or per point of a line or arrow, with `COLUMNS` and the function's own extra columns, in drawing order.
+    """One row per mark, or per point of a line or arrow, with `COLUMNS` and the function's own
+    extra columns, in drawing order.
 
-    mark: cell (a box about x, y of a width and a height), circle (about x, y, of a radius), line and arrow (through the points of a group),
-    dots (marks at x, y), text (at x, y). role: the style: obstacle, start, target, first, second, third, accent, muted or note.
-    label: its entry in the legend; empty for none.
+    mark: cell (a box about x, y of a width and a height), circle (about x, y, of a radius), line
+    and arrow (through the points of a group), dots (marks at x, y), text (at x, y). role: the
+    style: obstacle, start, target, first, second, third, accent, muted or note. label: its entry in
+    the legend; empty for none.
 
     Raises ValueError for an unknown mark, and for one that lacks a required value.
     """
@@ -121,7 +126,11 @@ def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
             else Rectangle(at - np.array([each.width, each.height]) / 2, each.width, each.height)
             for at, each in zip(points, rows.itertuples())
         ]
-        axes.add_collection(PatchCollection(shapes, linewidth=0.5, zorder=zorder, **_FILL.get(role, _NO_FILL), **label))
+        axes.add_collection(
+            PatchCollection(
+                shapes, linewidth=0.5, zorder=zorder, **_FILL.get(role, _NO_FILL), **label
+            )
+        )
     elif mark == "line":
         axes.plot(*points.T, zorder=zorder, **_LINE.get(role, _LINE["note"]), **label)
     elif mark == "arrow":
@@ -130,7 +139,9 @@ def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
         for tail, head in itertools.pairwise(points):
             axes.annotate("", xy=head, xytext=tail, arrowprops=shape, zorder=zorder)
     elif mark == "dots":
-        axes.plot(*points.T, linestyle="", zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label)
+        axes.plot(
+            *points.T, linestyle="", zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label
+        )
     else:
         for at, words in zip(points, rows["text"]):
             # A csv file reads back a column of digits as numbers, not as words.

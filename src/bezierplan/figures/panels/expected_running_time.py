@@ -1,4 +1,6 @@
-"""Expected running times of methods to paths within 1, 2, 5 and 10 % of the exact shortest one (`analysis.running_time`)."""
+"""Expected running times of methods to paths within 1, 2, 5 and 10 % of the exact shortest one
+(`analysis.running_time`).
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,8 @@ _DRAWS = 1000
 # Distance of the marks of one method, as a share of the distance between methods.
 _APART = 0.18
 
-# Distance of the place for what never happens from the largest finite value and from the last label, as shares of the axis. Times below
-# this, in seconds, are printed in milliseconds.
+# Distance of the place for what never happens from the largest finite value and from the last
+# label, as shares of the axis. Times below this, in seconds, are printed in milliseconds.
 _NEVER, _CLEAR, _SHORT = 0.12, 0.2, 0.1
 
 _NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)"}
@@ -35,15 +37,19 @@ class Options(RunsPanel):
 
     named_rows: ClassVar[bool] = True
 
-    cost: Literal["evaluations", "cpu_s"] = Field(description="what is counted: evaluations or cpu_s")
+    cost: Literal["evaluations", "cpu_s"] = Field(
+        description="what is counted: evaluations or cpu_s"
+    )
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per method and target; columns: method, within, value, low95, high95, problems, reached, runs, successes.
+    """One row per method and target; columns: method, within, value, low95, high95, problems,
+    reached, runs, successes.
 
-    value: the expected running time, on several problems (conditions) the lower median over them; infinite where at least half of them are
-    never solved. low95, high95: its 95 % bootstrap interval, from runs drawn within each problem or, where each has one run of a method,
-    from problems. reached: problems with a success; runs, successes: counts over all problems.
+    value: the expected running time, on several problems (conditions) the lower median over them;
+    infinite where at least half of them are never solved. low95, high95: its 95 % bootstrap
+    interval, from runs drawn within each problem or, where each has one run of a method, from
+    problems. reached: problems with a success; runs, successes: counts over all problems.
 
     Raises ValueError if a method lacks runs on a problem.
     """
@@ -56,20 +62,35 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         running_time.by_problem(marked, marked["done"].to_numpy(dtype=float))
         for method, group in marked.groupby("method"):
             groups = _by_condition(group, cost)
-            values = np.array([running_time.expected(work.sum(), done.sum()) for work, done in groups])
-            low, high = _interval(groups, values, generator(f"expected running time/{cost}/{within}/{method}"))
+            values = np.array(
+                [running_time.expected(work.sum(), done.sum()) for work, done in groups]
+            )
+            low, high = _interval(
+                groups, values, generator(f"expected running time/{cost}/{within}/{method}")
+            )
             counts = {
                 "problems": len(groups),
                 "reached": int(np.isfinite(values).sum()),
                 "runs": len(group),
                 "successes": int(group["done"].sum()),
             }
-            rows.append({"method": method, "within": within, "value": _middle(values), "low95": low, "high95": high, **counts})
+            rows.append(
+                {
+                    "method": method,
+                    "within": within,
+                    "value": _middle(values),
+                    "low95": low,
+                    "high95": high,
+                    **counts,
+                }
+            )
     return pd.DataFrame(rows)
 
 
 def _by_condition(runs: pd.DataFrame, cost: str) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The cost (n,) and the success (n,) of the n runs under each condition, in the order of the conditions' names."""
+    """The cost (n,) and the success (n,) of the n runs under each condition, in the order of the
+    conditions' names.
+    """
     import pandas as pd
 
     codes, _ = pd.factorize(runs["condition"], sort=True)
@@ -83,10 +104,18 @@ def _middle(values: np.ndarray) -> np.ndarray:
     return np.quantile(values, 0.5, axis=-1, method="inverted_cdf")
 
 
-def _interval(groups: list[tuple[np.ndarray, np.ndarray]], values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
-    """The 95 % percentile interval of the median over problems, each given by the work and the success of its runs."""
+def _interval(
+    groups: list[tuple[np.ndarray, np.ndarray]], values: np.ndarray, rng: np.random.Generator
+) -> tuple[float, float]:
+    """The 95 % percentile interval of the median over problems, each given by the work and the
+    success of its runs.
+    """
     if max(len(work) for work, _ in groups) == 1:
-        drawn = _middle(values[rng.integers(len(values), size=(_DRAWS, len(values)))]) if len(values) > 1 else np.full(_DRAWS, np.nan)
+        drawn = (
+            _middle(values[rng.integers(len(values), size=(_DRAWS, len(values)))])
+            if len(values) > 1
+            else np.full(_DRAWS, np.nan)
+        )
     else:
         again = []
         for work, done in groups:
@@ -98,37 +127,72 @@ def _interval(groups: list[tuple[np.ndarray, np.ndarray]], values: np.ndarray, r
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`, a line of marks per method. An infinite time stands at the right edge."""
+    """Draw the rows of `data`, a line of marks per method. An infinite time stands at the right
+    edge.
+    """
     from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator
 
-    methods, targets = style.in_order(frame["method"], options.where), sorted(frame["within"].unique())
+    methods, targets = (
+        style.in_order(frame["method"], options.where),
+        sorted(frame["within"].unique()),
+    )
     finite = frame["value"][np.isfinite(frame["value"]) & (frame["value"] > 0)]
     low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
     never = high * max((high / low) ** _NEVER, 4.0)
     axes.set_xscale("log")
     axes.set_xlim(low / 2, never * 1.5)
     axes.set_xlabel(_NAMES[options.cost])
-    for number, (target, look) in enumerate(zip(targets, style.lines([str(target) for target in targets]))):
+    for number, (target, look) in enumerate(
+        zip(targets, style.lines([str(target) for target in targets]))
+    ):
         times = frame[frame["within"] == target].set_index("method").reindex(methods)
         heights = np.arange(len(methods)) + _APART * (number - (len(targets) - 1) / 2)
         known = np.isfinite(times["value"].to_numpy())
         ends = [times[name].clip(low / 2, never)[known] for name in ("low95", "high95")]
-        axes.hlines(heights[known], *ends, color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
+        axes.hlines(
+            heights[known],
+            *ends,
+            color=look["color"],
+            linewidth=0.8,
+            zorder=2,
+            label="95 % interval",
+        )
         mark = look | {"linestyle": "", "zorder": 3}
         axes.plot(times["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
-        axes.plot(np.full((~known).sum(), never), heights[~known], **mark | {"markerfacecolor": style.FREE})
+        axes.plot(
+            np.full((~known).sum(), never),
+            heights[~known],
+            **mark | {"markerfacecolor": style.FREE},
+        )
     axes.axvline(never / 1.8, color="0.5", linewidth=0.6, linestyle=(0, (1, 2)), zorder=1)
     # So far from the last place that their labels do not touch.
     last = never / (never / low) ** _CLEAR
     steps = (1.0,) if high > 100 * low else (1.0, 3.0)
-    ticks = _thinned([tick for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high) if low / 2 <= tick <= last], never / low)
+    ticks = _thinned(
+        [
+            tick
+            for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high)
+            if low / 2 <= tick <= last
+        ],
+        never / low,
+    )
     thousand = 1000 if options.cost == "cpu_s" and high < _SHORT else 1
     if thousand > 1:
         axes.set_xlabel(f"{_NAMES['cpu_s'].removesuffix('(s)')}(ms)")
     axes.xaxis.set_major_locator(FixedLocator([*ticks, never]))
     axes.xaxis.set_minor_locator(FixedLocator([]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: "never" if value == never else _power(thousand * value)))
-    axes.hlines(np.arange(len(methods) - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), color="0.8", linewidth=0.5, zorder=0.5)
+    axes.xaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: "never" if value == never else _power(thousand * value))
+    )
+    axes.hlines(
+        np.arange(len(methods) - 1) + 0.5,
+        0,
+        1,
+        transform=axes.get_yaxis_transform(),
+        color="0.8",
+        linewidth=0.5,
+        zorder=0.5,
+    )
     axes.set_yticks(range(len(methods)), [scene.labels.get(method, method) for method in methods])
     axes.set_ylim(len(methods) - 0.5, -0.5)
     axes.tick_params(axis="y", length=0)
@@ -136,13 +200,23 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.grid(visible=True, axis="x")
     first = frame.iloc[0]
     if first["problems"] > 1:
-        return Note("", f"median over {first['problems']:g} problems; never: at least half of them are not solved in any run")
+        return Note(
+            "",
+            f"median over {first['problems']:g} problems; never: at least half of them are not "
+            f"solved in any run",
+        )
     fewest, most = frame["runs"].min(), frame["runs"].max()
-    return Note("", f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; never: no run gets there")
+    return Note(
+        "",
+        f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; never: no run "
+        f"gets there",
+    )
 
 
 def _thinned(ticks: list[float], span: float) -> list[float]:
-    """Those of increasing ticks whose labels do not touch on an axis that spans a factor: within a decade a locator gives many."""
+    """Those of increasing ticks whose labels do not touch on an axis that spans a factor: within a
+    decade a locator gives many.
+    """
     kept: list[float] = []
     for tick in ticks:
         if not kept or tick >= kept[-1] * span**_CLEAR:

@@ -26,9 +26,27 @@ _STEPS = 16
 _NUMBERS = (1, 2, 5)
 
 _LOOK = {
-    "minimum": {"color": style.BLACK, "marker": "o", "markersize": 3.5, "markerfacecolor": "#FFFFFF", "label": "local minimum"},
-    "lowest": {"color": style.RED, "marker": "X", "markersize": 7, "markeredgecolor": "#FFFFFF", "label": "lowest value"},
-    "fixed": {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "label": "fixed control point"},
+    "minimum": {
+        "color": style.BLACK,
+        "marker": "o",
+        "markersize": 3.5,
+        "markerfacecolor": "#FFFFFF",
+        "label": "local minimum",
+    },
+    "lowest": {
+        "color": style.RED,
+        "marker": "X",
+        "markersize": 7,
+        "markeredgecolor": "#FFFFFF",
+        "label": "lowest value",
+    },
+    "fixed": {
+        "color": style.BLUE,
+        "marker": "o",
+        "markersize": 4.5,
+        "markerfacecolor": "#FFFFFF",
+        "label": "fixed control point",
+    },
     "start": workspaces.START,
     "target": workspaces.TARGET,
 }
@@ -39,7 +57,10 @@ class Options(RunsPanel):
 
     one: ClassVar[tuple[str, ...]] = ("problem",)
 
-    data: Function = Field(description="the name of a function of the study's module that returns a table, called with the runs")
+    data: Function = Field(
+        description="the name of a function of the study's module that returns a table, called "
+        "with the runs"
+    )
 
     def source(self, sources: Sources) -> tuple[Results, pd.DataFrame]:
         """Results, with the function's table of them."""
@@ -48,20 +69,27 @@ class Options(RunsPanel):
 
 
 def data(source: tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame:
-    """What is drawn, one row per place; columns: problem, part, x, y (in the workspace's unit), objective (of nodes, in units).
+    """What is drawn, one row per place; columns: problem, part, x, y (in the workspace's unit),
+    objective (of nodes, in units).
 
-    Parts: node (of a grid, y changing fastest), minimum (the lowest node of a valley), lowest (the lowest node), fixed (what does not
-    move), start, target. source: runs of one problem, and a function's table with the columns part, x, y and objective. Raises
-    ValueError for runs of several problems.
+    Parts: node (of a grid, y changing fastest), minimum (the lowest node of a valley), lowest (the
+    lowest node), fixed (what does not move), start, target. source: runs of one problem, and a
+    function's table with the columns part, x, y and objective. Raises ValueError for runs of
+    several problems.
     """
     import pandas as pd
 
     results, table = source
     names = list(results.runs["problem"].unique())
     if len(names) != 1:
-        raise ValueError(f"a landscape is one of exactly one problem, not of {len(names)} {names}; see its `where`")
+        raise ValueError(
+            f"a landscape is one of exactly one problem, not of {len(names)} {names}; see its "
+            f"`where`"
+        )
     problem = results.problems[names[0]]
-    ends = pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"])
+    ends = pd.DataFrame(
+        [("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]
+    )
     drawn = pd.concat([table, ends], ignore_index=True).assign(problem=problem.name)
     return drawn[["problem", "part", "x", "y", "objective"]]
 
@@ -84,7 +112,12 @@ def scale_of(values: np.ndarray) -> ScalarMappable:
 def round_numbers(values: np.ndarray) -> list[float]:
     """Round numbers between the lowest and the highest of positive values."""
     powers = range(int(np.log10(values.min())) - 1, int(np.log10(values.max())) + 1)
-    return [n * 10.0**power for power in powers for n in _NUMBERS if values.min() <= n * 10.0**power <= values.max()]
+    return [
+        n * 10.0**power
+        for power in powers
+        for n in _NUMBERS
+        if values.min() <= n * 10.0**power <= values.max()
+    ]
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -100,7 +133,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     for part, look in _LOOK.items():
         places = frame[frame["part"] == part]
         if not places.empty:
-            axes.plot(places["x"], places["y"], clip_on=False, **({"linestyle": "", "zorder": 4} | look))
+            axes.plot(
+                places["x"], places["y"], clip_on=False, **({"linestyle": "", "zorder": 4} | look)
+            )
     bar = axes.figure.colorbar(colours, cax=axes.inset_axes([1.04, 0, 0.05, 1]))
     bar.set_ticks(round_numbers(values), labels=[f"{number:g}" for number in round_numbers(values)])
     bar.minorticks_off()
@@ -112,4 +147,7 @@ def minima_note(frame: pd.DataFrame, unit: str) -> str:
     """The range of the objective, and its number of local minima."""
     values = frame.loc[frame["part"] == "node", "objective"]
     count = int((frame["part"] == "minimum").sum())
-    return f"{values.min():.2f} to {values.max():.0f} {unit}; {count} local minim{'um' if count == 1 else 'a'}, {len(values)} nodes"
+    return (
+        f"{values.min():.2f} to {values.max():.0f} {unit}; {count} local "
+        f"minim{'um' if count == 1 else 'a'}, {len(values)} nodes"
+    )

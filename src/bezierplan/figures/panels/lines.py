@@ -1,4 +1,6 @@
-"""A metric's statistic against a numeric factor, with its interval and single repeats; or two columns of a table against each other."""
+"""A metric's statistic against a numeric factor, with its interval and single repeats; or two
+columns of a table against each other.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,8 @@ _SPREAD = 0.7
 # At most so many values, evenly spaced, each get a tick.
 _FEW = 5
 
-# Above this many points, only the points are drawn: lines between jumping values would cover the panel.
+# Above this many points, only the points are drawn: lines between jumping values would cover the
+# panel.
 _MOST_JOINED = 100
 
 
@@ -46,15 +49,34 @@ class Options(TablePanel):
     """Keys of a panel: of runs, or of a table."""
 
     experiment: Experiment = Field(None, description="the name of an experiment")
-    data: Function = Field(None, description="in place of experiment, the name of a function of the study's module that returns a table")
-    where: Where = Field({}, description="column of the runs table or of the data → value or list of values")
+    data: Function = Field(
+        None,
+        description="in place of experiment, the name of a function of the study's module that "
+        "returns a table",
+    )
+    where: Where = Field(
+        {}, description="column of the runs table or of the data → value or list of values"
+    )
     x: NumberColumn = Field(description="a column of numbers of the runs table or of the data")
     metric: Metric = Field(description="the name of a metric, or of a column of the data")
-    hue: Column = Field(None, description="a column of the runs table or of the data: a line for each of its values")
-    statistic: Literal["mean", "median", "share"] = Field("mean", description="of runs: mean (left out: this), median or share")
-    repeats: listed(Repeat) = Field((), description="a list of whole numbers: single runs that are drawn besides")
-    printed: PrintedTable = Field(None, description="of runs, the name of a published table whose means are marked at their places")
-    joined: Flag = Field(True, description="whether lines join points, true or false: false where x is a name in numbers, without order")
+    hue: Column = Field(
+        None, description="a column of the runs table or of the data: a line for each of its values"
+    )
+    statistic: Literal["mean", "median", "share"] = Field(
+        "mean", description="of runs: mean (left out: this), median or share"
+    )
+    repeats: listed(Repeat) = Field(
+        (), description="a list of whole numbers: single runs that are drawn besides"
+    )
+    printed: PrintedTable = Field(
+        None,
+        description="of runs, the name of a published table whose means are marked at their places",
+    )
+    joined: Flag = Field(
+        True,
+        description="whether lines join points, true or false: false where x is a name in "
+        "numbers, without order",
+    )
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
@@ -70,16 +92,22 @@ class Options(TablePanel):
 
     def source(self, sources: Sources) -> Results | pd.DataFrame:
         """Runs, or the rows of a table."""
-        return super().source(sources) if self.experiment is None else sources.runs(self.experiment, self.where)
+        return (
+            super().source(sources)
+            if self.experiment is None
+            else sources.runs(self.experiment, self.where)
+        )
 
 
 def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
-    """One row per point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat, published or value),
-    value.
+    """One row per point; columns: hue (if one is given) and x, both by their own names; part
+    (statistic, repeat, published or value), value.
 
-    For runs: the columns of `summary` for the statistic, and repeat, the number of a single run. For a table: the column `metric`, as is.
+    For runs: the columns of `summary` for the statistic, and repeat, the number of a single run.
+    For a table: the column `metric`, as is.
 
-    Raises ValueError if a single repeat has several runs at one place, and KeyError for an unknown metric or column.
+    Raises ValueError if a single repeat has several runs at one place, and KeyError for an unknown
+    metric or column.
     """
     import pandas as pd
 
@@ -90,14 +118,21 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
     frame = summary(source, keys, metric, options.statistic).assign(part="statistic")
     single = source.runs[source.runs["repeat"].isin(options.repeats)]
     if single.duplicated([*keys, "repeat"]).any():
-        raise ValueError(f"repeats: several runs of one repeat have equal {' and '.join(keys)}; see the panel's `where`")
+        raise ValueError(
+            f"repeats: several runs of one repeat have equal {' and '.join(keys)}; see the "
+            f"panel's `where`"
+        )
     values = metrics.values(source.runs, metric, source.problems).loc[single.index]
     thin = single[[*keys, "repeat"]].assign(value=values, part="repeat", **constants(source.runs))
     parts = [frame, thin.sort_values(["repeat", *keys])]
     if printed is not None and source.published is not None:
         table = source._replace(published=source.published[source.published["table"] == printed])
         means = [(key, published(table, own, metric)) for key, own in source.runs.groupby(keys)]
-        marked = [dict(zip(keys, key)) | {"part": "published", "value": value} for key, values in means for value in values]
+        marked = [
+            dict(zip(keys, key)) | {"part": "published", "value": value}
+            for key, values in means
+            for value in values
+        ]
         parts.append(pd.DataFrame(marked, columns=[*keys, "part", "value"]))
     return pd.concat(parts, ignore_index=True)
 
@@ -105,8 +140,8 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
 def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
     """A statistic of a metric for each group of runs with equal keys.
 
-    Columns: those of `constants`; the keys; runs and feasible_runs (counts), n (runs that have the metric), value, low95 and high95 (its
-    95 % bootstrap interval), in the metric's unit.
+    Columns: those of `constants`; the keys; runs and feasible_runs (counts), n (runs that have the
+    metric), value, low95 and high95 (its 95 % bootstrap interval), in the metric's unit.
     """
     import pandas as pd
 
@@ -116,18 +151,33 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
         # Sorted, so that nothing depends on the order in which chunks are read.
         numbers = np.sort(group["value"].dropna().to_numpy())
         named = dict(zip(keys, key))
-        name = "/".join([metric, statistic, *(f"{column}={value}" for column, value in named.items())])
+        name = "/".join(
+            [metric, statistic, *(f"{column}={value}" for column, value in named.items())]
+        )
         low, high = np.nan, np.nan
         if not metrics.METRICS[metric].of_group:
             low, high = statistics.interval(statistic, numbers, generator(name))
-        counts = {"runs": len(group), "feasible_runs": int(group["feasible"].sum()), "n": len(numbers)}
-        rows.append(constants(runs) | named | counts | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high})
+        counts = {
+            "runs": len(group),
+            "feasible_runs": int(group["feasible"].sum()),
+            "n": len(numbers),
+        }
+        rows.append(
+            constants(runs)
+            | named
+            | counts
+            | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high}
+        )
     return pd.DataFrame(rows)
 
 
 def constants(runs: pd.DataFrame) -> dict[str, Any]:
     """Problem and method of runs, where they share one."""
-    return {column: runs[column].iloc[0] for column in ("problem", "method") if runs[column].nunique() == 1}
+    return {
+        column: runs[column].iloc[0]
+        for column in ("problem", "method")
+        if runs[column].nunique() == 1
+    }
 
 
 # Reference lines: the exact shortest length, and the best known path of the methods' own kind.
@@ -139,50 +189,73 @@ LIMITS = {
 
 def shared_limits(runs: pd.DataFrame) -> dict[str, float]:
     """Values of `LIMITS` that all runs share, by name."""
-    return {name: runs[name].iloc[0] for name in LIMITS if name in runs and runs[name].notna().all() and runs[name].nunique() == 1}
+    return {
+        name: runs[name].iloc[0]
+        for name in LIMITS
+        if name in runs and runs[name].notna().all() and runs[name].nunique() == 1
+    }
 
 
 def axis_label(column: str, scene: Any, statistic: str = "") -> str:
-    """Name and unit of what an axis shows; a column other than a metric has its unit in its label, or is a count, or has no unit."""
+    """Name and unit of what an axis shows; a column other than a metric has its unit in its label,
+    or is a count, or has no unit.
+    """
     if column not in metrics.METRICS and style.column_name(column, scene.labels).endswith(")"):
         return f"{statistic} {style.column_name(column, scene.labels)}".lstrip()
     unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
-    return f"{statistic} {style.column_name(column, scene.labels)}{'' if unit == '-' else f' ({unit})'}".lstrip()
+    return (
+        f"{statistic} "
+        f"{style.column_name(column, scene.labels)}{'' if unit == '-' else f' ({unit})'}"
+    ).lstrip()
 
 
 # Columns of published numbers that do not distinguish runs.
 _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 
 
-def published(results: Results, runs: pd.DataFrame, metric: str, statistic: str = "mean") -> list[float]:
-    """Values of a metric's statistic that the paper prints for the problem, method and settings of runs; a row's empty keys match all runs.
+def published(
+    results: Results, runs: pd.DataFrame, metric: str, statistic: str = "mean"
+) -> list[float]:
+    """Values of a metric's statistic that the paper prints for the problem, method and settings of
+    runs; a row's empty keys match all runs.
 
-    A number that is of a part of the runs only, such as one of several problems, is none of theirs. One repeated in several tables counts
-    once.
+    A number that is of a part of the runs only, such as one of several problems, is none of theirs.
+    One repeated in several tables counts once.
     """
     numbers = results.published
     if numbers is None:
         return []
     numbers = numbers[(numbers["metric"] == metric) & (numbers["statistic"] == statistic)]
     for column in numbers.columns.difference(_PRINTED):
-        fits = numbers[column].isin(runs[column].unique() if runs[column].nunique() == 1 else []) if column in runs else False
+        fits = (
+            numbers[column].isin(runs[column].unique() if runs[column].nunique() == 1 else [])
+            if column in runs
+            else False
+        )
         numbers = numbers[numbers[column].isna() | fits]
     return sorted(numbers["value"].unique())
 
 
-def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str, label: str) -> None:
+def interval_band(
+    axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str, label: str
+) -> None:
     """The interval of a line as a band in the line's colour."""
     axes.fill_between(x, low, high, label=label, zorder=1.5, **style.interval_band(colour))
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
-    """The number of runs behind a statistic, from the columns of `summary`, and the share of them that is feasible."""
+    """The number of runs behind a statistic, from the columns of `summary`, and the share of them
+    that is feasible.
+    """
     fewest, most = frame["runs"].min(), frame["runs"].max()
     share = 100 * frame["feasible_runs"] / frame["runs"]
     counted = _range(fewest, most)
     if "n" in frame and (frame["n"] < frame["feasible_runs"]).any():
         counted = f"{_range(frame['n'].min(), frame['n'].max())} of {counted}"
-    return f"{statistic} of {counted} runs per {where}, {_range(round(share.min()), round(share.max()))} % feasible"
+    return (
+        f"{statistic} of {counted} runs per {where}, "
+        f"{_range(round(share.min()), round(share.max()))} % feasible"
+    )
 
 
 def _range(low: float, high: float) -> str:
@@ -223,9 +296,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xlabel(axis_label(x, scene))
     axes.set_ylabel(axis_label(options.metric, scene, statistic))
     axes.grid(visible=True)
-    style.fit(axes.yaxis, frame["value"], [] if hue is None else frame.groupby(hue)["value"].median())
+    style.fit(
+        axes.yaxis, frame["value"], [] if hue is None else frame.groupby(hue)["value"].median()
+    )
     style.in_milliseconds(axes.yaxis, frame["value"])
-    return Note("", runs_note(frame[frame["part"] == "statistic"], statistic, "point")) if of_runs else Note()
+    return (
+        Note("", runs_note(frame[frame["part"] == "statistic"], statistic, "point"))
+        if of_runs
+        else Note()
+    )
 
 
 def _looks(groups: list[Any], frame: pd.DataFrame, scene: Any) -> list[dict]:
@@ -233,31 +312,68 @@ def _looks(groups: list[Any], frame: pd.DataFrame, scene: Any) -> list[dict]:
     if groups != [None]:
         return style.lines(groups, scene.looks)
     methods = frame["method"].dropna().unique() if "method" in frame else []
-    return style.lines(list(methods), scene.looks) if len(methods) == 1 else [style.OURS | {"marker": "o", "markersize": 3.5}]
+    return (
+        style.lines(list(methods), scene.looks)
+        if len(methods) == 1
+        else [style.OURS | {"marker": "o", "markersize": 3.5}]
+    )
 
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, bands: bool) -> None:
-    """A line with marks, in a band that shows the interval of its points, or with a bar at each of them."""
+    """A line with marks, in a band that shows the interval of its points, or with a bar at each of
+    them.
+    """
     if bands:
-        interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval")
+        interval_band(
+            axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval"
+        )
     else:
-        axes.vlines(frame[x], frame["low95"], frame["high95"], color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
+        axes.vlines(
+            frame[x],
+            frame["low95"],
+            frame["high95"],
+            color=look["color"],
+            linewidth=0.8,
+            zorder=2,
+            label="95 % interval",
+        )
     axes.plot(frame[x], frame["value"], zorder=3, **look)
 
 
 def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dict) -> None:
     """Marks without a line, each with its interval, shifted so that groups are side by side."""
     places = frame[x] + aside
-    axes.vlines(places, frame["low95"], frame["high95"], color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
+    axes.vlines(
+        places,
+        frame["low95"],
+        frame["high95"],
+        color=look["color"],
+        linewidth=0.8,
+        zorder=2,
+        label="95 % interval",
+    )
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
 
 
 def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str) -> None:
     """A thin line for each single repeat, all alike: they show how far runs scatter."""
     for _, own in frame.groupby("repeat"):
-        axes.plot(own[x], own["value"], color=colour, alpha=0.6, linewidth=0.5, linestyle=(0, (2, 1.5)), zorder=1.8, label="single runs")
+        axes.plot(
+            own[x],
+            own["value"],
+            color=colour,
+            alpha=0.6,
+            linewidth=0.5,
+            linestyle=(0, (2, 1.5)),
+            zorder=1.8,
+            label="single runs",
+        )
 
 
 def _joined(look: dict, points: int) -> dict:
     """The style of a line through the given number of points of a table."""
-    return look | ({"marker": ""} if points <= _MOST_JOINED else {"linestyle": "", "marker": ".", "markersize": 1.2})
+    return look | (
+        {"marker": ""}
+        if points <= _MOST_JOINED
+        else {"linestyle": "", "marker": ".", "markersize": 1.2}
+    )

@@ -1,4 +1,5 @@
-"""A path with its control points: that of a picked run, in its workspace next to the exact shortest path, or a given one.
+"""A path with its control points: that of a picked run, in its workspace next to the exact shortest
+path, or a given one.
 
 Or several paths in one workspace, a picked run for each value of a column.
 """
@@ -45,7 +46,8 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Approximate number of straight steps drawn for a curve; they always include the ends of its pieces.
+# Approximate number of straight steps drawn for a curve; they always include the ends of its
+# pieces.
 _STEPS = 600
 
 # Widths of the first and of the last of several paths.
@@ -54,12 +56,23 @@ _WIDEST, _NARROWEST = 2.0, 1.0
 # Scale factor of marks in a narrow panel.
 _NARROW_MARK = 0.6
 
-_CONTROL_POINT = {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": style.FREE, "zorder": 5}
+_CONTROL_POINT = {
+    "color": style.BLUE,
+    "marker": "o",
+    "markersize": 4.5,
+    "markerfacecolor": style.FREE,
+    "zorder": 5,
+}
 
 # In the order of the legend.
 _LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
-    "control": {**_CONTROL_POINT, "linewidth": 0.7, "linestyle": (0, (4, 2)), "label": "control points and polygon"},
+    "control": {
+        **_CONTROL_POINT,
+        "linewidth": 0.7,
+        "linestyle": (0, (4, 2)),
+        "label": "control points and polygon",
+    },
     "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
     "occupied": {
         **_CONTROL_POINT,
@@ -72,8 +85,21 @@ _LOOK = {
     },
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
-    "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest between cell centres", "zorder": 4},
-    "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
+    "optimum": {
+        "color": style.BLACK,
+        "linestyle": (0, (5, 1.5)),
+        "linewidth": 0.9,
+        "label": "shortest between cell centres",
+        "zorder": 4,
+    },
+    "collision": {
+        "color": style.BLACK,
+        "linestyle": "",
+        "marker": "X",
+        "markersize": 8,
+        "label": "first collision",
+        "zorder": 6,
+    },
     "start": workspaces.START,
     "target": workspaces.TARGET,
 }
@@ -81,16 +107,29 @@ _LOOK = {
 
 # Cells that differ from those of another problem.
 _CHANGED = {
-    "appeared": {"facecolor": "none", "edgecolor": style.AMBER, "hatch": "////", "label": "occupied since the change"},
-    "vanished": {"facecolor": "none", "edgecolor": style.BLUE, "linestyle": (0, (2, 1)), "hatch": "....", "label": "free since the change"},
+    "appeared": {
+        "facecolor": "none",
+        "edgecolor": style.AMBER,
+        "hatch": "////",
+        "label": "occupied since the change",
+    },
+    "vanished": {
+        "facecolor": "none",
+        "edgecolor": style.BLUE,
+        "linestyle": (0, (2, 1)),
+        "hatch": "....",
+        "label": "free since the change",
+    },
 }
 
 
 def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
-    """The run that a panel shows, or None if there is none to pick, and its description in the columns of the panel's csv file.
+    """The run that a panel shows, or None if there is none to pick, and its description in the
+    columns of the panel's csv file.
 
-    Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run), curve, length (in units), feasible.
-    Raises ValueError unless all the panel's runs are of one problem and one method.
+    Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run),
+    curve, length (in units), feasible. Raises ValueError unless all the panel's runs are of one
+    problem and one method.
     """
     from bezierplan.analysis.results import pick as pick_run
 
@@ -98,18 +137,32 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     for column in ("problem", "method"):
         found = list(runs[column].unique())
         if len(found) != 1:
-            raise ValueError(f"a panel that shows one run needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
-    having = slice(None) if pick.having is None else metrics.values(runs, pick.having, results.problems) > 0
+            raise ValueError(
+                f"a panel that shows one run needs runs of exactly one {column}, not of "
+                f"{len(found)} {found}; see its `where`"
+            )
+    having = (
+        slice(None)
+        if pick.having is None
+        else metrics.values(runs, pick.having, results.problems) > 0
+    )
     run = pick_run(runs[having], pick.plain("having"))
     names = {"problem": runs["problem"].iloc[0], "method": runs["method"].iloc[0]}
     names |= {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
     if run is None:
         return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
-    return run, names | {"run": run["id"], "curve": run["path_curve"], "length": run["length"], "feasible": bool(run["feasible"])}
+    return run, names | {
+        "run": run["id"],
+        "curve": run["path_curve"],
+        "length": run["length"],
+        "feasible": bool(run["feasible"]),
+    }
 
 
 def run_note(frame: pd.DataFrame, *more: str) -> str:
-    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or just that there is none."""
+    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or
+    just that there is none.
+    """
     import pandas as pd
 
     row = frame.iloc[0]
@@ -132,7 +185,9 @@ class Explicit(Model):
     """A path without a run."""
 
     curve: Line = Field(description="the kind of a curve")
-    points: Annotated[list[Annotated[list[Number], of_length(2, "[x, y]")]], at_most(MOST_POINTS)] = Field(
+    points: Annotated[
+        list[Annotated[list[Number], of_length(2, "[x, y]")]], at_most(MOST_POINTS)
+    ] = Field(
         description="a list of two to 100 [x, y], at most 1e5 in absolute value", min_length=2
     )
 
@@ -142,25 +197,55 @@ class Options(RunsPanel):
 
     experiment: Experiment = Field(None, description="the name of an experiment")
     pick: Pick = Field(None, description=PICK)
-    explicit: Explicit = Field(None, description="in place of experiment and pick, {curve, points}: a path without a run")
-    hue: Column = Field(None, description="a column of the runs table: a run is picked for each of its values")
+    explicit: Explicit = Field(
+        None, description="in place of experiment and pick, {curve, points}: a path without a run"
+    )
+    hue: Column = Field(
+        None, description="a column of the runs table: a run is picked for each of its values"
+    )
     control: Literal["all", "points", "none"] = Field(
         "all",
-        description="whether control points are drawn with their polygon and hull (all; left out: this), alone (points), or not (none)",
+        description="whether control points are drawn with their polygon and hull (all; left out: "
+        "this), alone (points), or not (none)",
     )
-    measure: Metric = Field("length", description="with hue, the metric whose value is written for each path; left out: length")
-    bare: Flag = Field(False, description="whether only the workspace with start and target is drawn, true or false")
-    letters: list[Label] = Field(None, description="what is written beside start and target: a list of two", min_length=2, max_length=2)
+    measure: Metric = Field(
+        "length",
+        description="with hue, the metric whose value is written for each path; left out: length",
+    )
+    bare: Flag = Field(
+        False,
+        description="whether only the workspace with start and target is drawn, true or false",
+    )
+    letters: list[Label] = Field(
+        None,
+        description="what is written beside start and target: a list of two",
+        min_length=2,
+        max_length=2,
+    )
     changed_from: Annotated[Line, Names("problem of runs")] = Field(
-        None, description="the name of another problem of the experiment, on cells as many: those that differ from it are marked"
+        None,
+        description="the name of another problem of the experiment, on cells as many: those that "
+        "differ from it are marked",
     )
-    cell_optimum: Flag = Field(False, description="whether the least path from cell centre to cell centre is drawn, true or false")
+    cell_optimum: Flag = Field(
+        False,
+        description="whether the least path from cell centre to cell centre is drawn, true or false",
+    )
     band: Positive = Field(
         None,
-        description="a distance from the occupied cells of a grid: the band around them is shaded, and the path's clearance is written",
+        description="a distance from the occupied cells of a grid: the band around them is "
+        "shaded, and the path's clearance is written",
     )
-    printed: PrintedTable = Field(None, description="the name of a published table whose shortest length is given beside the run's")
-    view: View = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
+    printed: PrintedTable = Field(
+        None,
+        description="the name of a published table whose shortest length is given beside the run's",
+    )
+    view: View = Field(
+        None,
+        description="what is seen: [lowest x, highest x, lowest y, highest y]",
+        min_length=4,
+        max_length=4,
+    )
 
     @property
     def published_drawn(self) -> bool:
@@ -186,26 +271,36 @@ class Options(RunsPanel):
             raise wrong("measure: needs hue")
         if self.bare and (self.explicit or self.hue):
             raise wrong(f"bare: not together with {'explicit' if self.explicit else 'hue'}")
-        if self.explicit and any(abs(each) > LARGEST for point in self.explicit.points for each in point):
-            raise wrong(f"explicit: points: expected coordinates of at most {LARGEST:g} in absolute value")
+        if self.explicit and any(
+            abs(each) > LARGEST for point in self.explicit.points for each in point
+        ):
+            raise wrong(
+                f"explicit: points: expected coordinates of at most {LARGEST:g} in absolute value"
+            )
         if self.explicit and self.explicit.curve not in curves.CURVES:
-            raise wrong(f"explicit: curve: {self.explicit.curve}: unknown{closest(self.explicit.curve, curves.CURVES)}")
+            raise wrong(
+                f"explicit: curve: {self.explicit.curve}: "
+                f"unknown{closest(self.explicit.curve, curves.CURVES)}"
+            )
         return self
 
 
 def data(results: Results | None, options: Options) -> pd.DataFrame:
     """What is drawn of a path: one row per point, in the order in which points are joined.
 
-    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, occupied: those of them in occupied cells,
-    path, collision: a path's first one, if any, optimum, and appeared and vanished: centres of changed cells), x, y (in the
-    workspace's unit). Without a run to show, only what belongs to the problem. Only curves within their hull have one, and control
-    points are left out if some are tangents.
+    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points,
+    occupied: those of them in occupied cells, path, collision: a path's first one, if any, optimum,
+    and appeared and vanished: centres of changed cells), x, y (in the workspace's unit). Without a
+    run to show, only what belongs to the problem. Only curves within their hull have one, and
+    control points are left out if some are tangents.
 
-    With `hue`, paths are drawn without control points, and the column `measure` has each run's value of that metric. With `band`, the
-    column obstacle_clearance has the path's distance to occupied cells. With `printed`, the column of this name has the shortest length of
-    that published table for the runs. Whatever the `view`, the rows include everything.
+    With `hue`, paths are drawn without control points, and the column `measure` has each run's
+    value of that metric. With `band`, the column obstacle_clearance has the path's distance to
+    occupied cells. With `printed`, the column of this name has the shortest length of that
+    published table for the runs. Whatever the `view`, the rows include everything.
 
-    Raises ValueError unless all runs, of one value of hue, are of one problem and one method, and if a curve cannot have such points.
+    Raises ValueError unless all runs, of one value of hue, are of one problem and one method, and
+    if a curve cannot have such points.
     """
     import pandas as pd
 
@@ -217,10 +312,24 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         return table({"start": [start], "target": [target]} | _drawn(path, options.control))
     if options.hue is not None:
         groups = results.runs.groupby(options.hue)
-        alone = Options(kind=options.kind, experiment=options.experiment, pick=options.pick.plain(), control="none")
-        frames = [data(results._replace(runs=runs), alone).assign(**{options.hue: value}) for value, runs in groups]
-        numbers = metrics.values(results.runs, options.measure, results.problems).groupby(results.runs["id"]).first()
-        return pd.concat(frames, ignore_index=True).assign(measure=lambda frame: frame["run"].map(numbers))
+        alone = Options(
+            kind=options.kind,
+            experiment=options.experiment,
+            pick=options.pick.plain(),
+            control="none",
+        )
+        frames = [
+            data(results._replace(runs=runs), alone).assign(**{options.hue: value})
+            for value, runs in groups
+        ]
+        numbers = (
+            metrics.values(results.runs, options.measure, results.problems)
+            .groupby(results.runs["id"])
+            .first()
+        )
+        return pd.concat(frames, ignore_index=True).assign(
+            measure=lambda frame: frame["run"].map(numbers)
+        )
     run, names = picked(results, options.pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
@@ -263,18 +372,31 @@ def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
 def _other(results: Results, name: str) -> Problem:
     """Another problem of an experiment. Raises ValueError if it has none of this name."""
     if name not in results.problems:
-        raise ValueError(f"changed_from: {name}: not a problem of the experiment, which has {', '.join(results.problems)}")
+        raise ValueError(
+            f"changed_from: {name}: not a problem of the experiment, which has "
+            f"{', '.join(results.problems)}"
+        )
     return results.problems[name]
 
 
 def _changed_cells(grid: Grid, before: Grid) -> dict[str, np.ndarray]:
-    """Centres (n, 2), in units, of cells that are occupied only now (appeared) or only before (vanished)."""
-    changes = {"appeared": grid.occupied & ~before.occupied, "vanished": before.occupied & ~grid.occupied}
-    return {part: np.reshape([grid.centre(int(number)) for number in np.flatnonzero(cells)], (-1, 2)) for part, cells in changes.items()}
+    """Centres (n, 2), in units, of cells that are occupied only now (appeared) or only before
+    (vanished).
+    """
+    changes = {
+        "appeared": grid.occupied & ~before.occupied,
+        "vanished": before.occupied & ~grid.occupied,
+    }
+    return {
+        part: np.reshape([grid.centre(int(number)) for number in np.flatnonzero(cells)], (-1, 2))
+        for part, cells in changes.items()
+    }
 
 
 def _cell_optimum(problem: Problem, run: pd.Series) -> np.ndarray:
-    """Points (n, 2) of the shortest path from cell centre to cell centre, under the rules of a run of meledje's planner."""
+    """Points (n, 2) of the shortest path from cell centre to cell centre, under the rules of a run
+    of meledje's planner.
+    """
     from scipy.sparse import csgraph
 
     from bezierplan.workspaces.ground import ground_of
@@ -282,7 +404,10 @@ def _cell_optimum(problem: Problem, run: pd.Series) -> np.ndarray:
     grid = problem.workspace
     ground = ground_of(grid, float(run.get("friction", 1.0)), run.get("corners") == "closed")
     edges = np.where(ground.met == 0, ground.energy, np.inf)
-    start, cell = (int(np.ravel_multi_index(grid.cell_of(*end), grid.occupied.shape)) for end in (problem.start, problem.target))
+    start, cell = (
+        int(np.ravel_multi_index(grid.cell_of(*end), grid.occupied.shape))
+        for end in (problem.start, problem.target)
+    )
     before = csgraph.dijkstra(edges, indices=start, return_predecessors=True)[1]
     way = [cell]
     while way[-1] != start:
@@ -294,13 +419,17 @@ def _clearance(results: Results, run: pd.Series | None) -> float:
     """The least distance of a run's path to occupied cells; NaN if it has none or collides."""
     if run is None:
         return np.nan
-    return float(metrics.values(results.runs.loc[[run.name]], "obstacle_clearance", results.problems).iloc[0])
+    return float(
+        metrics.values(results.runs.loc[[run.name]], "obstacle_clearance", results.problems).iloc[0]
+    )
 
 
 def _shortest_printed(results: Results, name: str) -> float:
     """The shortest length in a published table for the runs; NaN without one."""
     table = results.published[results.published["table"] == name]
-    return next(iter(published(results._replace(published=table), results.runs, "length", "min")), np.nan)
+    return next(
+        iter(published(results._replace(published=table), results.runs, "length", "min")), np.nan
+    )
 
 
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> np.ndarray:
@@ -314,7 +443,10 @@ def table(drawn: dict[str, Sequence]) -> pd.DataFrame:
     """Points (n, 2) by part as rows."""
     import pandas as pd
 
-    points = [pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part) for part, xy in drawn.items()]
+    points = [
+        pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part)
+        for part, xy in drawn.items()
+    ]
     return pd.concat(points, ignore_index=True)[["part", "x", "y"]]
 
 
@@ -341,10 +473,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
-        note = Note() if options.explicit is not None or options.bare else _note(frame, workspace.unit)
+        note = (
+            Note() if options.explicit is not None or options.bare else _note(frame, workspace.unit)
+        )
         draw_parts(axes, frame, narrow=scene.narrow, clip=options.view is not None)
     for part, letter in zip(("start", "target"), options.letters or ()):
-        _write_letter(axes, frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float), letter)
+        _write_letter(
+            axes, frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float), letter
+        )
     if options.view is not None:
         axes.axis(options.view)
     if scene.narrow:
@@ -361,7 +497,9 @@ def _draw_band(axes: Axes, grid: Grid, width: float) -> None:
     x, y = grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows
     cells = shapely.union_all(shapely.box(x, y, x + grid.cell, y + grid.cell))
     for part in shapely.get_parts(shapely.difference(shapely.buffer(cells, width), cells)):
-        axes.add_patch(patch_from_polygon(part, facecolor=style.LIGHT_BLUE, edgecolor="none", zorder=0.6))
+        axes.add_patch(
+            patch_from_polygon(part, facecolor=style.LIGHT_BLUE, edgecolor="none", zorder=0.6)
+        )
 
 
 def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
@@ -371,21 +509,33 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
 
     for part, look in _CHANGED.items():
         centres = frame.loc[frame["part"] == part, ["x", "y"]].to_numpy(dtype=float)
-        cells = [Rectangle(centre - workspace.cell / 2, workspace.cell, workspace.cell) for centre in centres]
+        cells = [
+            Rectangle(centre - workspace.cell / 2, workspace.cell, workspace.cell)
+            for centre in centres
+        ]
         if cells:
-            axes.add_collection(PatchCollection(cells, zorder=1, linewidth=0.9, **look), autolim=False)
+            axes.add_collection(
+                PatchCollection(cells, zorder=1, linewidth=0.9, **look), autolim=False
+            )
 
 
 def _write_letter(axes: Axes, point: np.ndarray, letter: str) -> None:
     """Write a letter next to a place, on the side towards the panel's centre."""
     inwards = np.where(point <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
-    beside = {"xytext": (13, 5) * inwards, "textcoords": "offset points", "ha": "center", "va": "center"}
+    beside = {
+        "xytext": (13, 5) * inwards,
+        "textcoords": "offset points",
+        "ha": "center",
+        "va": "center",
+    }
     # Without a halo, which would look like a gap in a path.
     axes.annotate(letter, point, weight="bold", zorder=7, **beside)
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the paths of all values of hue, each in its own style, and what belongs to their problem once; returns their measures."""
+    """Draw the paths of all values of hue, each in its own style, and what belongs to their problem
+    once; returns their measures.
+    """
     hue = options.hue
     values = style.in_order(frame[hue], options.where)
     clauses = []
@@ -393,12 +543,26 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
     for value, look, width in zip(values, style.lines(values, scene.looks), widths):
         rows = frame[frame[hue] == value]
-        draw_parts(axes, rows[rows["part"] == "collision"], narrow=scene.narrow, clip=options.view is not None)
+        draw_parts(
+            axes,
+            rows[rows["part"] == "collision"],
+            narrow=scene.narrow,
+            clip=options.view is not None,
+        )
         path = rows[rows["part"] == "path"]
         name = style.printed(value, hue, scene.labels)
-        axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name, "linewidth": width})
-        clauses.append(f"{name} {_decimal(rows['measure'].iloc[0])}" if len(path) else f"{name} no path")
-    once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
+        axes.plot(
+            path["x"],
+            path["y"],
+            zorder=3,
+            **look | {"marker": "", "label": name, "linewidth": width},
+        )
+        clauses.append(
+            f"{name} {_decimal(rows['measure'].iloc[0])}" if len(path) else f"{name} no path"
+        )
+    once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(
+        ["part", "x", "y"]
+    )
     draw_parts(axes, once, narrow=scene.narrow, clip=options.view is not None)
     return Note("", f"{axis_label(options.measure, scene)}: {', '.join(clauses)}")
 
@@ -408,7 +572,11 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> 
     for part, look in _LOOK.items():
         points = frame.loc[frame["part"] == part, ["x", "y"]]
         if not points.empty:
-            size = {"markersize": _NARROW_MARK * look["markersize"]} if narrow and "markersize" in look else {}
+            size = (
+                {"markersize": _NARROW_MARK * look["markersize"]}
+                if narrow and "markersize" in look
+                else {}
+            )
             axes.plot(points["x"], points["y"], clip_on=clip, **(look | size))
 
 
@@ -418,7 +586,11 @@ def _note(frame: pd.DataFrame, unit: str) -> Note:
     if not (frame["part"] == "path").any():
         return Note("no path", run_note(frame, "no path"))
     control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
-    clauses = [] if control.empty else [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
+    clauses = (
+        []
+        if control.empty
+        else [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
+    )
     clauses += [*_clear(row), feasible_note(frame)]
     if "printed" in frame and np.isfinite(row["printed"]):
         clauses.append(f"shortest printed {row['printed']:.2f} {unit}")

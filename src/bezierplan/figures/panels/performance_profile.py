@@ -1,4 +1,6 @@
-"""Performance profiles: the share of problems on which a method is at most so many times worse than the best one (Dolan and More 2002)."""
+"""Performance profiles: the share of problems on which a method is at most so many times worse than
+the best one (Dolan and More 2002).
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ if TYPE_CHECKING:
 
     from bezierplan.analysis.results import Results
 
-# Room beyond the largest ratio, as a factor of the axis, so that the level that a line ends at can be seen.
+# Room beyond the largest ratio, as a factor of the axis, so that the level that a line ends at can
+# be seen.
 _ROOM = 1.15
 
 # Distance of marks at the end of lines, as a share of the axis.
@@ -39,25 +42,33 @@ class Options(RunsPanel):
     """Keys of a panel."""
 
     cost: Literal["length", "evaluations", "cpu_s"] = Field(
-        description="what is compared: length (of the median run), or the expected evaluations or cpu_s to a path within a share of the "
+        description="what is compared: length (of the median run), or the expected evaluations or "
+        "cpu_s to a path within a share of the "
         "exact bound"
     )
-    within: Positive = Field(None, description="with evaluations and cpu_s, that share, a number above 0, such as 0.05")
+    within: Positive = Field(
+        None, description="with evaluations and cpu_s, that share, a number above 0, such as 0.05"
+    )
 
     @model_validator(mode="after")
     def _check_within(self) -> Options:
         if (self.cost == "length") == ("within" in self.model_fields_set):
-            raise wrong(f"within: {'is for evaluations and cpu_s alone' if self.cost == 'length' else f'cost {self.cost} needs it'}")
+            raise wrong(
+                f"within: "
+                f"{'is for evaluations and cpu_s alone' if self.cost == 'length' else f'cost {self.cost} needs it'}"
+            )
         return self
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per step of a method's profile; columns: method, ratio, share, problems, reached, solved.
+    """One row per step of a method's profile; columns: method, ratio, share, problems, reached,
+    solved.
 
-    share: of the problems on which the method's cost is at most ratio times the best one. A problem is a condition. The length is that of
-    the median run, infinite if it is not certified; the other costs are expected running times (`analysis.running_time`), infinite if no
-    run is within the share. problems: all of them; reached: those on which the method's cost is finite; solved: those with a finite cost of
-    any method. The others count for no method.
+    share: of the problems on which the method's cost is at most ratio times the best one. A problem
+    is a condition. The length is that of the median run, infinite if it is not certified; the other
+    costs are expected running times (`analysis.running_time`), infinite if no run is within the
+    share. problems: all of them; reached: those on which the method's cost is finite; solved: those
+    with a finite cost of any method. The others count for no method.
 
     Raises ValueError if a method lacks runs on a problem.
     """
@@ -76,7 +87,10 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         steps = np.sort(ratios[method][np.isfinite(ratios[method])].to_numpy())
         counts = {"problems": len(ratios), "reached": len(steps), "solved": solved}
         level = np.searchsorted(steps, np.unique(steps), side="right") / len(ratios)
-        rows += [{"method": method, "ratio": ratio, "share": share, **counts} for ratio, share in zip(np.unique(steps), level)]
+        rows += [
+            {"method": method, "ratio": ratio, "share": share, **counts}
+            for ratio, share in zip(np.unique(steps), level)
+        ]
         if not len(steps):
             rows.append({"method": method, "ratio": 1.0, "share": 0.0, **counts})
     return pd.DataFrame(rows)
@@ -90,7 +104,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         own = frame[frame["method"] == method]
         places = np.concatenate([[1.0], own["ratio"], [end]])
         heights = np.concatenate([[0.0], own["share"], own["share"].iloc[-1:]])
-        # One mark each, at the end, side by side: lines may end at one height, and marks on the way would look like data.
+        # One mark each, at the end, side by side: lines may end at one height, and marks on the way
+        # would look like data.
         axes.plot(places, heights, drawstyle="steps-post", clip_on=False, **look | {"marker": ""})
         aside = end ** (1 - _MARK * (number + 0.5))
         axes.plot(aside, heights[-1], clip_on=False, **look | {"linestyle": ""})

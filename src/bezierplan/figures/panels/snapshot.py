@@ -1,4 +1,6 @@
-"""A drive in a world that moves, at one moment: what is there and where it goes, the way so far, the current plan, dropped plans."""
+"""A drive in a world that moves, at one moment: what is there and where it goes, the way so far,
+the current plan, dropped plans.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ if TYPE_CHECKING:
     from bezierplan.workspaces.problem import Problem
     from bezierplan.workspaces.worlds import World
 
-# The arrow of a circle shows where it will be after this many steps; a longer way is cut off at this share of the field's width.
+# The arrow of a circle shows where it will be after this many steps; a longer way is cut off at
+# this share of the field's width.
 _ARROW_STEPS = 20
 _LONGEST_ARROW = 0.1
 
@@ -44,26 +47,36 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """What is drawn, one row per place; columns: problem, method, run (its id), time (of the moment, in steps), part, number, x, y, size,
-    x_velocity, y_velocity (units per step).
+    """What is drawn, one row per place; columns: problem, method, run (its id), time (of the
+    moment, in steps), part, number, x, y, size, x_velocity, y_velocity (units per step).
 
-    Parts: those of `workspace.data`; start, target; way (driven so far); robot; plan (in force); dropped (earlier plans, by number);
-    collision (places of first collisions up to the moment). Raises ValueError for runs of several problems or methods, and if no run is
-    found.
+    Parts: those of `workspace.data`; start, target; way (driven so far); robot; plan (in force);
+    dropped (earlier plans, by number); collision (places of first collisions up to the moment).
+    Raises ValueError for runs of several problems or methods, and if no run is found.
     """
     from bezierplan.analysis.results import pick as picked
     from bezierplan.running import rides
 
     for column in ("problem", "method"):
         if results.runs[column].nunique() != 1:
-            raise ValueError(f"a snapshot needs runs of one {column}, not of {results.runs[column].nunique()}; see the panel's `where`")
+            raise ValueError(
+                f"a snapshot needs runs of one {column}, not of {results.runs[column].nunique()}; "
+                f"see the panel's `where`"
+            )
     run = picked(results.runs, options.pick.plain())
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
-    ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], int(run["repeat"]), problem, world)
+    ride, verdict = rides.rerun(
+        results.jobs[run["method"]], run["condition"], int(run["repeat"]), problem, world
+    )
     frame = moment(world, problem, ride, verdict, options.at)
-    return frame.assign(problem=run["problem"], method=run["method"], run=run["id"], time=options.at * ride.motion.times[-1])
+    return frame.assign(
+        problem=run["problem"],
+        method=run["method"],
+        run=run["id"],
+        time=options.at * ride.motion.times[-1],
+    )
 
 
 def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
@@ -78,10 +91,24 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     if isinstance(world, MovingCircles):
         step = int(time)
         now, after = world.at(step), world.at(step + 1)
-        circles = {"x": now[:, 0] + (time - step) * (after - now)[:, 0], "y": now[:, 1] + (time - step) * (after - now)[:, 1]}
+        circles = {
+            "x": now[:, 0] + (time - step) * (after - now)[:, 0],
+            "y": now[:, 1] + (time - step) * (after - now)[:, 1],
+        }
         velocities = {"x_velocity": (after - now)[:, 0], "y_velocity": (after - now)[:, 1]}
         corners = pd.DataFrame({"part": "corner", "x": world.bounds[:2], "y": world.bounds[2:]})
-        parts = [corners, pd.DataFrame({"part": "circle", **circles, "size": world.radii, "obstacle": range(len(now)), **velocities})]
+        parts = [
+            corners,
+            pd.DataFrame(
+                {
+                    "part": "circle",
+                    **circles,
+                    "size": world.radii,
+                    "obstacle": range(len(now)),
+                    **velocities,
+                }
+            ),
+        ]
         width = world.bounds[1] - world.bounds[0]
     else:
         grid = world.workspace(time)
@@ -92,11 +119,17 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     made = [plan for plan in ride.plans if plan.time <= time and plan.path]
     for number, plan in enumerate(made):
         points = pd.DataFrame(polyline(plan.path, _FINE * width), columns=["x", "y"])
-        parts.append(points.assign(part="plan" if number == len(made) - 1 else "dropped", number=number))
+        parts.append(
+            points.assign(part="plan" if number == len(made) - 1 else "dropped", number=number)
+        )
     if verdict.collision_at <= time:
         hit = between(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         parts.append(pd.DataFrame(hit, columns=["x", "y"]).assign(part="collision"))
-    parts.append(pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]))
+    parts.append(
+        pd.DataFrame(
+            [("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]
+        )
+    )
     return pd.concat(parts, ignore_index=True)
 
 
@@ -107,7 +140,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     workspaces.scale(axes, problem.workspace.unit)
     show(axes, frame)
     dropped = frame.loc[frame["part"] == "dropped", "number"].nunique()
-    plans = "no plan discarded" if dropped == 0 else f"{dropped} plan{'s' if dropped > 1 else ''} discarded"
+    plans = (
+        "no plan discarded"
+        if dropped == 0
+        else f"{dropped} plan{'s' if dropped > 1 else ''} discarded"
+    )
     return Note(f"step {frame['time'].iloc[0]:.0f}, {plans}", f"run {frame['run'].iloc[0]}")
 
 
@@ -119,18 +156,55 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
         longest = np.hypot(*arrows.T).max()
         reach = _LONGEST_ARROW * np.diff(axes.get_xlim())[0]
         arrows *= min(1.0, reach / longest) if longest > 0 else 1.0
-        look = {"angles": "xy", "scale_units": "xy", "scale": 1, "color": style.BLACK, "width": 0.005, "zorder": 2}
+        look = {
+            "angles": "xy",
+            "scale_units": "xy",
+            "scale": 1,
+            "color": style.BLACK,
+            "width": 0.005,
+            "zorder": 2,
+        }
         axes.quiver(circles["x"], circles["y"], *arrows.T, **look)
-        axes.plot([], [], color=style.BLACK, linestyle="", marker=r"$\rightarrow$", markersize=8, label="velocity")
+        axes.plot(
+            [],
+            [],
+            color=style.BLACK,
+            linestyle="",
+            marker=r"$\rightarrow$",
+            markersize=8,
+            label="velocity",
+        )
     for _, rows in frame[frame["part"] == "dropped"].groupby("number"):
-        axes.plot(rows["x"], rows["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan")
+        axes.plot(
+            rows["x"], rows["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan"
+        )
     looks = {
-        "plan": {"color": style.BLUE, "linewidth": 1.2, "linestyle": (0, (5, 1.5)), "zorder": 3, "label": "current plan"},
+        "plan": {
+            "color": style.BLUE,
+            "linewidth": 1.2,
+            "linestyle": (0, (5, 1.5)),
+            "zorder": 3,
+            "label": "current plan",
+        },
         "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "path driven"},
         "start": workspaces.START,
         "target": workspaces.TARGET,
-        "robot": {"color": style.RED, "linestyle": "", "marker": "o", "markersize": 5, "zorder": 5, "label": "robot"},
-        "collision": {"color": style.BLACK, "linestyle": "", "marker": "x", "markersize": 8, "zorder": 6, "label": "first collision"},
+        "robot": {
+            "color": style.RED,
+            "linestyle": "",
+            "marker": "o",
+            "markersize": 5,
+            "zorder": 5,
+            "label": "robot",
+        },
+        "collision": {
+            "color": style.BLACK,
+            "linestyle": "",
+            "marker": "x",
+            "markersize": 8,
+            "zorder": 6,
+            "label": "first collision",
+        },
     }
     for part, look in looks.items():
         rows = frame[frame["part"] == part]

@@ -62,9 +62,16 @@ class Options(Panel):
     start: Place = Field(description="[x, y, z] in units")
     target: Place = Field(description="[x, y, z] in units")
     method: Name = Field(description="the name of a method of planner `chaotic_pso`")
-    settings: dict[Name, Setting] = Field({}, description="settings that take the place of the method's own, by name")
-    runs: Count = Field(description="how many runs are made, a whole number of at least 1; the shortest free path is drawn")
-    plane: Literal["xy", "xz", "yz"] = Field(description="the plane on which it is projected: xy, xz or yz")
+    settings: dict[Name, Setting] = Field(
+        {}, description="settings that take the place of the method's own, by name"
+    )
+    runs: Count = Field(
+        description="how many runs are made, a whole number of at least 1; the shortest free path "
+        "is drawn"
+    )
+    plane: Literal["xy", "xz", "yz"] = Field(
+        description="the plane on which it is projected: xy, xz or yz"
+    )
 
     def source(self, sources: Sources) -> tuple[Spheres, str]:
         """The workspace, and the name of the study."""
@@ -72,22 +79,28 @@ class Options(Panel):
 
 
 def problem(workspace: Spheres, start: list[float], target: list[float]) -> Problem:
-    """The problem of a panel. Raises ValueError, naming the key, unless start and target are free."""
+    """The problem of a panel. Raises ValueError, naming the key, unless start and target are
+    free.
+    """
     ends = {"start": tuple(map(float, start)), "target": tuple(map(float, target))}
     for end, point in ends.items():
         if not exact.is_free(np.array([[point, point]]), workspace):
-            raise ValueError(f"{end}: {list(point)}: in a sphere or outside the box; expected a free place")
+            raise ValueError(
+                f"{end}: {list(point)}: in a sphere or outside the box; expected a free place"
+            )
     return Problem("", workspace, **ends)
 
 
 def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
-    """What is drawn, and a row for each run; columns: part, x, y, z (in the workspace's unit), size and obstacle (a sphere's radius and
-    number), run (its name), length, claimed_feasible (by the planner's own test), feasible (by the exact check), method, straight_line and
-    bound (lengths, in units; `spheres.least_length`).
+    """What is drawn, and a row for each run; columns: part, x, y, z (in the workspace's unit), size
+    and obstacle (a sphere's radius and number), run (its name), length, claimed_feasible (by the
+    planner's own test), feasible (by the exact check), method, straight_line and bound (lengths, in
+    units; `spheres.least_length`).
 
-    Parts: corner (of the bounds), sphere, start, target, line (the straight one), run, and of the shortest feasible run path and control.
-    source: the workspace, and the name of the study, from which with others the runs take their seeds. options: their settings are all of
-    the planner. Raises ValueError for a feasible path below the bound.
+    Parts: corner (of the bounds), sphere, start, target, line (the straight one), run, and of the
+    shortest feasible run path and control. source: the workspace, and the name of the study, from
+    which with others the runs take their seeds. options: their settings are all of the planner.
+    Raises ValueError for a feasible path below the bound.
     """
     import pandas as pd
 
@@ -104,14 +117,33 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
         pieces = curves.bezier_pieces(plan.path)
         length, feasible = exact.length(pieces), exact.is_free(pieces, workspace)
         if feasible and length < bound * (1 - 1e-9) - 1e-7:
-            raise ValueError(f"run {run}: a free path of length {length:.12g}, below the bound {bound:.12g}")
-        rows.append({"part": "run", "run": run, "length": length, "claimed_feasible": plan.claimed_feasible, "feasible": feasible})
+            raise ValueError(
+                f"run {run}: a free path of length {length:.12g}, below the bound {bound:.12g}"
+            )
+        rows.append(
+            {
+                "part": "run",
+                "run": run,
+                "length": length,
+                "claimed_feasible": plan.claimed_feasible,
+                "feasible": feasible,
+            }
+        )
         paths[run] = plan.path
     table = pd.DataFrame(rows)
     parts = [
         _places("corner", np.reshape(workspace.bounds, (3, 2)).T),
-        _places("sphere", workspace.centres).assign(size=workspace.radii, obstacle=range(len(workspace.radii))),
-        *(_places(part, np.array(points)) for part, points in (("start", [start]), ("target", [target]), ("line", [start, target]))),
+        _places("sphere", workspace.centres).assign(
+            size=workspace.radii, obstacle=range(len(workspace.radii))
+        ),
+        *(
+            _places(part, np.array(points))
+            for part, points in (
+                ("start", [start]),
+                ("target", [target]),
+                ("line", [start, target]),
+            )
+        ),
         table,
     ]
     free = table[table["feasible"]]
@@ -119,10 +151,26 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
         best = free.loc[free["length"].idxmin(), "run"]
         path = paths[best]
         samples = curves.sample_matrix(path.curve, len(path.points), _STEPS + 1) @ path.points
-        parts += [_places("path", samples).assign(run=best), _places("control", path.points).assign(run=best)]
-    columns = ["part", "x", "y", "z", "size", "obstacle", "run", "length", "claimed_feasible", "feasible"]
+        parts += [
+            _places("path", samples).assign(run=best),
+            _places("control", path.points).assign(run=best),
+        ]
+    columns = [
+        "part",
+        "x",
+        "y",
+        "z",
+        "size",
+        "obstacle",
+        "run",
+        "length",
+        "claimed_feasible",
+        "feasible",
+    ]
     drawn = pd.concat(parts, ignore_index=True).reindex(columns=columns)
-    return drawn.assign(method=options.method, straight_line=np.linalg.norm(np.subtract(target, start)), bound=bound)
+    return drawn.assign(
+        method=options.method, straight_line=np.linalg.norm(np.subtract(target, start)), bound=bound
+    )
 
 
 def _places(part: str, points: np.ndarray) -> pd.DataFrame:
@@ -135,7 +183,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
     across, up = options.plane
     unit = scene.workspaces[options.workspace].unit
-    flat = frame.assign(part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up])
+    flat = frame.assign(
+        part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up]
+    )
     workspaces.shade(axes, flat)
     _look_closer(axes, flat)
     workspaces.scale(axes, unit)
@@ -157,8 +207,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 def _look_closer(axes: Axes, flat: pd.DataFrame) -> None:
     """Show what is drawn with a margin, up to the walls of the box."""
-    corners, drawn = flat[flat["part"] == "corner"], flat[(flat["part"] != "corner") & flat["x"].notna()]
+    corners, drawn = (
+        flat[flat["part"] == "corner"],
+        flat[(flat["part"] != "corner") & flat["x"].notna()],
+    )
     reach = drawn["size"].fillna(0) + _MARGIN * max(np.ptp(drawn["x"]), np.ptp(drawn["y"]))
     for column, limit in (("x", axes.set_xlim), ("y", axes.set_ylim)):
         wall = corners[column]
-        limit(max((drawn[column] - reach).min(), wall.min()), min((drawn[column] + reach).max(), wall.max()))
+        limit(
+            max((drawn[column] - reach).min(), wall.min()),
+            min((drawn[column] + reach).max(), wall.max()),
+        )

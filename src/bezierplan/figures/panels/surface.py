@@ -27,7 +27,8 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Not
     unit = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace.unit
     x, y, values = landscape.nodes(frame)
     colours = landscape.scale_of(values).to_rgba(values)
-    # Facets between every second node look the same when printed, and are drawn in a third of the time.
+    # Facets between every second node look the same when printed, and are drawn in a third of the
+    # time.
     look = {"rstride": 2, "cstride": 2, "linewidth": 0, "antialiased": False, "rasterized": True}
     axes.plot_surface(*np.meshgrid(x, y), np.log10(values), facecolors=colours, **look)
     axes.view_init(**_VIEW)

@@ -1,4 +1,6 @@
-"""How runs arrived at their paths: the track of one control point of the best path over the iterations, or the first and the last path."""
+"""How runs arrived at their paths: the track of one control point of the best path over the
+iterations, or the first and the last path.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,14 @@ _LEVELS = 14
 _MARGIN = 0.03
 
 _NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
-_FIRST = {"color": style.BLUE, "linestyle": "", "marker": "o", "markersize": 7, "markerfacecolor": "none", "markeredgewidth": 1.3}
+_FIRST = {
+    "color": style.BLUE,
+    "linestyle": "",
+    "marker": "o",
+    "markersize": 7,
+    "markerfacecolor": "none",
+    "markeredgewidth": 1.3,
+}
 
 
 class Options(RunsPanel):
@@ -40,12 +49,23 @@ class Options(RunsPanel):
     tracks: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
 
-    data: Function = Field(None, description="the name of a function of the study's module that returns a landscape, called with the runs")
-    by: Metric = Field(description="the name of a metric: of the feasible runs the best one of each of its commonest values is drawn")
+    data: Function = Field(
+        None,
+        description="the name of a function of the study's module that returns a landscape, "
+        "called with the runs",
+    )
+    by: Metric = Field(
+        description="the name of a metric: of the feasible runs the best one of each of its "
+        "commonest values is drawn"
+    )
     runs: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5, "")] = Field(
         description="of how many of these values, a whole number from 1 to 5"
     )
-    point: Whole = Field(None, description="the number of the control point whose way is drawn, at least 0; left out: first and last path")
+    point: Whole = Field(
+        None,
+        description="the number of the control point whose way is drawn, at least 0; left out: "
+        "first and last path",
+    )
 
     def source(self, sources: Sources) -> Results | tuple[Results, pd.DataFrame]:
         """Results, if a landscape is asked for with the function's table of them."""
@@ -54,15 +74,19 @@ class Options(RunsPanel):
 
 
 def data(source: Results | tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame:
-    """What is drawn, one row per place; columns: problem, method, candidates (feasible runs), groups (values of the metric among them),
-    part, run (its id), length (of the run's path, in units), iteration, x, y (in the workspace's unit), objective (of nodes, in units).
+    """What is drawn, one row per place; columns: problem, method, candidates (feasible runs),
+    groups (values of the metric among them), part, run (its id), length (of the run's path, in
+    units), iteration, x, y (in the workspace's unit), objective (of nodes, in units).
 
-    Parts: start, target; way, a control point of the best path after iteration 0, 1, ...; without a point: path, points along the best path
-    after iteration 0 and after the last one; node, of the landscape below a track.
+    Parts: start, target; way, a control point of the best path after iteration 0, 1, ...; without a
+    point: path, points along the best path after iteration 0 and after the last one; node, of the
+    landscape below a track.
 
-    The runs are reproduced, because no table keeps their intermediate states. source: runs with their jobs, of one problem and one method
-    whose planner has `track`; optionally with the table of a landscape, as in `landscape.data`. Raises ValueError for runs of several
-    problems or methods, for a point that the curve does not have, and if a reproduced run ends in a different path.
+    The runs are reproduced, because no table keeps their intermediate states. source: runs with
+    their jobs, of one problem and one method whose planner has `track`; optionally with the table
+    of a landscape, as in `landscape.data`. Raises ValueError for runs of several problems or
+    methods, for a point that the curve does not have, and if a reproduced run ends in a different
+    path.
     """
     import pandas as pd
 
@@ -72,19 +96,35 @@ def data(source: Results | tuple[Results, pd.DataFrame], options: Options) -> pd
     for column in ("problem", "method"):
         found = list(results.runs[column].unique())
         if len(found) != 1:
-            raise ValueError(f"a panel of tracks needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
+            raise ValueError(
+                f"a panel of tracks needs runs of exactly one {column}, not of {len(found)} "
+                f"{found}; see its `where`"
+            )
     problem = results.problems[results.runs["problem"].iloc[0]]
     feasible = results.runs[results.runs["feasible"]]
     groups = metrics.values(feasible, options.by, results.problems)
-    parts = [pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"])]
+    parts = [
+        pd.DataFrame(
+            [("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]
+        )
+    ]
     for group in _commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
         parts.append(_part(run, _tracked(run, results.jobs[run["method"]], problem), options.point))
     if table is not None:
         parts.append(table[table["part"] == "node"])
-    names = {"problem": problem.name, "method": results.runs["method"].iloc[0], "candidates": len(feasible), "groups": groups.nunique()}
+    names = {
+        "problem": problem.name,
+        "method": results.runs["method"].iloc[0],
+        "candidates": len(feasible),
+        "groups": groups.nunique(),
+    }
     columns = ["part", "run", "length", "iteration", "x", "y", "objective"]
-    return pd.concat(parts, ignore_index=True).reindex(columns=columns).assign(**names)[[*names, *columns]]
+    return (
+        pd.concat(parts, ignore_index=True)
+        .reindex(columns=columns)
+        .assign(**names)[[*names, *columns]]
+    )
 
 
 def _commonest(groups: pd.Series) -> list[float]:
@@ -98,11 +138,20 @@ def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
     from bezierplan.analysis.results import path_of
     from bezierplan.running import execution
 
-    condition = next(each for each in execution.conditions(list(job["problems"]), job["vary"]) if each.name == run["condition"])
+    condition = next(
+        each
+        for each in execution.conditions(list(job["problems"]), job["vary"])
+        if each.name == run["condition"]
+    )
     rng = execution.generator(job, condition, int(run["repeat"]))
-    track = planner_module(job["planner"]).track(problem, rng, **execution.settings_in(job, condition))
+    track = planner_module(job["planner"]).track(
+        problem, rng, **execution.settings_in(job, condition)
+    )
     if not np.array_equal(track[-1], path_of(run).points):
-        raise ValueError(f"run {run['id']}: its rerun ends in another path; the runs table comes from another version of the code")
+        raise ValueError(
+            f"run {run['id']}: its rerun ends in another path; the runs table comes from another "
+            f"version of the code"
+        )
     return [Path(run["path_curve"], points) for points in track]
 
 
@@ -111,12 +160,18 @@ def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
     import pandas as pd
 
     if point is None:
-        drawn = [pd.DataFrame(steps(paths[i]), columns=["x", "y"]).assign(part="path", iteration=i) for i in (0, len(paths) - 1)]
+        drawn = [
+            pd.DataFrame(steps(paths[i]), columns=["x", "y"]).assign(part="path", iteration=i)
+            for i in (0, len(paths) - 1)
+        ]
     elif 0 <= point < len(paths[0].points):
         way = pd.DataFrame([path.points[point] for path in paths], columns=["x", "y"])
         drawn = [way.assign(part="way", iteration=range(len(paths)))]
     else:
-        raise ValueError(f"point: {point}; expected 0 to {len(paths[0].points) - 1}, a control point of the curve")
+        raise ValueError(
+            f"point: {point}; expected 0 to {len(paths[0].points) - 1}, a control point of the "
+            f"curve"
+        )
     return pd.concat(drawn, ignore_index=True).assign(run=run["id"], length=run["length"])
 
 
@@ -140,7 +195,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         look = {"color": look["color"], "linestyle": look["linestyle"]}
         _draw_way(axes, own[own["part"] == "way"], look | {"label": name})
         _draw_paths(axes, own[own["part"] == "path"], look | {"label": name})
-        notes.append(f"{name}: repeat {run.rpartition('/')[2]}, length {own['length'].iloc[0]:.2f} {workspace.unit}")
+        notes.append(
+            f"{name}: repeat {run.rpartition('/')[2]}, length {own['length'].iloc[0]:.2f} "
+            f"{workspace.unit}"
+        )
     _show_all(axes, frame[frame["part"].isin(["way", "path"])])
     row = frame.iloc[0]
     if not len(runs):
@@ -150,10 +208,18 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 
 
 def _show_all(axes: Axes, drawn: pd.DataFrame) -> None:
-    """Widen the panel, with a small margin, to what leaves the workspace or ends at its edge, where a mark would be cut."""
-    for (low, high), places, show in ((axes.get_xlim(), drawn["x"], axes.set_xlim), (axes.get_ylim(), drawn["y"], axes.set_ylim)):
+    """Widen the panel, with a small margin, to what leaves the workspace or ends at its edge, where
+    a mark would be cut.
+    """
+    for (low, high), places, show in (
+        (axes.get_xlim(), drawn["x"], axes.set_xlim),
+        (axes.get_ylim(), drawn["y"], axes.set_ylim),
+    ):
         room = _MARGIN * (high - low)
-        show(places.min() - room if places.min() < low + room else low, places.max() + room if places.max() > high - room else high)
+        show(
+            places.min() - room if places.min() < low + room else low,
+            places.max() + room if places.max() > high - room else high,
+        )
 
 
 def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:
@@ -163,11 +229,26 @@ def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:
     axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, zorder=5, **look)
     first, last = way.iloc[0], way.iloc[-1]
     axes.plot(first["x"], first["y"], label="first position", zorder=6, clip_on=False, **_FIRST)
-    cross = {"color": look["color"], "linestyle": "", "marker": "X", "markersize": 7, "markeredgecolor": style.FREE}
+    cross = {
+        "color": look["color"],
+        "linestyle": "",
+        "marker": "X",
+        "markersize": 7,
+        "markeredgecolor": style.FREE,
+    }
     axes.plot(last["x"], last["y"], label="last position", zorder=6, clip_on=False, **cross)
-    inwards = np.sign([first["x"] - np.mean(axes.get_xlim()), first["y"] - np.mean(axes.get_ylim())])
+    inwards = np.sign(
+        [first["x"] - np.mean(axes.get_xlim()), first["y"] - np.mean(axes.get_ylim())]
+    )
     arrow = {"arrowstyle": "-|>", "color": style.BLUE, "linewidth": 1.1, "shrinkB": 4}
-    axes.annotate("", first[["x", "y"]].astype(float), xytext=-22 * inwards, textcoords="offset points", arrowprops=arrow, zorder=6)
+    axes.annotate(
+        "",
+        first[["x", "y"]].astype(float),
+        xytext=-22 * inwards,
+        textcoords="offset points",
+        arrowprops=arrow,
+        zorder=6,
+    )
 
 
 def _draw_paths(axes: Axes, paths: pd.DataFrame, look: dict) -> None:
@@ -175,4 +256,10 @@ def _draw_paths(axes: Axes, paths: pd.DataFrame, look: dict) -> None:
     for iteration, own in paths.groupby("iteration"):
         last = iteration == paths["iteration"].max()
         thin = {"linewidth": 0.9, "linestyle": (0, (1, 1)), "label": "path after iteration 0"}
-        axes.plot(own["x"], own["y"], zorder=5 if last else 4, clip_on=True, **(look | ({"linewidth": 1.7} if last else thin)))
+        axes.plot(
+            own["x"],
+            own["y"],
+            zorder=5 if last else 4,
+            clip_on=True,
+            **(look | ({"linewidth": 1.7} if last else thin)),
+        )

@@ -27,19 +27,45 @@ if TYPE_CHECKING:
 _CELLS = {
     "free": {"facecolor": style.FREE},
     "occupied": {"facecolor": style.OCCUPIED, "label": "occupied cell"},
-    "surplus": {"facecolor": style.SURPLUS, "label": "surplus cell, occupied", **style.SURPLUS_HATCH},
+    "surplus": {
+        "facecolor": style.SURPLUS,
+        "label": "surplus cell, occupied",
+        **style.SURPLUS_HATCH,
+    },
 }
 
 _OBSTACLE = {"facecolor": style.OCCUPIED, "edgecolor": "0.4", "linewidth": 0.5, "zorder": 0.5}
-_OUTLINE = {"facecolor": "none", "edgecolor": style.BLACK, "linewidth": 0.8, "linestyle": (0, (3, 2)), "zorder": 3}
+_OUTLINE = {
+    "facecolor": "none",
+    "edgecolor": style.BLACK,
+    "linewidth": 0.8,
+    "linestyle": (0, (3, 2)),
+    "zorder": 3,
+}
 
-START = {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5}
-TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5}
+START = {
+    "color": style.BLACK,
+    "linestyle": "",
+    "marker": "s",
+    "markersize": 7,
+    "label": "start",
+    "zorder": 4.5,
+}
+TARGET = {
+    "color": style.BLACK,
+    "linestyle": "",
+    "marker": "*",
+    "markersize": 12,
+    "label": "target",
+    "zorder": 4.5,
+}
 
-# A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes suffice.
+# A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes
+# suffice.
 _MOST_CELLS = 2500
 
-# A grid of more cells than this is drawn as an image, from its occupied cells: outlines of cells would hide what they surround.
+# A grid of more cells than this is drawn as an image, from its occupied cells: outlines of cells
+# would hide what they surround.
 _MOST_OUTLINES = 10_000
 
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
@@ -49,8 +75,14 @@ class Options(Panel):
     """Keys of a panel."""
 
     workspace: Described = Field(description="the name of a workspace")
-    numbers: Literal["all", "free", "none"] = Field("none", description="which cells show their number: all, free or none (left out: this)")
-    embed: Flag = Field(False, description="whether a grid is put into one of a power of two of rows and columns, true or false")
+    numbers: Literal["all", "free", "none"] = Field(
+        "none", description="which cells show their number: all, free or none (left out: this)"
+    )
+    embed: Flag = Field(
+        False,
+        description="whether a grid is put into one of a power of two of rows and columns, true "
+        "or false",
+    )
 
     def source(self, sources: Sources) -> Workspace:
         """The workspace."""
@@ -58,18 +90,24 @@ class Options(Panel):
 
 
 def data(workspace: Workspace, options: Options) -> pd.DataFrame:
-    """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or point of a ring.
+    """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or
+    point of a ring.
 
     Large grids list no free cells unless they show numbers.
 
-    Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
-    radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`), height (of the cells of a grid
-    with heights, in its unit).
+    Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's
+    centre), size (a cell's side, a circle's radius), obstacle and ring (polygons only), number (of
+    the cells that show it; see `workspaces.grid`), height (of the cells of a grid with heights, in
+    its unit).
 
     Raises ValueError if numbers or embedding are requested for a workspace without cells.
     """
     if isinstance(workspace, Grid):
-        whole = replace(workspace, occupied=embed_cells(workspace.occupied)) if options.embed else workspace
+        whole = (
+            replace(workspace, occupied=embed_cells(workspace.occupied))
+            if options.embed
+            else workspace
+        )
         return _table(whole.bounds, _cells(whole, workspace, options.numbers))
     if options.numbers != "none" or options.embed:
         raise ValueError("numbers and embed are options of workspaces of kind grid")
@@ -80,7 +118,11 @@ def parts(workspace: Workspace) -> pd.DataFrame:
     """What is drawn of a workspace itself, without numbers: rows as in `data`."""
     if isinstance(workspace, Grid):
         source = workspace.drawn
-        cells = [] if source and workspace.occupied.size > _MOST_CELLS else [_cells(workspace, workspace, "none")]
+        cells = (
+            []
+            if source and workspace.occupied.size > _MOST_CELLS
+            else [_cells(workspace, workspace, "none")]
+        )
         return _table(workspace.bounds, *cells, *([_shapes(source)] if source else []))
     return _table(workspace.bounds, _shapes(workspace))
 
@@ -93,11 +135,15 @@ def _discs(circles: Circles) -> pd.DataFrame:
     import pandas as pd
 
     x, y = circles.centres.T
-    return pd.DataFrame({"part": "circle", "x": x, "y": y, "size": circles.radii, "obstacle": range(len(x))})
+    return pd.DataFrame(
+        {"part": "circle", "x": x, "y": y, "size": circles.radii, "obstacle": range(len(x))}
+    )
 
 
 def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
-    """The corners of the bounds and everything drawn within them, with all columns; heights only if there are any."""
+    """The corners of the bounds and everything drawn within them, with all columns; heights only if
+    there are any.
+    """
     import pandas as pd
 
     corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
@@ -110,7 +156,11 @@ def _cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
     import pandas as pd
 
     own_rows, own_columns = grid.occupied.shape
-    left_out = ~whole.occupied if numbers == "none" and whole.heights is None and whole.occupied.size > _MOST_OUTLINES else False
+    left_out = (
+        ~whole.occupied
+        if numbers == "none" and whole.heights is None and whole.occupied.size > _MOST_OUTLINES
+        else False
+    )
     row, column = np.nonzero(~np.broadcast_to(left_out, whole.occupied.shape))
     surplus = (row >= own_rows) | (column >= own_columns)
     part = np.where(surplus, "surplus", np.where(whole.occupied[row, column], "occupied", "free"))
@@ -127,7 +177,15 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
     import pandas as pd
 
     rings = [
-        pd.DataFrame({"part": "ring", "x": points[:, 0], "y": points[:, 1], "obstacle": obstacle, "ring": ring})
+        pd.DataFrame(
+            {
+                "part": "ring",
+                "x": points[:, 0],
+                "y": points[:, 1],
+                "obstacle": obstacle,
+                "ring": ring,
+            }
+        )
         for obstacle, outline in enumerate(workspace.obstacles)
         for ring, points in enumerate(outline)
     ]
@@ -137,7 +195,8 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`.
 
-    Cells that show their numbers need no scale: it would take up the room that keeps the numbers legible.
+    Cells that show their numbers need no scale: it would take up the room that keeps the numbers
+    legible.
     """
     unit = scene.workspaces[options.workspace].unit
     shade(axes, frame)
@@ -150,7 +209,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xticks([])
     axes.set_yticks([])
     side = numbered["size"].iloc[0]
-    return Note(f"cells of {side:g} x {side:g} {unit}{'s' if side != 1 and unit in ('unit', 'cell') else ''}")
+    return Note(
+        f"cells of {side:g} x {side:g} "
+        f"{unit}{'s' if side != 1 and unit in ('unit', 'cell') else ''}"
+    )
 
 
 def scale(axes: Axes, unit: str) -> None:
@@ -161,15 +223,21 @@ def scale(axes: Axes, unit: str) -> None:
 
 
 def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
-    """Draw the rows of `data` or `parts` to scale, without numbers or axis labels; only the outlines of circles and polygons if something
-    else fills the panel, such as the cells of a grid drawn from them.
+    """Draw the rows of `data` or `parts` to scale, without numbers or axis labels; only the
+    outlines of circles and polygons if something else fills the panel, such as the cells of a grid
+    drawn from them.
     """
     corners = frame[frame["part"] == "corner"]
     axes.set_xlim(corners["x"].min(), corners["x"].max())
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
     cells = frame[frame["part"].isin(_CELLS)]
-    if "height" not in frame and len(cells) and np.ptp(corners["x"]) * np.ptp(corners["y"]) > _MOST_OUTLINES * cells["size"].iloc[0] ** 2:
+    if (
+        "height" not in frame
+        and len(cells)
+        and np.ptp(corners["x"]) * np.ptp(corners["y"])
+        > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
+    ):
         _draw_image(axes, cells, corners)
     else:
         for part, look in _CELLS.items():
@@ -187,8 +255,13 @@ def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
     if cells.empty:
         return
     square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
-    corners = cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
-    axes.add_collection(PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look), autolim=False)
+    corners = (
+        cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
+    )
+    axes.add_collection(
+        PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look),
+        autolim=False,
+    )
 
 
 def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
@@ -198,13 +271,22 @@ def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
 
     side = cells["size"].iloc[0]
     (left, right), (bottom, top) = corners["x"], corners["y"]
-    image = np.full((round((top - bottom) / side), round((right - left) / side), 3), to_rgb(_CELLS["free"]["facecolor"]))
+    image = np.full(
+        (round((top - bottom) / side), round((right - left) / side), 3),
+        to_rgb(_CELLS["free"]["facecolor"]),
+    )
     for part in ("occupied", "surplus"):
         own = cells[cells["part"] == part]
-        image[((own["y"] - bottom) // side).astype(int), ((own["x"] - left) // side).astype(int)] = to_rgb(_CELLS[part]["facecolor"])
+        image[
+            ((own["y"] - bottom) // side).astype(int), ((own["x"] - left) // side).astype(int)
+        ] = to_rgb(_CELLS[part]["facecolor"])
         if len(own):
-            axes.add_collection(PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part]), autolim=False)  # for the legend
-    axes.imshow(image, extent=(left, right, bottom, top), origin="lower", aspect="equal", zorder=0.5)
+            axes.add_collection(
+                PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part]), autolim=False
+            )  # for the legend
+    axes.imshow(
+        image, extent=(left, right, bottom, top), origin="lower", aspect="equal", zorder=0.5
+    )
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
@@ -212,13 +294,17 @@ def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
     low, high = cells["height"].min(), cells["height"].max()
     for height, own in cells.groupby("height"):
         look = {"facecolor": style.ground((height - low) / (high - low) if high > low else 0.0)}
-        _draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in (low, high) else {}))
+        _draw_cells(
+            axes, own, look | ({"label": f"height {height:g}"} if height in (low, high) else {})
+        )
 
 
 def _circles(circles: pd.DataFrame) -> list[Circle]:
     from matplotlib.patches import Circle
 
-    return [Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])]
+    return [
+        Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])
+    ]
 
 
 def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
@@ -226,14 +312,18 @@ def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
     from matplotlib.path import Path as Outline
 
     outlines = [
-        Outline.make_compound_path(*(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in _oriented(obstacle)))
+        Outline.make_compound_path(
+            *(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in _oriented(obstacle))
+        )
         for _, obstacle in rings.groupby("obstacle")
     ]
     return [PathPatch(outline) for outline in outlines]
 
 
 def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
-    """The rings (n, 2) of an obstacle, the outer one counterclockwise and its holes clockwise: only then do holes stay open."""
+    """The rings (n, 2) of an obstacle, the outer one counterclockwise and its holes clockwise: only
+    then do holes stay open.
+    """
     rings = []
     for number, ring in obstacle.groupby("ring"):
         points = ring[["x", "y"]].to_numpy()

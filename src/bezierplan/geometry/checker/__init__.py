@@ -1,13 +1,15 @@
-"""The certified collision check: whether, where and how deeply a path of Bezier pieces enters the blocked region, or how close it comes to
-it.
+"""The certified collision check: whether, where and how deeply a path of Bezier pieces enters the
+blocked region, or how close it comes to it.
 
-The curve of a piece lies in the hull of its control points (`hulls`). A piece is halved until every part is either certified free, because
-its hull is, or begins at a point that is certainly blocked (`collision`). Two thresholds guarantee that this always ends: a collision is
-certified by a point deeper than `TOLERANCE`, freedom by a depth of at most twice that. (In a corner between two walls, twice that from each
-wall.) Depth and clearance are found by branch and bound over the same halves (`distances`).
+The curve of a piece lies in the hull of its control points (`hulls`). A piece is halved until every
+part is either certified free, because its hull is, or begins at a point that is certainly blocked
+(`collision`). Two thresholds guarantee that this always ends: a collision is certified by a point
+deeper than `TOLERANCE`, freedom by a depth of at most twice that. (In a corner between two walls,
+twice that from each wall.) Depth and clearance are found by branch and bound over the same halves
+(`distances`).
 
-Each search is written once. What it needs to know about a region (`certificates`) is selected by the type of the region when the kernel is
-compiled.
+Each search is written once. What it needs to know about a region (`certificates`) is selected by
+the type of the region when the kernel is compiled.
 """
 
 import math
@@ -17,14 +19,24 @@ import numpy as np
 
 from bezierplan.geometry.checker.collision import first_collision
 from bezierplan.geometry.checker.corner_cutting import CONTACT_RADIUS, first_corner_cut
-from bezierplan.geometry.checker.distances import CLEARANCE_TOLERANCE, DEPTH_TOLERANCE, largest_depth, least_clearance
-from bezierplan.geometry.checker.hulls import LARGEST_COORDINATE, LARGEST_DEGREE, TOLERANCE, resolution
+from bezierplan.geometry.checker.distances import (
+    CLEARANCE_TOLERANCE,
+    DEPTH_TOLERANCE,
+    largest_depth,
+    least_clearance,
+)
+from bezierplan.geometry.checker.hulls import (
+    LARGEST_COORDINATE,
+    LARGEST_DEGREE,
+    TOLERANCE,
+    resolution,
+)
 from bezierplan.geometry.region import CircleRegion, GridRegion, Region, from_origin
 
 __all__ = ["TOLERANCE", "Check", "check", "first_collision", "refuse_unfit"]
 
-# Each halving accumulates as many rounding errors as the degree. Above this degree coordinates must be smaller, so that the sum of the
-# errors does not grow further.
+# Each halving accumulates as many rounding errors as the degree. Above this degree coordinates must
+# be smaller, so that the sum of the errors does not grow further.
 _FULL_RANGE_DEGREE = 32
 
 
@@ -38,8 +50,9 @@ class Check(NamedTuple):
     collision_at : float
         Number of the piece plus the parameter within it of the first collision; nan when free.
     depth : float
-        Largest depth in the blocked region, in units: the distance to free space; where discs overlap or extend beyond the border, the
-        largest of their depths, a lower bound. 0 when free, and where a path cuts a closed corner.
+        Largest depth in the blocked region, in units: the distance to free space; where discs
+        overlap or extend beyond the border, the largest of their depths, a lower bound. 0 when
+        free, and where a path cuts a closed corner.
     clearance : float
         Least distance to the blocked region, in units; 0 when colliding.
     tolerance : float
@@ -56,7 +69,9 @@ class Check(NamedTuple):
     intervals: int
 
 
-def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open") -> Check:
+def check(
+    pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open"
+) -> Check:
     """Check a path of Bezier pieces.
 
     Parameters
@@ -66,8 +81,8 @@ def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "c
     region : Region
         The blocked region of a workspace (`region.region`).
     corner_cutting : {'open', 'closed'}
-        Whether a path may pass between two occupied cells that share only a corner; touching the corner is always allowed. Only matters on
-        grids.
+        Whether a path may pass between two occupied cells that share only a corner; touching the
+        corner is always allowed. Only matters on grids.
 
     Returns
     -------
@@ -77,13 +92,12 @@ def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "c
     Raises
     ------
     ValueError
-        For coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60; and for an
-        unknown corner-cutting rule.
+        For coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above
+        32; for a degree above 60; and for an unknown corner-cutting rule.
 
-    Notes
-    -----
-    A path deeper than 4e-9 is never called free, and one no deeper than 1e-9 never colliding; in between, either verdict is possible. At
-    the tip of a notch between polygons that is sharper than 60 degrees, 4e-9 becomes 2e-9 divided by the sine of half its angle.
+    Notes ----- A path deeper than 4e-9 is never called free, and one no deeper than 1e-9 never
+    colliding; in between, either verdict is possible. At the tip of a notch between polygons that
+    is sharper than 60 degrees, 4e-9 becomes 2e-9 divided by the sine of half its angle.
 
     Examples
     --------
@@ -111,7 +125,14 @@ def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "c
             return Check(False, cut_at, 0.0, 0.0, 0.0, intervals)
     if collision_at < math.inf:
         depth = largest_depth(pieces, region, collision_at)
-        return Check(False, collision_at, depth, 0.0, max(DEPTH_TOLERANCE * depth, resolution(pieces.reshape(-1, 2))), intervals)
+        return Check(
+            False,
+            collision_at,
+            depth,
+            0.0,
+            max(DEPTH_TOLERANCE * depth, resolution(pieces.reshape(-1, 2))),
+            intervals,
+        )
     if isinstance(region, CircleRegion):
         clearance = least_clearance(pieces, region.edges, region.centres, region.radii)
     else:
@@ -120,9 +141,14 @@ def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "c
 
 
 def refuse_unfit(pieces: np.ndarray) -> None:
-    """Raise ValueError for pieces that `check` cannot judge: wrong shape, degree too high, coordinates too large or not finite."""
+    """Raise ValueError for pieces that `check` cannot judge: wrong shape, degree too high,
+    coordinates too large or not finite.
+    """
     if pieces.ndim != 3 or pieces.shape[2] != 2 or not 2 <= pieces.shape[1] <= LARGEST_DEGREE + 1:
-        raise ValueError(f"pieces have the shape {pieces.shape}; expected (pieces, degree + 1, 2) with a degree of 1 to {LARGEST_DEGREE}")
+        raise ValueError(
+            f"pieces have the shape {pieces.shape}; expected (pieces, degree + 1, 2) with a "
+            f"degree of 1 to {LARGEST_DEGREE}"
+        )
     # Written so that nan fails as well.
     largest = LARGEST_COORDINATE * min(1.0, _FULL_RANGE_DEGREE / (pieces.shape[1] - 1))
     if not np.abs(pieces).max(initial=0.0) <= largest:

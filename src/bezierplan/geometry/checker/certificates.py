@@ -1,6 +1,8 @@
-"""What the searches ask about a region: whether a point is blocked, whether a hull is free, and how deep they are.
+"""What the searches ask about a region: whether a point is blocked, whether a hull is free, and how
+deep they are.
 
-Each kind of region has its own answers. The overloads at the end select them by the type of the region.
+Each kind of region has its own answers. The overloads at the end select them by the type of the
+region.
 """
 
 import math
@@ -24,18 +26,26 @@ from bezierplan.kernels import allocation_free
 # Extent of the cells around a grid that represent its outside: beyond every coordinate.
 _FAR = 4 * LARGEST_COORDINATE
 
-# Hulls that span more doubled-grid elements than this are halved instead of tested against each blocked element.
+# Hulls that span more doubled-grid elements than this are halved instead of tested against each
+# blocked element.
 _WIDEST_RANGE = 12
 
-# An edge at this distance from a hull cannot be passed within the tolerance of its ends, so it is irrelevant to the hull.
+# An edge at this distance from a hull cannot be passed within the tolerance of its ends, so it is
+# irrelevant to the hull.
 _APART = 4 * TOLERANCE
 
-_BINOMIAL = np.array([[math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)] for n in range(2 * LARGEST_DEGREE + 1)], dtype=float)
+_BINOMIAL = np.array(
+    [
+        [math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)]
+        for n in range(2 * LARGEST_DEGREE + 1)
+    ],
+    dtype=float,
+)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
-# The questions. numba compiles the answer for a kind of region in their place, by the overloads below; without compilation
-# (NUMBA_DISABLE_JIT) their bodies find the same answers.
+# --------------------------------------------------------------------------------------------------
+# The questions. numba compiles the answer for a kind of region in their place, by the overloads
+# below; without compilation (NUMBA_DISABLE_JIT) their bodies find the same answers.
 
 
 def is_blocked(x, y, region):
@@ -44,8 +54,8 @@ def is_blocked(x, y, region):
 
 
 def is_free(points, region):
-    """Whether the curve of some control points is certified free. May be false for a free curve, but not indefinitely as the curve is
-    halved.
+    """Whether the curve of some control points is certified free. May be false for a free curve,
+    but not indefinitely as the curve is halved.
     """
     return _IS_FREE[type(region)](points, region)
 
@@ -60,13 +70,15 @@ def depth_bound(points, region):
     return _DEPTH_BOUND[type(region)](points, region)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Cells: elements of the doubled grid, and separating axes
 
 
 @allocation_free
 def _element(x: float, cell: float, last: int) -> int:
-    """Index in the doubled grid of a coordinate: odd on a grid line (within the tolerance), even in a cell; the outside is 0 and `last`."""
+    """Index in the doubled grid of a coordinate: odd on a grid line (within the tolerance), even in
+    a cell; the outside is 0 and `last`.
+    """
     line = round(x / cell)
     index = 2 * math.floor(x / cell) + 2
     if abs(x - line * cell) <= TOLERANCE:
@@ -76,7 +88,9 @@ def _element(x: float, cell: float, last: int) -> int:
 
 @allocation_free
 def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
-    """Lowest and highest coordinate of the cells that touch an element: one cell for even indices, two for odd ones."""
+    """Lowest and highest coordinate of the cells that touch an element: one cell for even indices,
+    two for odd ones.
+    """
     low = -_FAR if index <= 1 else (index // 2 - 1) * cell
     high = _FAR if index >= last - 1 else ((index + 1) // 2) * cell
     return low, high
@@ -85,7 +99,12 @@ def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
 @allocation_free
 def _blocked_elements(counts: np.ndarray, bottom: int, top: int, left: int, right: int) -> int:
     """Number of blocked elements in a range of the doubled grid, both ends inclusive."""
-    return counts[top + 1, right + 1] - counts[bottom, right + 1] - counts[top + 1, left] + counts[bottom, left]
+    return (
+        counts[top + 1, right + 1]
+        - counts[bottom, right + 1]
+        - counts[top + 1, left]
+        + counts[bottom, left]
+    )
 
 
 def _is_blocked_in_grid(x, y, region):
@@ -102,10 +121,13 @@ def _is_free_in_grid(points, region):
     if _blocked_elements(region.counts, bottom, top, left, right) == 0:
         return True
 
-    # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every seam, the range extends as far beyond the
-    # hull as a hull may reach into a rectangle.
+    # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every
+    # seam, the range extends as far beyond the hull as a hull may reach into a rectangle.
     reach = 2.0 * TOLERANCE
-    left, right = _element(x_low - reach, cell, columns - 1), _element(x_high + reach, cell, columns - 1)
+    left, right = (
+        _element(x_low - reach, cell, columns - 1),
+        _element(x_high + reach, cell, columns - 1),
+    )
     bottom, top = _element(y_low - reach, cell, rows - 1), _element(y_high + reach, cell, rows - 1)
     if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:
         return False
@@ -124,7 +146,10 @@ def _is_free_in_grid(points, region):
             x = 0.5 * (rectangle_left + rectangle_right) - points[0, 0]
             y = 0.5 * (rectangle_bottom + rectangle_top) - points[0, 1]
             middle = along_x * y - along_y * x
-            half = 0.5 * (abs(along_y) * (rectangle_right - rectangle_left) + abs(along_x) * (rectangle_top - rectangle_bottom))
+            half = 0.5 * (
+                abs(along_y) * (rectangle_right - rectangle_left)
+                + abs(along_x) * (rectangle_top - rectangle_bottom)
+            )
             if across_high > middle - half + reach and across_low < middle + half - reach:
                 return False
     return True
@@ -134,7 +159,7 @@ def _depth_in_grid(x, y, region):
     return _distance_to_edges(x, y, region.edges) if is_blocked(x, y, region) else 0.0
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Distance to boundary edges, for cells and polygons
 
 
@@ -147,22 +172,27 @@ def _distance_to_edges(x: float, y: float, edges: np.ndarray) -> float:
 
 
 def _depth_bound_by_edges(points, region):
-    """No blocked point is deeper than its distance from any edge, which along a chord is greatest at one of its ends."""
+    """No blocked point is deeper than its distance from any edge, which along a chord is greatest
+    at one of its ends.
+    """
     least = math.inf
     for ax, ay, bx, by in region.edges:
         first = distance_to_segment(points[0, 0], points[0, 1], ax, ay, bx, by)
         if first < least:
-            least = min(least, max(first, distance_to_segment(points[-1, 0], points[-1, 1], ax, ay, bx, by)))
+            least = min(
+                least, max(first, distance_to_segment(points[-1, 0], points[-1, 1], ax, ay, bx, by))
+            )
     return least + bulge_of(points)
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Circles: the Bernstein form of the squared distance
 
 
 @allocation_free
 def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
-    """Lower bound of the distance of a curve to a point: the square root of the smallest Bernstein coefficient of the squared distance.
+    """Lower bound of the distance of a curve to a point: the square root of the smallest Bernstein
+    coefficient of the squared distance.
 
     The point is subtracted first, so that the error stays relative to the distance.
     """
@@ -172,7 +202,9 @@ def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
         coefficient = 0.0
         for i in range(max(0, k - n), min(n, k) + 1):
             j = k - i
-            product = (points[i, 0] - x) * (points[j, 0] - x) + (points[i, 1] - y) * (points[j, 1] - y)
+            product = (points[i, 0] - x) * (points[j, 0] - x) + (points[i, 1] - y) * (
+                points[j, 1] - y
+            )
             coefficient += _BINOMIAL[n, i] * _BINOMIAL[n, j] * product
         least = min(least, coefficient / _BINOMIAL[2 * n, k])
     return math.sqrt(max(0.0, least))
@@ -182,7 +214,9 @@ def _depth_in_circles(x, y, region):
     left, right, bottom, top = region.bounds
     depth = math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top))
     for k in range(len(region.radii)):
-        depth = max(depth, region.radii[k] - math.hypot(x - region.centres[k, 0], y - region.centres[k, 1]))
+        depth = max(
+            depth, region.radii[k] - math.hypot(x - region.centres[k, 0], y - region.centres[k, 1])
+        )
     return depth
 
 
@@ -194,7 +228,12 @@ def _is_free_in_circles(points, region):
     x_low, x_high, y_low, y_high = box(points)
     left, right, bottom, top = region.bounds
     reach = 2.0 * TOLERANCE
-    if x_low < left - reach or x_high > right + reach or y_low < bottom - reach or y_high > top + reach:
+    if (
+        x_low < left - reach
+        or x_high > right + reach
+        or y_low < bottom - reach
+        or y_high > top + reach
+    ):
         return False
     along_x, along_y = direction(points)
     along_low, along_high = range_along(points, along_x, along_y)
@@ -221,11 +260,15 @@ def _depth_bound_in_circles(points, region):
         bound = max(bound, math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top)))
     for k in range(len(region.radii)):
         if region.radii[k] > bound:
-            bound = max(bound, region.radii[k] - least_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]))
+            bound = max(
+                bound,
+                region.radii[k]
+                - least_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]),
+            )
     return bound
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # Polygons: chains of the boundary edges that a hull touches
 
 
@@ -244,7 +287,9 @@ def _is_blocked_in_polygons(x, y, region):
 
 @allocation_free
 def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
-    """Smallest and largest distance of control points from the line of an edge, positive on its free side."""
+    """Smallest and largest distance of control points from the line of an edge, positive on its
+    free side.
+    """
     low = math.inf
     high = -math.inf
     for x, y in points:
@@ -257,7 +302,8 @@ def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
 def _is_free_in_polygons(points, region):
     """A hull is free if it begins in free space and does not cross the boundary.
 
-    Edges away from the hull do not matter, whichever side it is on. The others form chains of consecutive edges: see `_passes_chain`.
+    Edges away from the hull do not matter, whichever side it is on. The others form chains of
+    consecutive edges: see `_passes_chain`.
     """
     x_low, x_high, y_low, y_high = box(points)
     along_x, along_y = direction(points)
@@ -266,11 +312,19 @@ def _is_free_in_polygons(points, region):
     remaining = 0
     for e in range(len(region.edges)):
         ax, ay, bx, by = region.edges[e]
-        if max(ax, bx) < x_low - _APART or min(ax, bx) > x_high + _APART or max(ay, by) < y_low - _APART or min(ay, by) > y_high + _APART:
+        if (
+            max(ax, bx) < x_low - _APART
+            or min(ax, bx) > x_high + _APART
+            or max(ay, by) < y_low - _APART
+            or min(ay, by) > y_high + _APART
+        ):
             continue
         across_a = along_x * (ay - points[0, 1]) - along_y * (ax - points[0, 0])
         across_b = along_x * (by - points[0, 1]) - along_y * (bx - points[0, 0])
-        if max(across_a, across_b) < across_low - _APART or min(across_a, across_b) > across_high + _APART:
+        if (
+            max(across_a, across_b) < across_low - _APART
+            or min(across_a, across_b) > across_high + _APART
+        ):
             continue
         low, high = _sides_of_edge(points, region.edges[e], region.normals[e])
         if low > _APART or high < -_APART:
@@ -280,7 +334,9 @@ def _is_free_in_polygons(points, region):
 
     for e in range(len(region.edges)):
         if touched[e] and not touched[region.preceding[e]]:
-            length = _passes_chain(points, region, touched, e, along_x, along_y, across_low, across_high)
+            length = _passes_chain(
+                points, region, touched, e, along_x, along_y, across_low, across_high
+            )
             if length == 0:
                 return False
             remaining -= length
@@ -290,10 +346,12 @@ def _is_free_in_polygons(points, region):
 
 @allocation_free
 def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
-    """Number of edges of a chain of touched edges if a hull passes it on the free side, otherwise 0.
+    """Number of edges of a chain of touched edges if a hull passes it on the free side, otherwise
+    0.
 
-    It does if it lies on the free side of all lines of the chain. Where the blocked region is convex at the chain's corners, one of these
-    lines is enough, or any line between hull and chain with free space on the hull's side; the line along the hull is tried.
+    It does if it lies on the free side of all lines of the chain. Where the blocked region is
+    convex at the chain's corners, one of these lines is enough, or any line between hull and chain
+    with free space on the hull's side; the line along the hull is tried.
     """
     reach = 2.0 * TOLERANCE
     length = 0
@@ -314,7 +372,9 @@ def _passes_chain(points, region, touched, first, along_x, along_y, across_low, 
         facing_low = min(facing_low, facing)
         facing_high = max(facing_high, facing)
         for k in (0, 2):
-            across = along_x * (region.edges[e, k + 1] - points[0, 1]) - along_y * (region.edges[e, k] - points[0, 0])
+            across = along_x * (region.edges[e, k + 1] - points[0, 1]) - along_y * (
+                region.edges[e, k] - points[0, 0]
+            )
             chain_low = min(chain_low, across)
             chain_high = max(chain_high, across)
         e = region.following[e]
@@ -323,13 +383,29 @@ def _passes_chain(points, region, touched, first, along_x, along_y, across_low, 
     return length if beside_all or (only_convex and (beside_one or above or below)) else 0
 
 
-# ---------------------------------------------------------------------------------------------------------------------
+# --------------------------------------------------------------------------------------------------
 # The answers by kind of region
 
-_IS_BLOCKED = {GridRegion: _is_blocked_in_grid, CircleRegion: _is_blocked_in_circles, PolygonRegion: _is_blocked_in_polygons}
-_IS_FREE = {GridRegion: _is_free_in_grid, CircleRegion: _is_free_in_circles, PolygonRegion: _is_free_in_polygons}
-_DEPTH_AT = {GridRegion: _depth_in_grid, CircleRegion: _depth_in_circles, PolygonRegion: _depth_in_polygons}
-_DEPTH_BOUND = {GridRegion: _depth_bound_by_edges, CircleRegion: _depth_bound_in_circles, PolygonRegion: _depth_bound_by_edges}
+_IS_BLOCKED = {
+    GridRegion: _is_blocked_in_grid,
+    CircleRegion: _is_blocked_in_circles,
+    PolygonRegion: _is_blocked_in_polygons,
+}
+_IS_FREE = {
+    GridRegion: _is_free_in_grid,
+    CircleRegion: _is_free_in_circles,
+    PolygonRegion: _is_free_in_polygons,
+}
+_DEPTH_AT = {
+    GridRegion: _depth_in_grid,
+    CircleRegion: _depth_in_circles,
+    PolygonRegion: _depth_in_polygons,
+}
+_DEPTH_BOUND = {
+    GridRegion: _depth_bound_by_edges,
+    CircleRegion: _depth_bound_in_circles,
+    PolygonRegion: _depth_bound_by_edges,
+}
 
 
 @overload(is_blocked)

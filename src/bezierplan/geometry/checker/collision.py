@@ -15,7 +15,8 @@ _SHORTEST_INTERVAL = 1e-11
 
 @compiled
 def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
-    """Piece number plus parameter of the first collision (infinite if there is none), and the number of intervals examined.
+    """Piece number plus parameter of the first collision (infinite if there is none), and the
+    number of intervals examined.
 
     Depth first, left half first: everything before the current interval is certified free.
     """
@@ -35,7 +36,9 @@ def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
                 top -= 1
             elif is_blocked(points[0, 0], points[0, 1], region):
                 return piece + begin[top], intervals
-            elif width[top] < _SHORTEST_INTERVAL and is_blocked(points[-1, 0], points[-1, 1], region):
+            elif width[top] < _SHORTEST_INTERVAL and is_blocked(
+                points[-1, 0], points[-1, 1], region
+            ):
                 return piece + begin[top] + width[top], intervals
             elif size(points) <= TOLERANCE:
                 top -= 1

@@ -1,4 +1,6 @@
-"""The corner-cutting rule `closed`: whether a path passes between two occupied cells that share only a corner."""
+"""The corner-cutting rule `closed`: whether a path passes between two occupied cells that share
+only a corner.
+"""
 
 import math
 
@@ -7,26 +9,32 @@ import numpy as np
 from bezierplan.geometry.checker.hulls import STACK, box, copy_points, size, split_top
 from bezierplan.kernels import compiled
 
-# Radius, in cells, of the disc around a contact in which the rule examines where a path comes from and goes to.
+# Radius, in cells, of the disc around a contact in which the rule examines where a path comes from
+# and goes to.
 CONTACT_RADIUS = 1e-6
 
 
 @compiled
 def first_corner_cut(pieces: np.ndarray, contacts: np.ndarray, radius: float) -> float:
-    """Piece number plus parameter at which a path first passes a closed contact of two occupied cells, infinite if it never does."""
+    """Piece number plus parameter at which a path first passes a closed contact of two occupied
+    cells, infinite if it never does.
+    """
     first = math.inf
     for k in range(len(contacts)):
-        first = min(first, _corner_cut_at(pieces, contacts[k, 0], contacts[k, 1], contacts[k, 2], radius))
+        first = min(
+            first, _corner_cut_at(pieces, contacts[k, 0], contacts[k, 1], contacts[k, 2], radius)
+        )
     return first
 
 
 @compiled
 def _corner_cut_at(pieces: np.ndarray, x: float, y: float, slope: float, radius: float) -> float:
-    """Piece number plus parameter at which a path first passes one contact, infinite if it never does.
+    """Piece number plus parameter at which a path first passes one contact, infinite if it never
+    does.
 
-    Around a contact a free path stays in the two free quadrants, which meet only at the contact. So it passes the contact if it enters and
-    leaves a small disc around it on different sides of the diagonal through the occupied cells. A path that begins in the disc may leave it
-    on either side.
+    Around a contact a free path stays in the two free quadrants, which meet only at the contact. So
+    it passes the contact if it enters and leaves a small disc around it on different sides of the
+    diagonal through the occupied cells. A path that begins in the disc may leave it on either side.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     begin = np.empty(STACK)
@@ -43,7 +51,9 @@ def _corner_cut_at(pieces: np.ndarray, x: float, y: float, slope: float, radius:
         while top >= 0:
             points = stack[top]
             left, right, bottom, upper = box(points)
-            apart = left > x + radius or right < x - radius or bottom > y + radius or upper < y - radius
+            apart = (
+                left > x + radius or right < x - radius or bottom > y + radius or upper < y - radius
+            )
             if not apart and size(points) > radius / 8:
                 split_top(stack, begin, width, top)
                 top += 1

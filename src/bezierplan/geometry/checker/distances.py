@@ -1,11 +1,26 @@
-"""How deep a colliding path lies in the blocked region, and how close a free one comes to it: branch and bound over halved pieces."""
+"""How deep a colliding path lies in the blocked region, and how close a free one comes to it:
+branch and bound over halved pieces.
+"""
 
 import math
 
 import numpy as np
 
-from bezierplan.geometry.checker.certificates import depth_at, depth_bound, is_free, least_distance_to_centre
-from bezierplan.geometry.checker.hulls import STACK, bulge_of, copy_points, distance_to_segment, halve, resolution, size
+from bezierplan.geometry.checker.certificates import (
+    depth_at,
+    depth_bound,
+    is_free,
+    least_distance_to_centre,
+)
+from bezierplan.geometry.checker.hulls import (
+    STACK,
+    bulge_of,
+    copy_points,
+    distance_to_segment,
+    halve,
+    resolution,
+    size,
+)
 from bezierplan.geometry.region import Region
 from bezierplan.kernels import allocation_free, compiled
 
@@ -16,8 +31,8 @@ DEPTH_TOLERANCE = 1e-6
 
 @compiled
 def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
-    """Largest depth of a path, to a relative `DEPTH_TOLERANCE` or the pieces' `resolution`, by branch and bound, starting with the piece of
-    its first collision.
+    """Largest depth of a path, to a relative `DEPTH_TOLERANCE` or the pieces' `resolution`, by
+    branch and bound, starting with the piece of its first collision.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     largest = 0.0
@@ -30,7 +45,11 @@ def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> fl
         while top >= 0:
             points = stack[top]
             enough = largest + max(DEPTH_TOLERANCE * largest, finest)
-            if size(points) <= finest or depth_bound(points, region) <= enough or is_free(points, region):
+            if (
+                size(points) <= finest
+                or depth_bound(points, region) <= enough
+                or is_free(points, region)
+            ):
                 top -= 1
             else:
                 halve(points, stack[top + 1])
@@ -40,11 +59,15 @@ def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> fl
 
 
 @compiled
-def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Minimum distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by branch and bound.
+def least_clearance(
+    pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray
+) -> float:
+    """Minimum distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by
+    branch and bound.
 
-    The curve is no nearer to an edge than its chord is, minus the largest deviation of the curve from its chord. Obstacles farther away
-    than the minimum distance found are dropped for both halves: they are swapped to positions beyond those that the halves examine.
+    The curve is no nearer to an edge than its chord is, minus the largest deviation of the curve
+    from its chord. Obstacles farther away than the minimum distance found are dropped for both
+    halves: they are swapped to positions beyond those that the halves examine.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     considered = np.empty(STACK, dtype=np.int64)
@@ -61,22 +84,39 @@ def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, 
             bulge = bulge_of(points)
             near = 0
             for k in range(considered[top]):
-                if _clearance_bound(points, bulge, obstacles[k], edges, centres, radii) < least - CLEARANCE_TOLERANCE:
+                if (
+                    _clearance_bound(points, bulge, obstacles[k], edges, centres, radii)
+                    < least - CLEARANCE_TOLERANCE
+                ):
                     obstacles[near], obstacles[k] = obstacles[k], obstacles[near]
                     near += 1
             if near == 0:
                 top -= 1
             else:
                 halve(points, stack[top + 1])
-                least = min(least, _clearance_of_point(points[0, 0], points[0, 1], obstacles[:near], edges, centres, radii))
+                least = min(
+                    least,
+                    _clearance_of_point(
+                        points[0, 0], points[0, 1], obstacles[:near], edges, centres, radii
+                    ),
+                )
                 considered[top] = considered[top + 1] = near
                 top += 1
     return least
 
 
 @allocation_free
-def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Minimum distance of a point to some of the obstacles, given by number: edges first, then discs."""
+def _clearance_of_point(
+    x: float,
+    y: float,
+    obstacles: np.ndarray,
+    edges: np.ndarray,
+    centres: np.ndarray,
+    radii: np.ndarray,
+) -> float:
+    """Minimum distance of a point to some of the obstacles, given by number: edges first, then
+    discs.
+    """
     least = math.inf
     for obstacle in obstacles:
         disc = obstacle - len(edges)
@@ -84,18 +124,34 @@ def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.nda
             ax, ay, bx, by = edges[obstacle]
             least = min(least, distance_to_segment(x, y, ax, ay, bx, by))
         else:
-            least = min(least, max(0.0, math.hypot(x - centres[disc, 0], y - centres[disc, 1]) - radii[disc]))
+            least = min(
+                least,
+                max(0.0, math.hypot(x - centres[disc, 0], y - centres[disc, 1]) - radii[disc]),
+            )
     return least
 
 
 @allocation_free
-def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Lower bound of the distance of a curve to an obstacle. A curve deviates from its chord by at most `bulge`."""
+def _clearance_bound(
+    points: np.ndarray,
+    bulge: float,
+    obstacle: int,
+    edges: np.ndarray,
+    centres: np.ndarray,
+    radii: np.ndarray,
+) -> float:
+    """Lower bound of the distance of a curve to an obstacle. A curve deviates from its chord by at
+    most `bulge`.
+    """
     ax, ay = points[0, 0], points[0, 1]
     bx, by = points[-1, 0], points[-1, 1]
     disc = obstacle - len(edges)
     if disc < 0:
-        return max(0.0, _distance_of_segments(points[0], points[-1], edges[obstacle, :2], edges[obstacle, 2:]) - bulge)
+        return max(
+            0.0,
+            _distance_of_segments(points[0], points[-1], edges[obstacle, :2], edges[obstacle, 2:])
+            - bulge,
+        )
     x, y = centres[disc, 0], centres[disc, 1]
     from_chord = distance_to_segment(x, y, ax, ay, bx, by) - bulge
     if bulge > 0.0:

@@ -1,4 +1,6 @@
-"""Hulls of the control points of Bezier pieces: halving, extent and direction; and the limits within which they are sufficiently exact."""
+"""Hulls of the control points of Bezier pieces: halving, extent and direction; and the limits
+within which they are sufficiently exact.
+"""
 
 import math
 
@@ -9,17 +11,19 @@ from bezierplan.kernels import allocation_free
 # Depth in units above which a point is certainly blocked.
 TOLERANCE = 1e-9
 
-# Smaller differences between coordinates are rounding errors; beyond coordinates of about a thousand, so are smaller ones than some units
-# in the last place.
+# Smaller differences between coordinates are rounding errors; beyond coordinates of about a
+# thousand, so are smaller ones than some units in the last place.
 ROUNDING = 1e-12
 _LAST_PLACES = 4 * np.finfo(float).eps
 
-# With larger coordinates, the rounding errors of halved control points would approach the tolerance.
+# With larger coordinates, the rounding errors of halved control points would approach the
+# tolerance.
 LARGEST_COORDINATE = 1e5
 
 LARGEST_DEGREE = 60
 
-# From the largest coordinate, halving reaches the tolerance in about fifty levels; each level needs one stack entry.
+# From the largest coordinate, halving reaches the tolerance in about fifty levels; each level needs
+# one stack entry.
 STACK = 64
 
 # A chord this much shorter than its hull does not indicate the hull's direction.
@@ -28,7 +32,9 @@ _SHORT_CHORD = 1e-3
 
 @allocation_free
 def copy_points(points: np.ndarray, place: np.ndarray) -> None:
-    """Copy control points one by one. Array assignment does the same, but takes seconds to compile."""
+    """Copy control points one by one. Array assignment does the same, but takes seconds to
+    compile.
+    """
     for i in range(len(points)):
         place[i, 0] = points[i, 0]
         place[i, 1] = points[i, 1]
@@ -48,9 +54,11 @@ def halve(points: np.ndarray, left: np.ndarray) -> None:
 
 @allocation_free
 def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int) -> None:
-    """Split the uppermost entry of a stack of parts of a piece: its right half stays, and the left half is put on it.
+    """Split the uppermost entry of a stack of parts of a piece: its right half stays, and the left
+    half is put on it.
 
-    stack: (`STACK`, n, 2) control points of the parts. begin, width: (`STACK`,) the parameter interval of each part. All are changed.
+    stack: (`STACK`, n, 2) control points of the parts. begin, width: (`STACK`,) the parameter
+    interval of each part. All are changed.
     """
     halve(stack[top], stack[top + 1])
     width[top] *= 0.5
@@ -70,7 +78,9 @@ def size(points: np.ndarray) -> float:
 
 @allocation_free
 def resolution(points: np.ndarray) -> float:
-    """Size in units below which halving no longer separates control points: `ROUNDING`, or more for large coordinates."""
+    """Size in units below which halving no longer separates control points: `ROUNDING`, or more for
+    large coordinates.
+    """
     largest = 0.0
     for i in range(len(points)):
         largest = max(largest, abs(points[i, 0]), abs(points[i, 1]))
@@ -79,10 +89,15 @@ def resolution(points: np.ndarray) -> float:
 
 @allocation_free
 def direction(points: np.ndarray) -> tuple[float, float]:
-    """Unit vector along a hull: the direction of its chord or, where the chord is short, towards the point farthest from the first one."""
+    """Unit vector along a hull: the direction of its chord or, where the chord is short, towards
+    the point farthest from the first one.
+    """
     farthest = len(points) - 1
     longest = size(points)
-    if math.hypot(points[-1, 0] - points[0, 0], points[-1, 1] - points[0, 1]) < _SHORT_CHORD * longest:
+    if (
+        math.hypot(points[-1, 0] - points[0, 0], points[-1, 1] - points[0, 1])
+        < _SHORT_CHORD * longest
+    ):
         for i in range(1, len(points)):
             if math.hypot(points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]) == longest:
                 farthest = i
@@ -96,7 +111,9 @@ def direction(points: np.ndarray) -> tuple[float, float]:
 
 @allocation_free
 def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
-    """Smallest and largest component of the control points in a direction, relative to the first one."""
+    """Smallest and largest component of the control points in a direction, relative to the first
+    one.
+    """
     low = high = 0.0
     for i in range(1, len(points)):
         component = (points[i, 0] - points[0, 0]) * x + (points[i, 1] - points[0, 1]) * y
@@ -137,6 +154,8 @@ def bulge_of(points: np.ndarray) -> float:
     """Largest distance of a control point from the chord."""
     largest = 0.0
     for i in range(1, len(points) - 1):
-        distance = distance_to_segment(points[i, 0], points[i, 1], points[0, 0], points[0, 1], points[-1, 0], points[-1, 1])
+        distance = distance_to_segment(
+            points[i, 0], points[i, 1], points[0, 0], points[0, 1], points[-1, 0], points[-1, 1]
+        )
         largest = max(largest, distance)
     return largest

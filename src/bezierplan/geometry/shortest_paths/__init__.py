@@ -1,7 +1,8 @@
-"""Exact shortest paths of a point robot: any-angle on grids, around circles and polygons; through cell centres; on the 8-connected lattice.
+"""Exact shortest paths of a point robot: any-angle on grids, around circles and polygons; through
+cell centres; on the 8-connected lattice.
 
-They use the same region as the certified check, which finds the resulting paths free: touching is allowed. There is one file for each kind
-of region, and one for the lattice.
+They use the same region as the certified check, which finds the resulting paths free: touching is
+allowed. There is one file for each kind of region, and one for the lattice.
 """
 
 from typing import Literal
@@ -20,7 +21,11 @@ from bezierplan.workspaces.problem import Problem
 __all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_path"]
 
 
-def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = "open", blocked: Region | None = None) -> Bound:
+def shortest_path(
+    problem: Problem,
+    corner_cutting: Literal["open", "closed"] = "open",
+    blocked: Region | None = None,
+) -> Bound:
     """The shortest path from start to target.
 
     Parameters
@@ -28,7 +33,8 @@ def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = 
     problem : Problem
         The workspace with both ends.
     corner_cutting : {'open', 'closed'}
-        Whether it may pass between two occupied cells that share only a corner; only matters on grids.
+        Whether it may pass between two occupied cells that share only a corner; only matters on
+        grids.
     blocked : Region, optional
         The region of the workspace, if it is known.
 
@@ -40,13 +46,14 @@ def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = 
     Raises
     ------
     ValueError
-        For an unknown corner-cutting rule, and for the rule `closed` on a grid with more than `grid.MOST_NODES` corners.
+        For an unknown corner-cutting rule, and for the rule `closed` on a grid with more than
+        `grid.MOST_NODES` corners.
 
-    Notes
-    -----
-    On a grid the visibility of start and target is decided for the nearest points of a lattice: coordinates that are not fractions of a
-    cell with a common denominator of at most 2**20 are off by up to 5e-7 cells in that test. Lengths are those of the points themselves.
-    Around circles the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS` longer.
+    Notes ----- On a grid the visibility of start and target is decided for the nearest points of a
+    lattice: coordinates that are not fractions of a cell with a common denominator of at most 2**20
+    are off by up to 5e-7 cells in that test. Lengths are those of the points themselves. Around
+    circles the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS`
+    longer.
 
     Examples
     --------
@@ -84,10 +91,9 @@ def least_length(bound: Bound) -> float:
     float
         Its length less an allowance, in the problem's unit.
 
-    Notes
-    -----
-    Such a path may be a few 1e-9 deep and cut its bends by as much; the allowance is a relative 1e-9 plus 1e-8 per radian of turning.
-    Obstacles that are sharper than a right angle and gaps below 1e-7 can allow more.
+    Notes ----- Such a path may be a few 1e-9 deep and cut its bends by as much; the allowance is a
+    relative 1e-9 plus 1e-8 per radian of turning. Obstacles that are sharper than a right angle and
+    gaps below 1e-7 can allow more.
     """
     step = np.diff(bound.points, axis=0)
     step = step[np.hypot(step[:, 0], step[:, 1]) > TOLERANCE]

@@ -1,4 +1,6 @@
-"""Edges by place: a raster of square bins, so that a segment is compared with the edges near it and not with all."""
+"""Edges by place: a raster of square bins, so that a segment is compared with the edges near it and
+not with all.
+"""
 
 import math
 from typing import NamedTuple
@@ -11,8 +13,9 @@ from bezierplan.kernels import allocation_free, compiled
 class Bins(NamedTuple):
     """Edges by the bins that they pass through.
 
-    low: (2,) the lower left corner of all bins, side: of a bin, in units. columns, rows: number of bins. first: (columns rows + 1,) where
-    the edges of each bin, column by column, begin in `edges`.
+    low: (2,) the lower left corner of all bins, side: of a bin, in units. columns, rows: number of
+    bins. first: (columns rows + 1,) where the edges of each bin, column by column, begin in
+    `edges`.
     """
 
     low: np.ndarray
@@ -42,7 +45,9 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
         begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
-            for number in range(column * bins.rows + low, column * bins.rows + high + 1):  # += on a slice takes seconds to compile
+            for number in range(
+                column * bins.rows + low, column * bins.rows + high + 1
+            ):  # += on a slice takes seconds to compile
                 first[number + 1] += 1
     first = np.cumsum(first)
     slot = first[:-1].copy()
@@ -67,7 +72,9 @@ def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
 
 @allocation_free
 def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple[int, int]:
-    """The first and the last row of bins that a segment passes within a column, a little more rather than less."""
+    """The first and the last row of bins that a segment passes within a column, a little more
+    rather than less.
+    """
     low, high = min(a[1], b[1]), max(a[1], b[1])
     margin = 1e-3 * bins.side
     step = b[0] - a[0]

@@ -40,7 +40,9 @@ def moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
 
 
 def along(points: np.ndarray, nodes: np.ndarray) -> Bound:
-    """The polyline along some of the points (n, 2), without repeated ones; no path without nodes."""
+    """The polyline along some of the points (n, 2), without repeated ones; no path without
+    nodes.
+    """
     if not len(nodes):
         return no_path()
     path = points[nodes]
@@ -50,8 +52,8 @@ def along(points: np.ndarray, nodes: np.ndarray) -> Bound:
 
 
 def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
-    """The shortest polyline from the first to the second of some points (n, 2), along pairs of points that see each other: bool (n, n), i <
-    j.
+    """The shortest polyline from the first to the second of some points (n, 2), along pairs of
+    points that see each other: bool (n, n), i < j.
     """
     from scipy.sparse import coo_array
 
@@ -65,10 +67,14 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
 
 
 def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, np.ndarray]:
-    """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along it; empty if there is no path."""
+    """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along
+    it; empty if there is no path.
+    """
     from scipy.sparse.csgraph import dijkstra
 
-    distances, predecessors = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    distances, predecessors = dijkstra(
+        graph, directed=False, indices=start, return_predecessors=True
+    )
     if math.isinf(distances[target]):
         return math.inf, np.empty(0, dtype=np.int64)
     nodes = [target]
@@ -79,7 +85,9 @@ def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, n
 
 @compiled
 def way_back(before, length):
-    """The nodes from node 0 to node 1, from each node's predecessor; empty if the length is infinite."""
+    """The nodes from node 0 to node 1, from each node's predecessor; empty if the length is
+    infinite.
+    """
     nodes = [1]
     while before[nodes[-1]] >= 0:
         nodes.append(before[nodes[-1]])

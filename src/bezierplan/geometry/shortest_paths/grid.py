@@ -1,4 +1,6 @@
-"""Shortest paths on grids: visibility between corners of cells, or between their centres, in integer arithmetic."""
+"""Shortest paths on grids: visibility between corners of cells, or between their centres, in
+integer arithmetic.
+"""
 
 import math
 from fractions import Fraction
@@ -12,14 +14,17 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
-# A graph has an entry for every pair of nodes; with more nodes than this, a search that stores no pairs is used instead.
+# A graph has an entry for every pair of nodes; with more nodes than this, a search that stores no
+# pairs is used instead.
 MOST_NODES = 5000
 
-# On a map with more cells the lines of sight of such a graph are long, and most of them are never needed: then the same holds for so many.
+# On a map with more cells the lines of sight of such a graph are long, and most of them are never
+# needed: then the same holds for so many.
 _MANY_CELLS = 1_000_000
 _FEW_NODES = 500
 
-# Start and target are put on a lattice of at most this many points per cell, so that visibility is decided with integers.
+# Start and target are put on a lattice of at most this many points per cell, so that visibility is
+# decided with integers.
 _FINEST_LATTICE = 2**20
 
 # Products of two coordinates of the lattice must fit in 64 bits.
@@ -35,44 +40,58 @@ _CENTRE_TOLERANCE = 1e-9
 def shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str) -> Bound:
     """The visibility graph of start, target and the corners at which a shortest path can turn.
 
-    Those are the vertices with exactly one occupied cell around them, and contacts. A closed contact becomes two nodes, one per free
-    quadrant, each with directions of its own quadrant only.
+    Those are the vertices with exactly one occupied cell around them, and contacts. A closed
+    contact becomes two nodes, one per free quadrant, each with directions of its own quadrant only.
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
     corners, slopes, quadrants = _grid_corners(cells, corner_cutting == "closed")
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
-    lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
+    lattice = np.concatenate(
+        [np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale]
+    )
     most = _FEW_NODES if cells.size > _MANY_CELLS else MOST_NODES
     if len(lattice) > most and corner_cutting == "open":
         if not _joined(cells, lattice[0], lattice[1], scale):
             return no_path()
-        direct = bool((lattice[0] == lattice[1]).all()) or _sees(lattice[0], lattice[1], cells, scale, False)
+        direct = bool((lattice[0] == lattice[1]).all()) or _sees(
+            lattice[0], lattice[1], cells, scale, False
+        )
         points = np.concatenate([ends / blocked.cell, corners])
-        nodes = shadows.search(shadows.scene(cells, corners, slopes, scale), lattice[:2], points, direct)
+        nodes = shadows.search(
+            shadows.scene(cells, corners, slopes, scale), lattice[:2], points, direct
+        )
         return moved(along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
     refuse_large(len(lattice))
     slopes = np.concatenate([[0, 0], slopes])
     quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
     visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, corner_cutting == "closed")
-    return moved(shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin)
+    return moved(
+        shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin
+    )
 
 
 def centre_path(problem: Problem) -> Bound:
     """The shortest polyline through centres of free cells of a grid, in the problem's unit.
 
-    Raises ValueError if start or target is not the centre of a cell, within 1e-9 of a cell's side, and for more than `MOST_NODES` free
-    cells.
+    Raises ValueError if start or target is not the centre of a cell, within 1e-9 of a cell's side,
+    and for more than `MOST_NODES` free cells.
     """
     grid = problem.workspace
     assert isinstance(grid, Grid)
-    nodes = [_centre_cell(grid, name, point) for name, point in (("start", problem.start), ("target", problem.target))]
+    nodes = [
+        _centre_cell(grid, name, point)
+        for name, point in (("start", problem.start), ("target", problem.target))
+    ]
     if any(grid.occupied[row, column] for row, column in nodes):
         return no_path()
     cells = np.concatenate([nodes, np.argwhere(~grid.occupied)])
     refuse_large(len(cells))
     lattice = 2 * cells[:, ::-1] + 1
-    any_slope, any_quadrant = np.zeros(len(cells), dtype=np.int64), np.zeros((len(cells), 2), dtype=np.int64)
+    any_slope, any_quadrant = (
+        np.zeros(len(cells), dtype=np.int64),
+        np.zeros((len(cells), 2), dtype=np.int64),
+    )
     visible = _visible_on_grid(lattice, any_slope, any_quadrant, walled(grid.occupied), 2, False)
     return moved(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
 
@@ -81,7 +100,10 @@ def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int
     """Row and column of the cell whose centre is the given point."""
     column, row = grid.in_cells(np.array(point)) - 0.5
     rows, columns = grid.occupied.shape
-    is_centre = abs(column - round(column)) <= _CENTRE_TOLERANCE and abs(row - round(row)) <= _CENTRE_TOLERANCE
+    is_centre = (
+        abs(column - round(column)) <= _CENTRE_TOLERANCE
+        and abs(row - round(row)) <= _CENTRE_TOLERANCE
+    )
     if not (is_centre and 0 <= round(row) < rows and 0 <= round(column) < columns):
         raise ValueError(f"the {name} {point} is not the centre of a cell")
     return round(row), round(column)
@@ -89,19 +111,24 @@ def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int
 
 def refuse_large(nodes: int) -> None:
     if nodes > MOST_NODES:
-        raise ValueError(f"the visibility graph has {nodes} nodes, more than {MOST_NODES}; use a coarser or a smaller workspace")
+        raise ValueError(
+            f"the visibility graph has {nodes} nodes, more than {MOST_NODES}; use a coarser or a "
+            f"smaller workspace"
+        )
 
 
 def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Corners (n, 2) as x and y in cells, slopes (n,) and quadrants (n, 2) of the directions that a shortest path can take from them.
+    """Corners (n, 2) as x and y in cells, slopes (n,) and quadrants (n, 2) of the directions that a
+    shortest path can take from them.
 
-    A slope of +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0. A quadrant holds the signs of dx and dy, or zeros for any.
+    A slope of +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0. A quadrant holds the
+    signs of dx and dy, or zeros for any.
     """
     below_left, below_right, above_left, above_right = around = occupied_around(cells)
     number = around.view(np.int8).sum(axis=0, dtype=np.int8)
     single, pair = number == 1, number == 2
-    # Around a single occupied cell a path turns from one of the two adjacent quadrants to the other; at a contact it stays in the free
-    # ones.
+    # Around a single occupied cell a path turns from one of the two adjacent quadrants to the
+    # other; at a contact it stays in the free ones.
     rising = (single & (below_right | above_left)) | (pair & below_right & above_left)
     falling = (single & (below_left | above_right)) | (pair & below_left & above_right)
     row, column = np.nonzero(rising | falling)
@@ -119,27 +146,42 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
 
 
 def _lattice(points: np.ndarray, finest: int) -> int:
-    """The smallest number of lattice points per cell that makes all coordinates integers; `finest` if even that is not enough."""
+    """The smallest number of lattice points per cell that makes all coordinates integers; `finest`
+    if even that is not enough.
+    """
     fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
-    exact = all(abs(value - fraction) <= _SAME_FRACTION for value, fraction in zip(points.ravel(), fractions))
+    exact = all(
+        abs(value - fraction) <= _SAME_FRACTION
+        for value, fraction in zip(points.ravel(), fractions)
+    )
     return scale if exact and scale <= finest else finest
 
 
 def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int) -> bool:
-    """Whether free cells lead from one free point of the lattice to another; they may meet at a corner only."""
+    """Whether free cells lead from one free point of the lattice to another; they may meet at a
+    corner only.
+    """
     from scipy import ndimage
 
     parts, _ = ndimage.label(~cells, np.ones((3, 3)))
     # All free cells around a point are in the same part.
-    around = (parts[-(-y // scale) : y // scale + 2, -(-x // scale) : x // scale + 2] for x, y in (start, target))
+    around = (
+        parts[-(-y // scale) : y // scale + 2, -(-x // scale) : x // scale + 2]
+        for x, y in (start, target)
+    )
     one, other = (part.max() for part in around)
     return one == other
 
 
 @compiled
 def _visible_on_grid(
-    nodes: np.ndarray, slopes: np.ndarray, quadrants: np.ndarray, cells: np.ndarray, scale: int, closed: bool
+    nodes: np.ndarray,
+    slopes: np.ndarray,
+    quadrants: np.ndarray,
+    cells: np.ndarray,
+    scale: int,
+    closed: bool,
 ) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
@@ -179,8 +221,12 @@ def _sees(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int, clo
 
 
 @allocation_free
-def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
-    """Whether a vertical segment is free. On a grid line it runs along edges, which are blocked if both of their cells are occupied."""
+def _sees_along_column(
+    x: int, low: int, length: int, cells: np.ndarray, scale: int, closed: bool
+) -> bool:
+    """Whether a vertical segment is free. On a grid line it runs along edges, which are blocked if
+    both of their cells are occupied.
+    """
     column = x // scale
     on_line = x % scale == 0
     for row in range(low // scale, (low + length - 1) // scale + 1):
@@ -200,10 +246,13 @@ def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
 
 
 @allocation_free
-def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
+def _sees_across(
+    x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int, closed: bool
+) -> bool:
     """Whether a slanted segment is free: a walk over the cells that it enters.
 
-    to_x and to_y are the distances from the segment's start to the next vertical and horizontal grid line, along each axis.
+    to_x and to_y are the distances from the segment's start to the next vertical and horizontal
+    grid line, along each axis.
     """
     step_x = 1 if dx > 0 else -1
     step_y = 1 if dy > 0 else -1
@@ -217,7 +266,12 @@ def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int
         if to_x >= width and to_y >= height:
             return True
         order = to_x * height - to_y * width
-        if order == 0 and closed and cells[row + 1, column + 1 + step_x] and cells[row + 1 + step_y, column + 1]:
+        if (
+            order == 0
+            and closed
+            and cells[row + 1, column + 1 + step_x]
+            and cells[row + 1 + step_y, column + 1]
+        ):
             return False
         if order <= 0:
             column += step_x

@@ -16,11 +16,12 @@ def lattice_path(
     diagonal_weight: float,
     corner_rule: str,
 ) -> Bound:
-    """The shortest path over the 8 neighbours of free cells, by the algorithm A*; length and points (x, y) in cells.
+    """The shortest path over the 8 neighbours of free cells, by the algorithm A*; length and points
+    (x, y) in cells.
 
-    occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a diagonal step; others count 1. corner_rule:
-    how many of the two cells beside a diagonal step may be occupied. Raises ValueError for an unknown rule and if start or target is
-    outside the grid.
+    occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a
+    diagonal step; others count 1. corner_rule: how many of the two cells beside a diagonal step may
+    be occupied. Raises ValueError for an unknown rule and if start or target is outside the grid.
 
     The rule `free` allows a diagonal step past an occupied cell, the rule `none` does not:
 
@@ -32,27 +33,41 @@ def lattice_path(
     5.0
     """
     if corner_rule not in Corners.__members__:
-        raise ValueError(f"unknown corner rule {corner_rule!r}; known: {', '.join(Corners.__members__)}")
+        raise ValueError(
+            f"unknown corner rule {corner_rule!r}; known: {', '.join(Corners.__members__)}"
+        )
     rows, columns = occupied.shape
     for name, (row, column) in (("start", start), ("target", target)):
         if not (0 <= row < rows and 0 <= column < columns):
-            raise ValueError(f"the {name} cell (row {row}, column {column}) is not on the grid of {rows} x {columns} cells")
+            raise ValueError(
+                f"the {name} cell (row {row}, column {column}) is not on the grid of {rows} x "
+                f"{columns} cells"
+            )
     if occupied[start] or occupied[target]:
         return no_path()
 
     walled_cells = np.pad(occupied, 1, constant_values=True)
-    length, cells = _least_cells(walled_cells, np.array(start) + 1, np.array(target) + 1, STEPS, diagonal_weight, int(Corners[corner_rule]))
+    length, cells = _least_cells(
+        walled_cells,
+        np.array(start) + 1,
+        np.array(target) + 1,
+        STEPS,
+        diagonal_weight,
+        int(Corners[corner_rule]),
+    )
     row, column = np.divmod(cells, columns + 2)
     return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
 
 
 @compiled
 def _least_cells(walled, start, target, steps, diagonal_weight, most_beside):
-    """Length of a shortest path and its cells (n,), numbered row by row; infinite and empty if there is no path.
+    """Length of a shortest path and its cells (n,), numbered row by row; infinite and empty if
+    there is no path.
 
-    walled: bool (rows, columns), the cells with a frame of occupied ones. start, target: row and column. most_beside: how many of the two
-    cells beside a diagonal step may be occupied. The remaining length is estimated by the shortest path without obstacles, so only cells
-    near the shortest paths are examined.
+    walled: bool (rows, columns), the cells with a frame of occupied ones. start, target: row and
+    column. most_beside: how many of the two cells beside a diagonal step may be occupied. The
+    remaining length is estimated by the shortest path without obstacles, so only cells near the
+    shortest paths are examined.
     """
     columns = walled.shape[1]
     # A step of either kind may be replaced by two of the other kind.
@@ -61,7 +76,8 @@ def _least_cells(walled, start, target, steps, diagonal_weight, most_beside):
     came_by = np.full(walled.shape, -1, dtype=np.int8)
     settled = np.zeros(walled.shape, dtype=np.bool_)
     length[start[0], start[1]] = 0.0
-    # Estimated length, the part of it still ahead, and the cell; ties go to those nearest to the target.
+    # Estimated length, the part of it still ahead, and the cell; ties go to those nearest to the
+    # target.
     heap = [(0.0, 0.0, start[0], start[1])]
     while len(heap) > 0:
         _, _, row, column = heapq.heappop(heap)

@@ -17,7 +17,9 @@ MOST_POLYGON_NODES = 500
 
 
 def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
-    """The visibility graph of start, target, the convex corners of the blocked region, and the points at which its corners meet."""
+    """The visibility graph of start, target, the convex corners of the blocked region, and the
+    points at which its corners meet.
+    """
     begin = blocked.edges[:, :2]
     corner = np.flatnonzero(blocked.convex)
     repeated, count = np.unique(begin, axis=0, return_counts=True)
@@ -32,10 +34,13 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
 
 
 @compiled
-def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins) -> np.ndarray:
+def _visible_among_polygons(
+    nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins
+) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
-    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a path may turn in any direction.
+    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a
+    path may turn in any direction.
     """
     visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
     segment = np.empty((1, 2, 2))
@@ -52,9 +57,12 @@ def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.nda
 
 
 @compiled
-def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins) -> np.ndarray:
-    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no path; pairs are tested only when needed:
-    the edges from a node to all others wait in a heap, and each is tested once it is the most promising.
+def _search_polygons(
+    nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins
+) -> np.ndarray:
+    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no
+    path; pairs are tested only when needed: the edges from a node to all others wait in a heap, and
+    each is tested once it is the most promising.
     """
     came_by = np.full(len(nodes), -1)
     settled = np.zeros(len(nodes), dtype=np.bool_)
@@ -69,7 +77,10 @@ def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, r
             for axis in range(2):
                 segment[0, 0, axis] = nodes[tail, axis]
                 segment[0, 1, axis] = nodes[i, axis]
-            if _crosses_any(nodes[tail], nodes[i], region.edges, bins) or first_collision(segment, region)[0] < math.inf:
+            if (
+                _crosses_any(nodes[tail], nodes[i], region.edges, bins)
+                or first_collision(segment, region)[0] < math.inf
+            ):
                 continue
         settled[i] = True
         came_by[i] = tail
@@ -77,7 +88,9 @@ def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, r
             return way_back(came_by, length)
         turn = _turn_at(nodes, tail, i, before, after)
         for j in range(len(nodes)):
-            if settled[j] or (turn and turn * _offset(nodes[tail], nodes[i], nodes[j]) < -TOLERANCE):
+            if settled[j] or (
+                turn and turn * _offset(nodes[tail], nodes[i], nodes[j]) < -TOLERANCE
+            ):
                 continue
             if not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
                 continue
@@ -88,7 +101,9 @@ def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, r
 
 @allocation_free
 def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np.ndarray) -> int:
-    """To which side a shortest path turns at corner i, where the obstacle is: to the left (1), to the right (-1), or both (0)."""
+    """To which side a shortest path turns at corner i, where the obstacle is: to the left (1), to
+    the right (-1), or both (0).
+    """
     if tail < 0:
         return 0
     one, other = _offset(nodes[tail], nodes[i], before[i]), _offset(nodes[tail], nodes[i], after[i])
@@ -97,7 +112,9 @@ def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np
 
 @allocation_free
 def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
-    """Whether a shortest path can turn at corner i on its way to or from j: the corner lies on one side of the line."""
+    """Whether a shortest path can turn at corner i on its way to or from j: the corner lies on one
+    side of the line.
+    """
     x, y = nodes[i, 0], nodes[i, 1]
     dx, dy = nodes[j, 0] - x, nodes[j, 1] - y
     length = math.hypot(dx, dy)
@@ -110,7 +127,9 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
 
 @allocation_free
 def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
-    """Whether a segment crosses an edge strictly; mere touching is left to the certified check. Edges near its beginning come first."""
+    """Whether a segment crosses an edge strictly; mere touching is left to the certified check.
+    Edges near its beginning come first.
+    """
     left, right, bottom, top = min(a[0], b[0]), max(a[0], b[0]), min(a[1], b[1]), max(a[1], b[1])
     begin, end = columns_between(left, right, bins)
     for step in range(end - begin + 1):
@@ -120,8 +139,12 @@ def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) ->
             row = low + step_y if b[1] >= a[1] else high - step_y
             place = column * bins.rows + row
             for e in bins.edges[bins.first[place] : bins.first[place + 1]]:
-                beside = max(edges[e, 0], edges[e, 2]) < left or min(edges[e, 0], edges[e, 2]) > right
-                beside |= max(edges[e, 1], edges[e, 3]) < bottom or min(edges[e, 1], edges[e, 3]) > top
+                beside = (
+                    max(edges[e, 0], edges[e, 2]) < left or min(edges[e, 0], edges[e, 2]) > right
+                )
+                beside |= (
+                    max(edges[e, 1], edges[e, 3]) < bottom or min(edges[e, 1], edges[e, 3]) > top
+                )
                 if not beside and _crosses_edge(a, b, edges[e, :2], edges[e, 2:]):
                     return True
     return False
@@ -140,7 +163,9 @@ def _apart(first: float, second: float) -> bool:
 
 @allocation_free
 def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
-    """Distance of a point from the line through a and b, positive on its left; 0 if a and b coincide."""
+    """Distance of a point from the line through a and b, positive on its left; 0 if a and b
+    coincide.
+    """
     length = math.hypot(b[0] - a[0], b[1] - a[1])
     if length == 0.0:
         return 0.0

@@ -1,9 +1,11 @@
-"""Shortest paths on large grids: the corners that a node sees are found by casting shadows, and only when a search reaches the node.
+"""Shortest paths on large grids: the corners that a node sees are found by casting shadows, and
+only when a search reaches the node.
 
-A graph of all pairs would need memory for each of them. Here a node looks up and down, row of cells by row of cells. It keeps the intervals
-of directions in which nothing has been in the way yet; each block of occupied cells in a row takes an open interval out of them, so what
-remains is closed, down to single rays that touch corners on both sides. A direction is its slope, steps in x for each step in y: a fraction
-of two whole numbers, so all comparisons are exact.
+A graph of all pairs would need memory for each of them. Here a node looks up and down, row of cells
+by row of cells. It keeps the intervals of directions in which nothing has been in the way yet; each
+block of occupied cells in a row takes an open interval out of them, so what remains is closed, down
+to single rays that touch corners on both sides. A direction is its slope, steps in x for each step
+in y: a fraction of two whole numbers, so all comparisons are exact.
 """
 
 import heapq
@@ -19,11 +21,13 @@ from bezierplan.kernels import allocation_free, compiled
 class Scene(NamedTuple):
     """What there is to see. Whole numbers: `scale` stands for one cell.
 
-    cells: bool (rows + 2, columns + 2), occupied cells with a ring around them. first_run: (rows + 3,) where the runs of occupied cells
-    of each row of `cells` begin in `runs`. runs: (r, 2) grid lines at which a run begins and ends, in cells. corners: (n, 2) x and y in
-    cells, row by row, each from left to right. first_corner: (rows + 2,) where those of each horizontal grid line begin. slopes: (n,) signs
-    of dx dy of the directions that a shortest path can take from a corner. sides: (n,) whether the occupied cell beside a corner lies above
-    it (1) or below it (-1); 0 at a contact, which has both.
+    cells: bool (rows + 2, columns + 2), occupied cells with a ring around them. first_run: (rows +
+    3,) where the runs of occupied cells of each row of `cells` begin in `runs`. runs: (r, 2) grid
+    lines at which a run begins and ends, in cells. corners: (n, 2) x and y in cells, row by row,
+    each from left to right. first_corner: (rows + 2,) where those of each horizontal grid line
+    begin. slopes: (n,) signs of dx dy of the directions that a shortest path can take from a
+    corner. sides: (n,) whether the occupied cell beside a corner lies above it (1) or below it
+    (-1); 0 at a contact, which has both.
     """
 
     cells: np.ndarray
@@ -39,7 +43,9 @@ class Scene(NamedTuple):
 def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
     """The scene of occupied cells with a ring around them and corners as `grid` finds them."""
     around = np.pad(cells, ((0, 0), (1, 1)))
-    row, column = np.nonzero(around[:, 1:] != around[:, :-1])  # where a run begins and ends, in turn
+    row, column = np.nonzero(
+        around[:, 1:] != around[:, :-1]
+    )  # where a run begins and ends, in turn
     row, runs = row[::2], np.column_stack([column[::2], column[1::2]]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
     first_corner = np.searchsorted(corners[:, 1], np.arange(len(cells)))
@@ -53,10 +59,11 @@ def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int
 
 @compiled
 def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> np.ndarray:
-    """The nodes of a shortest path from start to target by the algorithm A*, empty if there is no path. Node 0 is the start, node 1 the
-    target, then come the corners.
+    """The nodes of a shortest path from start to target by the algorithm A*, empty if there is no
+    path. Node 0 is the start, node 1 the target, then come the corners.
 
-    ends: (2, 2) start and target in whole numbers. points: (n + 2, 2) all nodes in cells. direct: whether start and target see each other.
+    ends: (2, 2) start and target in whole numbers. points: (n + 2, 2) all nodes in cells. direct:
+    whether start and target see each other.
     """
     ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
     at = np.concatenate((ends, scene.corners * scene.scale))
@@ -79,12 +86,18 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
         settled[i] = True
         if i == 1:
             return way_back(came_by, length[1])
-        count = _look(at[i], at[i] - at[came_by[i]], i - 2, scene, fans, seen) if i else _look_around(at[0], scene, fans, seen)
+        count = (
+            _look(at[i], at[i] - at[came_by[i]], i - 2, scene, fans, seen)
+            if i
+            else _look_around(at[0], scene, fans, seen)
+        )
         for k in range(-1, count):
             if k < 0 and not sees_target[i]:
                 continue
             j = 1 if k < 0 else seen[k] + 2
-            so_far = length[i] + math.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
+            so_far = length[i] + math.sqrt(
+                (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
+            )
             if so_far < length[j]:
                 length[j] = so_far
                 came_by[j] = i
@@ -94,7 +107,8 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
 
 @allocation_free
 def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
-    """The corners that a point sees and a shortest path can pass in that direction: their number, and themselves in `seen`.
+    """The corners that a point sees and a shortest path can pass in that direction: their number,
+    and themselves in `seen`.
 
     fans: (2, columns + 3, 4) room for intervals.
     """
@@ -106,11 +120,18 @@ def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, seen: np.nda
 
 
 @allocation_free
-def _look(point: np.ndarray, came: np.ndarray, corner: int, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
+def _look(
+    point: np.ndarray,
+    came: np.ndarray,
+    corner: int,
+    scene: Scene,
+    fans: np.ndarray,
+    seen: np.ndarray,
+) -> int:
     """As `_look_around`, from a corner that a path has come to along a vector.
 
-    It goes on in the same quadrant, or it would have been shorter past the corner; and it turns towards the occupied cell beside the corner
-    or not at all. At a contact it can turn both ways.
+    It goes on in the same quadrant, or it would have been shorter past the corner; and it turns
+    towards the occupied cell beside the corner or not at all. At a contact it can turn both ways.
     """
     x, y = point
     right, up = abs(came[0]), abs(came[1])
@@ -131,7 +152,8 @@ def _look(point: np.ndarray, came: np.ndarray, corner: int, scene: Scene, fans: 
 
 @allocation_free
 def _look_along(x: int, y: int, to: int, scene: Scene, seen: np.ndarray) -> int:
-    """The corners that a point sees along its horizontal grid line, if it lies on one: to the right (1), to the left (-1), or both (0).
+    """The corners that a point sees along its horizontal grid line, if it lies on one: to the right
+    (1), to the left (-1), or both (0).
 
     An edge ends the view if both of its cells are occupied.
     """
@@ -148,9 +170,11 @@ def _look_along(x: int, y: int, to: int, scene: Scene, seen: np.ndarray) -> int:
 
 @allocation_free
 def _look_across(x, y, side, cone, scene, fans, seen, count):
-    """Add to `seen` the corners within a cone above a point (side 1) or below it (-1), and return how many there are now.
+    """Add to `seen` the corners within a cone above a point (side 1) or below it (-1), and return
+    how many there are now.
 
-    cone: its lowest and its highest slope, each by numerator and denominator, which may be 0; so are the intervals.
+    cone: its lowest and its highest slope, each by numerator and denominator, which may be 0; so
+    are the intervals.
     """
     band = y // scene.scale if side > 0 else -(-y // scene.scale) - 1
     far = (band + 1) * scene.scale - y if side > 0 else y - band * scene.scale
@@ -182,7 +206,8 @@ def _look_across(x, y, side, cone, scene, fans, seen, count):
 
 @allocation_free
 def _cast_shadows(x, band, near, fan, intervals, scene, following):
-    """Take what a row of cells hides out of the intervals; write what remains and return how many intervals that is.
+    """Take what a row of cells hides out of the intervals; write what remains and return how many
+    intervals that is.
 
     near: distance of the line before the row, in y, above 0.
     """
@@ -215,7 +240,9 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 @allocation_free
 def _first_run_beyond(column: int, band: int, scene: Scene) -> int:
-    """The first run of a row that ends to the right of a grid line. The ring around the cells ends every row with one."""
+    """The first run of a row that ends to the right of a grid line. The ring around the cells ends
+    every row with one.
+    """
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:
         middle = (low + high) // 2
@@ -228,7 +255,9 @@ def _first_run_beyond(column: int, band: int, scene: Scene) -> int:
 
 @allocation_free
 def _gather(left, right, line, x, side, scene, seen, count):
-    """Add to `seen` the corners on a horizontal grid line between two vertical ones that a shortest path from x can pass; their number."""
+    """Add to `seen` the corners on a horizontal grid line between two vertical ones that a shortest
+    path from x can pass; their number.
+    """
     corner, end = scene.first_corner[line], scene.first_corner[line + 1]
     high = end
     while corner < high:

@@ -1,7 +1,8 @@
 """Operators on paths over a lattice of cells, and a genetic algorithm that uses them.
 
-A path is an array (n,) of cell numbers, each a neighbour of the one before on a lattice (`workspaces.lattice.Lattice`). `marks` is scratch
-(cells,) of integers: all 0 before and after each operator.
+A path is an array (n,) of cell numbers, each a neighbour of the one before on a lattice
+(`workspaces.lattice.Lattice`). `marks` is scratch (cells,) of integers: all 0 before and after each
+operator.
 """
 
 from typing import NamedTuple
@@ -18,10 +19,11 @@ ONE_CELL, RECONNECT, WALK = range(3)
 class Rules(NamedTuple):
     """Settings of `evolve`.
 
-    crossover_probability: of a pair of parents. shorter_parts: whether the first child gets the shorter head and the shorter tail and the
-    second is parent 2; otherwise tails are swapped. mutation_probability: of a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part:
-    maximum number of cells in a part made by the last two; tries: see `forage`. cut_loops: whether children lose their loops. elitism:
-    whether the best so far replaces a child.
+    crossover_probability: of a pair of parents. shorter_parts: whether the first child gets the
+    shorter head and the shorter tail and the second is parent 2; otherwise tails are swapped.
+    mutation_probability: of a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: maximum
+    number of cells in a part made by the last two; tries: see `forage`. cut_loops: whether children
+    lose their loops. elitism: whether the best so far replaces a child.
     """
 
     crossover_probability: float
@@ -36,13 +38,18 @@ class Rules(NamedTuple):
 
 @compiled
 def evolve(rng, lattice, paths, sizes, generations, rules):
-    """The shortest path (n,) found by a genetic algorithm from some paths, and the shortest length so far (generations + 1,).
+    """The shortest path (n,) found by a genetic algorithm from some paths, and the shortest length
+    so far (generations + 1,).
 
-    paths: (population, longest path) with sizes: (population,); overwritten. A child that would not fit stays a copy of its parent.
+    paths: (population, longest path) with sizes: (population,); overwritten. A child that would not
+    fit stays a copy of its parent.
     """
     population, longest = paths.shape
     parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
-    child, part = np.empty(longest + max(longest, rules.longest_part), dtype=np.int64), np.empty(rules.longest_part, dtype=np.int64)
+    child, part = (
+        np.empty(longest + max(longest, rules.longest_part), dtype=np.int64),
+        np.empty(rules.longest_part, dtype=np.int64),
+    )
     marks = np.zeros(len(lattice.row), dtype=np.int64)
     lengths = np.empty(population)
     best, best_size, best_length = paths[0].copy(), sizes[0], np.inf
@@ -64,17 +71,30 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
             sizes[i] = put(parents[drawn[i], : parent_sizes[drawn[i]]], paths[i], 0)
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
-                father, mother = parents[drawn[i], : parent_sizes[drawn[i]]], parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]]
+                father, mother = (
+                    parents[drawn[i], : parent_sizes[drawn[i]]],
+                    parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]],
+                )
                 k, m = common_cell(rng, father, mother, marks)
                 if k == 0:
                     continue
                 if rules.shorter_parts:
-                    head = father[: k + 1] if length(father[: k + 1], lattice) <= length(mother[: m + 1], lattice) else mother[: m + 1]
-                    tail = father[k:] if length(father[k:], lattice) <= length(mother[m:], lattice) else mother[m:]
+                    head = (
+                        father[: k + 1]
+                        if length(father[: k + 1], lattice) <= length(mother[: m + 1], lattice)
+                        else mother[: m + 1]
+                    )
+                    tail = (
+                        father[k:]
+                        if length(father[k:], lattice) <= length(mother[m:], lattice)
+                        else mother[m:]
+                    )
                     size = put(tail, child, put(head[:-1], child, 0))
                 else:
                     size = put(father[k:], child, put(mother[:m], child, 0))
-                    sizes[i + 1] = _replace(paths[i + 1], sizes[i + 1], child[:size], rules.cut_loops, marks)
+                    sizes[i + 1] = _replace(
+                        paths[i + 1], sizes[i + 1], child[:size], rules.cut_loops, marks
+                    )
                     size = put(mother[m:], child, put(father[:k], child, 0))
                 sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
         for i in range(population):
@@ -97,7 +117,9 @@ def put(part, path, size):
 
 @allocation_free
 def _replace(path, size, child, cut, marks):
-    """Replace a path of the given size by a child if it fits, with its loops removed if `cut` says so. Returns the new size."""
+    """Replace a path of the given size by a child if it fits, with its loops removed if `cut` says
+    so. Returns the new size.
+    """
     child_size = cut_loops(child, marks) if cut else len(child)
     if child_size > len(path):
         return size
@@ -124,13 +146,15 @@ def _mutant(rng, lattice, path, rules, child, part, marks):
 
 @allocation_free
 def length(path, lattice):
-    """Length in cells, including the way from the start and to the target; equal numbers of steps give equal lengths, whatever their
-    order.
+    """Length in cells, including the way from the start and to the target; equal numbers of steps
+    give equal lengths, whatever their order.
     """
     diagonal = 0
     for k in range(1, len(path)):
         one, other = path[k - 1], path[k]
-        diagonal += lattice.row[one] != lattice.row[other] and lattice.column[one] != lattice.column[other]
+        diagonal += (
+            lattice.row[one] != lattice.row[other] and lattice.column[one] != lattice.column[other]
+        )
     return len(path) - 1 - diagonal + diagonal * lattice.diagonal + lattice.ends
 
 
@@ -145,11 +169,13 @@ def step_between(lattice, one, other):
 
 @allocation_free
 def join(lattice, cells, path, marks):
-    """Join cells (n,) to a path by inserting midpoints. Returns its size, 0 if they cannot be joined within len(path) cells.
+    """Join cells (n,) to a path by inserting midpoints. Returns its size, 0 if they cannot be
+    joined within len(path) cells.
 
-    Starting with the first pair, the middle cell, with row and column rounded down, is inserted between two cells that are not neighbours.
-    If it is occupied or equal to one of the two, the first free cell around it, in the order of `workspaces.lattice.STEPS`, that is not yet
-    in the list is used instead. Consecutive equal cells are merged.
+    Starting with the first pair, the middle cell, with row and column rounded down, is inserted
+    between two cells that are not neighbours. If it is occupied or equal to one of the two, the
+    first free cell around it, in the order of `workspaces.lattice.STEPS`, that is not yet in the
+    list is used instead. Consecutive equal cells are merged.
     """
     if len(cells) > len(path):
         return 0
@@ -185,7 +211,10 @@ def _between(lattice, start, end, marks):
     """The cell that `join` inserts between two cells, -1 if there is none."""
     # Cells are numbered row by row, so the last one gives the number of columns.
     columns = lattice.column[-1] + 1
-    row, column = (lattice.row[start] + lattice.row[end]) // 2, (lattice.column[start] + lattice.column[end]) // 2
+    row, column = (
+        (lattice.row[start] + lattice.row[end]) // 2,
+        (lattice.column[start] + lattice.column[end]) // 2,
+    )
     middle = columns * row + column
     if not lattice.occupied[middle] and middle != start and middle != end:
         return middle
@@ -197,8 +226,8 @@ def _between(lattice, start, end, marks):
 
 @allocation_free
 def common_cell(rng, first, second, marks):
-    """Indices, in two paths, of a random inner cell of the first that is also an inner cell of the other; in the other, its last
-    occurrence.
+    """Indices, in two paths, of a random inner cell of the first that is also an inner cell of the
+    other; in the other, its last occurrence.
 
     (0, 0) if there is none.
     """
@@ -221,7 +250,9 @@ def common_cell(rng, first, second, marks):
 
 @allocation_free
 def cut_loops(path, marks):
-    """Remove, in place, whatever lies between two visits to a cell, starting with the first revisit. Returns the new size."""
+    """Remove, in place, whatever lies between two visits to a cell, starting with the first
+    revisit. Returns the new size.
+    """
     size = 0
     for cell in path:
         if marks[cell]:
@@ -239,8 +270,9 @@ def cut_loops(path, marks):
 
 @allocation_free
 def change_cell(rng, lattice, path, child):
-    """Replace a random inner cell by another random cell that neighbours both adjacent cells of the path; if there is none and these two
-    are neighbours, drop it. Returns the child's size, or 0 if nothing changed, as always for paths of fewer than 4 cells.
+    """Replace a random inner cell by another random cell that neighbours both adjacent cells of the
+    path; if there is none and these two are neighbours, drop it. Returns the child's size, or 0 if
+    nothing changed, as always for paths of fewer than 4 cells.
     """
     if len(path) < 4:
         return 0
@@ -262,10 +294,13 @@ def change_cell(rng, lattice, path, child):
 
 @compiled
 def reconnect(rng, lattice, first, last, part, marks):
-    """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if that cell is occupied or out of
-    reach.
+    """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if
+    that cell is occupied or out of reach.
     """
-    rows, columns = (lattice.row[first], lattice.row[last]), (lattice.column[first], lattice.column[last])
+    rows, columns = (
+        (lattice.row[first], lattice.row[last]),
+        (lattice.column[first], lattice.column[last]),
+    )
     row = integer(rng, min(rows), max(rows) + 1)
     cell = row * (lattice.column[-1] + 1) + integer(rng, min(columns), max(columns) + 1)
     if lattice.occupied[cell]:
@@ -275,7 +310,9 @@ def reconnect(rng, lattice, first, last, part, marks):
 
 @allocation_free
 def walk(rng, lattice, first, last, tries, part, marks):
-    """Forage from one cell until another is reached. Returns the part's size, or 0 if the walk ends early or would exceed the part."""
+    """Forage from one cell until another is reached. Returns the part's size, or 0 if the walk ends
+    early or would exceed the part.
+    """
     part[0] = first
     marks[first] = 1
     size = 1
@@ -293,9 +330,11 @@ def walk(rng, lattice, first, last, tries, part, marks):
 
 @allocation_free
 def forage(rng, lattice, cell, target, tries, visited):
-    """A fish's next cell when it looks for prey (ma2020, reference 31), -1 if all neighbours are visited.
+    """A fish's next cell when it looks for prey (ma2020, reference 31), -1 if all neighbours are
+    visited.
 
-    The first of `tries` random neighbours that is unvisited and nearer to the target, otherwise a random unvisited neighbour.
+    The first of `tries` random neighbours that is unvisited and nearer to the target, otherwise a
+    random unvisited neighbour.
     """
     neighbours = lattice.neighbours[cell]
     present = unvisited = 0
@@ -324,4 +363,6 @@ def forage(rng, lattice, cell, target, tries, visited):
 @allocation_free
 def distance_square(lattice, one, other):
     """Square of the distance between the centres of two cells, an integer."""
-    return (lattice.row[one] - lattice.row[other]) ** 2 + (lattice.column[one] - lattice.column[other]) ** 2
+    return (lattice.row[one] - lattice.row[other]) ** 2 + (
+        lattice.column[one] - lattice.column[other]
+    ) ** 2

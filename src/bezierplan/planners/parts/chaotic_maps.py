@@ -1,8 +1,10 @@
-"""One-dimensional chaotic maps: sequences of numbers in [0, 1] used instead of random ones (tharwat2018, Section 3.3, eqs. 9 to 16).
+"""One-dimensional chaotic maps: sequences of numbers in [0, 1] used instead of random ones
+(tharwat2018, Section 3.3, eqs. 9 to 16).
 
-Three formulas are misprinted. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x - floor(1/x), which is `gauss`; the
-printed form is `gauss_printed`, whose values exceed 1. In eq. 12 "mod 1" applies to the whole right-hand side. Eq. 14 requires a below 4,
-where the usual sine map has a = 4. `constant` is a baseline: it stays where it starts.
+Three formulas are misprinted. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x -
+floor(1/x), which is `gauss`; the printed form is `gauss_printed`, whose values exceed 1. In eq. 12
+"mod 1" applies to the whole right-hand side. Eq. 14 requires a below 4, where the usual sine map
+has a = 4. `constant` is a baseline: it stays where it starts.
 """
 
 import math
@@ -13,7 +15,11 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 
-Map = IntEnum("Map", "gauss singer tent circle logistic sine piecewise sinusoidal gauss_printed constant", start=0)
+Map = IntEnum(
+    "Map",
+    "gauss singer tent circle logistic sine piecewise sinusoidal gauss_printed constant",
+    start=0,
+)
 MAPS = tuple(Map.__members__)
 
 # tharwat2018: eq. 11, the two constants of eq. 12, and the text below eq. 13.
@@ -27,7 +33,8 @@ STANDSTILL = 1e-12
 # Smaller numbers have no finite reciprocal; they count as 0.
 _LEAST = 1e-300
 
-# A random start must keep its sequence alive for the first number of steps; the second is the number of starts tried.
+# A random start must keep its sequence alive for the first number of steps; the second is the
+# number of starts tried.
 _TRIAL_STEPS = 60
 _MOST_STARTS = 1000
 
@@ -35,8 +42,9 @@ _MOST_STARTS = 1000
 class Parameters(NamedTuple):
     """Parameters of maps that the paper leaves open.
 
-    singer_mu: mu of eq. 10, between 0.9 and 1.08. singer_x4: its coefficient of x^4, printed as 13.3, usually 13.302875.
-    sine_a: a of eq. 14. piecewise_p: P of eq. 15, between 0 and 0.5. sinusoidal_a: a of eq. 16.
+    singer_mu: mu of eq. 10, between 0.9 and 1.08. singer_x4: its coefficient of x^4, printed as
+    13.3, usually 13.302875. sine_a: a of eq. 14. piecewise_p: P of eq. 15, between 0 and 0.5.
+    sinusoidal_a: a of eq. 16.
     """
 
     singer_mu: float
@@ -47,7 +55,9 @@ class Parameters(NamedTuple):
 
 
 class Sequence(NamedTuple):
-    """Values (length,) of a map, how many were clipped to [0, 1], and the index (from 1) at which the sequence collapsed, or 0."""
+    """Values (length,) of a map, how many were clipped to [0, 1], and the index (from 1) at which
+    the sequence collapsed, or 0.
+    """
 
     values: np.ndarray
     clipped: int
@@ -57,9 +67,9 @@ class Sequence(NamedTuple):
 def sequence(name: str, start: float, length: int, parameters: Parameters) -> Sequence:
     """A map's values from a start in [0, 1], which is the first of them.
 
-    Values that leave [0, 1] are clipped, and the sequence continues from there; those of `gauss_printed` are left as they are. A sequence
-    has collapsed at the point from which it stands still until its end. Raises ValueError for an unknown map and for a start outside [0,
-    1].
+    Values that leave [0, 1] are clipped, and the sequence continues from there; those of
+    `gauss_printed` are left as they are. A sequence has collapsed at the point from which it stands
+    still until its end. Raises ValueError for an unknown map and for a start outside [0, 1].
     """
     if not 0 <= start <= 1:
         raise ValueError(f"start: {start}; a chaotic sequence starts from 0 to 1")
@@ -67,7 +77,8 @@ def sequence(name: str, start: float, length: int, parameters: Parameters) -> Se
 
 
 def random_start(rng: np.random.Generator, name: str, parameters: Parameters) -> float:
-    """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it dies at 0 or at a fixed point.
+    """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it
+    dies at 0 or at a fixed point.
 
     Raises ValueError for an unknown map and if no start stays alive.
     """
@@ -76,7 +87,9 @@ def random_start(rng: np.random.Generator, name: str, parameters: Parameters) ->
         start = rng.random()
         if _lives(number, start, parameters):
             return start
-    raise ValueError(f"chaotic map {name}: none of {_MOST_STARTS} random starts lives with {parameters}")
+    raise ValueError(
+        f"chaotic map {name}: none of {_MOST_STARTS} random starts lives with {parameters}"
+    )
 
 
 def _number(name: str) -> int:
@@ -108,7 +121,9 @@ def _sequence(number, start, length, parameters):
 
 @allocation_free
 def _lives(number, start, parameters):
-    """Whether a sequence without clipping is neither at (or below) 0 nor at a fixed point after a number of steps."""
+    """Whether a sequence without clipping is neither at (or below) 0 nor at a fixed point after a
+    number of steps.
+    """
     before = x = start
     for _ in range(_TRIAL_STEPS):
         before, x = x, _next(number, x, parameters)
@@ -121,7 +136,11 @@ def _next(number, x, parameters):
     if number == Map.gauss:
         return _fraction(1.0 / x) if x > _LEAST else 0.0
     if number == Map.singer:
-        return parameters.singer_mu * x * (7.86 + x * (-23.31 + x * (28.75 - parameters.singer_x4 * x)))
+        return (
+            parameters.singer_mu
+            * x
+            * (7.86 + x * (-23.31 + x * (28.75 - parameters.singer_x4 * x)))
+        )
     if number == Map.tent:
         return x / TENT_PEAK if x < TENT_PEAK else 10.0 / 3.0 * (1.0 - x)
     if number == Map.circle:

@@ -7,9 +7,11 @@ from bezierplan.kernels import allocation_free
 
 @allocation_free
 def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> float:
-    """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in neither, and in only one of two chromosomes.
+    """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in
+    neither, and in only one of two chromosomes.
 
-    The paper does not define Q when its denominator is 0: here it is 1 for equal chromosomes, otherwise 0.
+    The paper does not define Q when its denominator is 0: here it is 1 for equal chromosomes,
+    otherwise 0.
     """
     agree, differ = float(both * neither), float(only_one * only_other)
     if agree + differ == 0.0:

@@ -1,8 +1,10 @@
-"""Dubins paths (L. E. Dubins, American Journal of Mathematics 79, 1957): the shortest paths between two poses that turn no tighter than a
-radius. They consist of at most three parts, arcs of that radius and straight lines; a word says which. Here either heading may be free.
+"""Dubins paths (L. E. Dubins, American Journal of Mathematics 79, 1957): the shortest paths between
+two poses that turn no tighter than a radius. They consist of at most three parts, arcs of that
+radius and straight lines; a word says which. Here either heading may be free.
 
-A pose is (3,): x, y, and the heading in radians, nan where it is free. A word is (8,): the turn of each part, 1 to the left, 0 straight, -1
-to the right, followed by its length; the heading at the beginning; and the length of all.
+A pose is (3,): x, y, and the heading in radians, nan where it is free. A word is (8,): the turn of
+each part, 1 to the left, 0 straight, -1 to the right, followed by its length; the heading at the
+beginning; and the length of all.
 """
 
 import math
@@ -23,7 +25,8 @@ CURVATURE_EXCESS = 1e-4
 MOST_PIECES = 3 * 16 + 1
 """Most pieces of a word: three full circles."""
 
-# Parts of a word that are shorter than this, as a share of the radius, are left out; the last piece makes up for it.
+# Parts of a word that are shorter than this, as a share of the radius, are left out; the last piece
+# makes up for it.
 _NO_PART = 1e-7
 
 
@@ -45,7 +48,9 @@ def _put(words, k, first, turn, t, middle, p, last, q, radius):
 
 @allocation_free
 def words_between(a: np.ndarray, b: np.ndarray, radius: float, words: np.ndarray) -> None:
-    """Fill in the words (6, 8) from a pose to another; those that do not exist have an infinite length."""
+    """Fill in the words (6, 8) from a pose to another; those that do not exist have an infinite
+    length.
+    """
     for k in range(WORDS):
         words[k, 7] = np.inf
     x, y = b[0] - a[0], b[1] - a[1]
@@ -71,8 +76,9 @@ def words_between(a: np.ndarray, b: np.ndarray, radius: float, words: np.ndarray
 
 @allocation_free
 def _arc_and_line(bearing: float, d: float) -> tuple[float, float]:
-    """Angle of an arc to the left and length of the line from its end to a point, from a pose at the origin along the x-axis; the length is
-    infinite for a point within the circle. bearing, d: direction and distance of the point. Radii are 1.
+    """Angle of an arc to the left and length of the line from its end to a point, from a pose at
+    the origin along the x-axis; the length is infinite for a point within the circle. bearing, d:
+    direction and distance of the point. Radii are 1.
     """
     x, y = d * math.cos(bearing), d * math.sin(bearing) - 1.0  # from the circle's centre
     square = x * x + y * y - 1.0
@@ -84,13 +90,23 @@ def _arc_and_line(bearing: float, d: float) -> tuple[float, float]:
 
 @allocation_free
 def _between_headings(first, alpha, beta, d, radius, words):
-    """The six words between two headings, relative to the bearing, at a distance in radii (Shkel and Lumelsky 2001)."""
-    sa, ca, sb, cb, cab = math.sin(alpha), math.cos(alpha), math.sin(beta), math.cos(beta), math.cos(alpha - beta)
+    """The six words between two headings, relative to the bearing, at a distance in radii (Shkel
+    and Lumelsky 2001).
+    """
+    sa, ca, sb, cb, cab = (
+        math.sin(alpha),
+        math.cos(alpha),
+        math.sin(beta),
+        math.cos(beta),
+        math.cos(alpha - beta),
+    )
     for k in range(2):  # both arcs to the same side: LSL, RSR
         turn = 1.0 - 2.0 * k
         east, north = d + turn * (sa - sb), turn * (cb - ca)
         p = math.hypot(east, north)
-        bearing = math.atan2(north, east) if p > _NO_PART else alpha  # one circle: no line, and no bearing of it
+        bearing = (
+            math.atan2(north, east) if p > _NO_PART else alpha
+        )  # one circle: no line, and no bearing of it
         t, q = _angle(turn * (bearing - alpha)), _angle(turn * (beta - bearing))
         _put(words, k, first, turn, t, 0.0, p, turn, q, radius)
     for k in range(2):  # to different sides: LSR, RSL
@@ -98,7 +114,9 @@ def _between_headings(first, alpha, beta, d, radius, words):
         square = d * d - 2.0 + 2.0 * cab + 2.0 * turn * d * (sa + sb)
         if square >= -_NO_PART:
             p = math.sqrt(max(square, 0.0))
-            bearing = math.atan2(-turn * (ca + cb), d + turn * (sa + sb)) + turn * math.atan2(2.0, p)
+            bearing = math.atan2(-turn * (ca + cb), d + turn * (sa + sb)) + turn * math.atan2(
+                2.0, p
+            )
             t, q = _angle(turn * (bearing - alpha)), _angle(turn * (bearing - beta))
             _put(words, 2 + k, first, turn, t, 0.0, p, -turn, q, radius)
     for k in range(2):  # three arcs: RLR, LRL
@@ -106,14 +124,20 @@ def _between_headings(first, alpha, beta, d, radius, words):
         share = (6.0 - d * d + 2.0 * cab - 2.0 * turn * d * (sa - sb)) / 8.0
         if abs(share) <= 1.0:
             p = math.tau - math.acos(share)
-            t = _angle(turn * (math.atan2(turn * (cb - ca), d + turn * (sa - sb)) - alpha) + 0.5 * p)
+            t = _angle(
+                turn * (math.atan2(turn * (cb - ca), d + turn * (sa - sb)) - alpha) + 0.5 * p
+            )
             q = _angle(turn * (beta - alpha) - t + p)
             _put(words, 4 + k, first, turn, t, -turn, p, turn, q, radius)
 
 
 @allocation_free
-def pieces_of(a: np.ndarray, b: np.ndarray, word: np.ndarray, radius: float, pieces: np.ndarray) -> int:
-    """Write the cubic pieces (n, 4, 2) of a word from a pose to another, and return how many; the last one ends exactly there."""
+def pieces_of(
+    a: np.ndarray, b: np.ndarray, word: np.ndarray, radius: float, pieces: np.ndarray
+) -> int:
+    """Write the cubic pieces (n, 4, 2) of a word from a pose to another, and return how many; the
+    last one ends exactly there.
+    """
     x, y, heading = a[0], a[1], word[6]
     count, handle = 0, 0.0
     for part in range(3):
@@ -135,15 +159,24 @@ def pieces_of(a: np.ndarray, b: np.ndarray, word: np.ndarray, radius: float, pie
                 heading += angle
                 x += turn * radius * (math.sin(heading) - across)
                 y += turn * radius * (along - math.cos(heading))
-            pieces[count, 2, 0], pieces[count, 2, 1] = x - handle * math.cos(heading), y - handle * math.sin(heading)
+            pieces[count, 2, 0], pieces[count, 2, 1] = (
+                x - handle * math.cos(heading),
+                y - handle * math.sin(heading),
+            )
             pieces[count, 3, 0], pieces[count, 3, 1] = x, y
             count += 1
     if count == 0:
         for k in range(4):
-            pieces[0, k, 0], pieces[0, k, 1] = a[0] + k / 3.0 * (b[0] - a[0]), a[1] + k / 3.0 * (b[1] - a[1])
+            pieces[0, k, 0], pieces[0, k, 1] = (
+                a[0] + k / 3.0 * (b[0] - a[0]),
+                a[1] + k / 3.0 * (b[1] - a[1]),
+            )
         return 1
     if not math.isnan(b[2]):
         heading = b[2]
-    pieces[count - 1, 2, 0], pieces[count - 1, 2, 1] = b[0] - handle * math.cos(heading), b[1] - handle * math.sin(heading)
+    pieces[count - 1, 2, 0], pieces[count - 1, 2, 1] = (
+        b[0] - handle * math.cos(heading),
+        b[1] - handle * math.sin(heading),
+    )
     pieces[count - 1, 3, 0], pieces[count - 1, 3, 1] = b[0], b[1]
     return count

@@ -1,4 +1,6 @@
-"""The curve of a chromosome of control points: whether it is valid, and how long it is (elhoseny2017, equation 6 and Section 3.2.2)."""
+"""The curve of a chromosome of control points: whether it is valid, and how long it is
+(elhoseny2017, equation 6 and Section 3.2.2).
+"""
 
 import math
 from enum import IntEnum
@@ -6,14 +8,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.cell_length import cells4, cells8, occupied_cells, parts, sum_of_steps, write_samples, write_touched_cells
+from bezierplan.geometry.cell_length import (
+    cells4,
+    cells8,
+    occupied_cells,
+    parts,
+    sum_of_steps,
+    write_samples,
+    write_touched_cells,
+)
 from bezierplan.kernels import allocation_free
 from bezierplan.planners.parts.gene_lattice import Field, write_polygon
 
 # More control points make a chromosome invalid: the curve's degree is at most 60.
 MOST_POINTS = 59
 
-# Equal parts of a curve, and fewest of a piece of it, whose ends are examined first: most collisions show up there.
+# Equal parts of a curve, and fewest of a piece of it, whose ends are examined first: most
+# collisions show up there.
 _FIRST_PARTS = 30
 _FEWEST_PARTS = 4
 _ON_LINE = 1e-9
@@ -30,8 +41,9 @@ _FREE, _OCCUPIED, _UNKNOWN = range(3)
 class Scratch(NamedTuple):
     """Room for a chromosome's curve, overwritten by each `validate`.
 
-    order: (points,) its genes. points: (points, 2) its polygon. piece: (3, 2) one of its quadratic pieces. x, y: (samples,). t, power:
-    (samples,) of `write_samples`. columns, rows: (2 samples,) the cells that it touches; before that, columns: the reach of some samples.
+    order: (points,) its genes. points: (points, 2) its polygon. piece: (3, 2) one of its quadratic
+    pieces. x, y: (samples,). t, power: (samples,) of `write_samples`. columns, rows: (2 samples,)
+    the cells that it touches; before that, columns: the reach of some samples.
     """
 
     order: np.ndarray
@@ -47,20 +59,34 @@ class Scratch(NamedTuple):
 
 def scratch_for(field: Field) -> Scratch:
     """Room for any curve on a field."""
-    # `parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer than the diagonal, and 3 more for each piece;
-    # before them the samples of the first look.
-    samples = math.ceil(2.04 * (MOST_POINTS + 1) * math.hypot(*field.occupied.shape)) + 4 * (MOST_POINTS + 1) + 2 * (_FIRST_PARTS + 1)
+    # `parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer than
+    # the diagonal, and 3 more for each piece; before them the samples of the first look.
+    samples = (
+        math.ceil(2.04 * (MOST_POINTS + 1) * math.hypot(*field.occupied.shape))
+        + 4 * (MOST_POINTS + 1)
+        + 2 * (_FIRST_PARTS + 1)
+    )
     numbers, cells = np.empty((4, samples)), np.empty((2, 2 * samples), dtype=np.int64)
-    return Scratch(np.empty(MOST_POINTS, dtype=np.int64), np.empty((MOST_POINTS + 2, 2)), np.empty((3, 2)), *numbers, *cells)
+    return Scratch(
+        np.empty(MOST_POINTS, dtype=np.int64),
+        np.empty((MOST_POINTS + 2, 2)),
+        np.empty((3, 2)),
+        *numbers,
+        *cells,
+    )
 
 
 @allocation_free
-def validate(ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, scratch: Scratch) -> tuple[float, bool]:
-    """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome, infinite if it is to be deleted, and
-    whether its curve is collision-free. `Obstacles` needs no test, as genes of occupied cells are never set. rules:
-    `modified_genetic.Settings`. scratch: `scratch_for` the field.
+def validate(
+    ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, scratch: Scratch
+) -> tuple[float, bool]:
+    """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome,
+    infinite if it is to be deleted, and whether its curve is collision-free. `Obstacles` needs no
+    test, as genes of occupied cells are never set. rules: `modified_genetic.Settings`. scratch:
+    `scratch_for` the field.
 
-    limit: nobody needs to know by how much a length exceeds it, so a cost above it may be less than the length.
+    limit: nobody needs to know by how much a length exceeds it, so a cost above it may be less than
+    the length.
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf, False
@@ -68,11 +94,16 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, sc
     for i in range(1, len(points) - 1):  # `Distance Threshold`
         for j in range(1, i):
             width, height = abs(points[i, 0] - points[j, 0]), abs(points[i, 1] - points[j, 1])
-            if max(width, height) < rules.least_distance and math.hypot(width, height) < rules.least_distance:
+            if (
+                max(width, height) < rules.least_distance
+                and math.hypot(width, height) < rules.least_distance
+            ):
                 return np.inf, False
     sight = _UNKNOWN
     if rules.invalid == Invalid.delete:
-        sight, least = _at_first_sight(points, rules.curve == CurveKind.composite, field.room, scratch)
+        sight, least = _at_first_sight(
+            points, rules.curve == CurveKind.composite, field.room, scratch
+        )
         if sight == _OCCUPIED:
             return np.inf, False
         if sight == _FREE and rules.fitness_length == FitnessLength.length and least > limit:
@@ -97,8 +128,9 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, sc
 
 @allocation_free
 def _at_first_sight(points, composite, room, scratch):
-    """What a walk over the cells of a curve would find, if a look at some of its samples tells: `_OCCUPIED` or `_FREE`, otherwise
-    `_UNKNOWN`; and a length that the polyline through its samples has at least.
+    """What a walk over the cells of a curve would find, if a look at some of its samples tells:
+    `_OCCUPIED` or `_FREE`, otherwise `_UNKNOWN`; and a length that the polyline through its samples
+    has at least.
     """
     if not composite:
         return _sight_of_piece(points, _FIRST_PARTS, room, scratch)
@@ -106,7 +138,9 @@ def _at_first_sight(points, composite, room, scratch):
     pieces = len(points) - 2
     for k in range(pieces):
         _write_piece(points, k, scratch.piece)
-        seen, chords = _sight_of_piece(scratch.piece, max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch)
+        seen, chords = _sight_of_piece(
+            scratch.piece, max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch
+        )
         if seen == _OCCUPIED:
             return _OCCUPIED, 0.0
         if seen == _UNKNOWN:
@@ -117,8 +151,9 @@ def _at_first_sight(points, composite, room, scratch):
 
 @allocation_free
 def _sight_of_piece(piece, least_parts, room, scratch):
-    """`_at_first_sight` of a piece: first of the ends of at least so many equal parts (fewer only if there are fewer samples), then of all
-    samples of those parts that come too close to obstacles to tell.
+    """`_at_first_sight` of a piece: first of the ends of at least so many equal parts (fewer only
+    if there are fewer samples), then of all samples of those parts that come too close to obstacles
+    to tell.
     """
     last = parts(piece)
     stride = max(1, last // least_parts)
@@ -139,7 +174,9 @@ def _sight_of_piece(piece, least_parts, room, scratch):
             after += 1
         if after > first:
             begin, count = first * stride, min(after * stride, last) - first * stride + 1
-            write_samples(piece, last, begin, 1, count, x[ends:], y[ends:], scratch.t, scratch.power)
+            write_samples(
+                piece, last, begin, 1, count, x[ends:], y[ends:], scratch.t, scratch.power
+            )
             seen = _sight_of_samples(x[ends : ends + count], y[ends : ends + count], room)
             if seen == _OCCUPIED:
                 return _OCCUPIED, 0.0
@@ -151,8 +188,9 @@ def _sight_of_piece(piece, least_parts, room, scratch):
 
 @allocation_free
 def _from_chords(piece, count):
-    """How far a piece, cut into `count` parts of equal length in the parameter, gets at most from points at the same parameters on their
-    chords, along x or y: an eighth of the second derivative at most, times the square of a part's length.
+    """How far a piece, cut into `count` parts of equal length in the parameter, gets at most from
+    points at the same parameters on their chords, along x or y: an eighth of the second derivative
+    at most, times the square of a part's length.
     """
     degree = len(piece) - 1
     most = 0.0
@@ -164,15 +202,18 @@ def _from_chords(piece, count):
 
 @allocation_free
 def _is_free_part(x, y, reach, i, away):
-    """Whether the free cells around both ends of a part hold all its samples: a step, which is less than a cell, lies in both."""
+    """Whether the free cells around both ends of a part hold all its samples: a step, which is less
+    than a cell, lies in both.
+    """
     between = max(abs(x[i + 1] - x[i]), abs(y[i + 1] - y[i]))
     return between + 2.0 * away + 1.0 <= reach[i] - 1 + reach[i + 1] - 1
 
 
 @allocation_free
 def _sight_of_samples(x, y, room):
-    """`_at_first_sight` of consecutive samples: `_OCCUPIED` if one is in an occupied cell; `_FREE` if the cells of all are free, as well as
-    those whose corner a step between two samples may cut. After one with free cells all around it the next ones need no look.
+    """`_at_first_sight` of consecutive samples: `_OCCUPIED` if one is in an occupied cell; `_FREE`
+    if the cells of all are free, as well as those whose corner a step between two samples may cut.
+    After one with free cells all around it the next ones need no look.
     """
     sight = _FREE
     s = 0
@@ -188,8 +229,9 @@ def _sight_of_samples(x, y, room):
 
 @allocation_free
 def _reach(x, y, room):
-    """How many samples from one on, itself included, touch free cells only, whichever way they lead: 0 if its cell is occupied, -1 if that
-    cannot be told. A sample on a grid line may count to the cell on either side.
+    """How many samples from one on, itself included, touch free cells only, whichever way they
+    lead: 0 if its cell is occupied, -1 if that cannot be told. A sample on a grid line may count to
+    the cell on either side.
     """
     rows, columns = room.shape
     # There is no cell beyond the upper and right borders, on which start and target may lie.
@@ -202,26 +244,40 @@ def _reach(x, y, room):
 
 @allocation_free
 def _may_cut(x0, y0, x, y, room):
-    """Whether the step between two samples, the second of which is within a free cell, may cut the corner of an occupied cell."""
+    """Whether the step between two samples, the second of which is within a free cell, may cut the
+    corner of an occupied cell.
+    """
     rows, columns = room.shape
     before_column, before_row = min(int(x0), columns - 1), min(int(y0), rows - 1)
     if room[before_row, before_column] > 1:
         return False
-    return _reach(x0, y0, room) < 0 or room[before_row, int(x)] == 0 or room[int(y), before_column] == 0
+    return (
+        _reach(x0, y0, room) < 0
+        or room[before_row, int(x)] == 0
+        or room[int(y), before_column] == 0
+    )
 
 
 @allocation_free
 def _write_piece(points, k, piece):
-    """Write the control points (3, 2) of a composite curve's quadratic piece k: they meet half-way between those of the curve."""
+    """Write the control points (3, 2) of a composite curve's quadratic piece k: they meet half-way
+    between those of the curve.
+    """
     for axis in range(2):
         piece[0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
         piece[1, axis] = points[k + 1, axis]
-        piece[2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < len(points) - 3 else points[-1, axis]
+        piece[2, axis] = (
+            0.5 * (points[k + 1, axis] + points[k + 2, axis])
+            if k < len(points) - 3
+            else points[-1, axis]
+        )
 
 
 @allocation_free
 def _write_curve(points, composite, scratch):
-    """Write x and y of samples of the curve (equation 2, or composite) less than a cell apart; returns their number."""
+    """Write x and y of samples of the curve (equation 2, or composite) less than a cell apart;
+    returns their number.
+    """
     if not composite:
         return _write_samples_of_piece(points, 0, scratch)
     count = 0
@@ -235,5 +291,7 @@ def _write_curve(points, composite, scratch):
 def _write_samples_of_piece(piece, place, scratch):
     """Write x and y of a piece's samples from a place on; returns their number."""
     last = parts(piece)
-    write_samples(piece, last, 0, 1, last + 1, scratch.x[place:], scratch.y[place:], scratch.t, scratch.power)
+    write_samples(
+        piece, last, 0, 1, last + 1, scratch.x[place:], scratch.y[place:], scratch.t, scratch.power
+    )
     return last + 1

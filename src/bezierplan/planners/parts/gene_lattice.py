@@ -1,4 +1,5 @@
-"""Which points of a grid can be control points, one gene each, and the polygon of those selected (elhoseny2017, Section 3).
+"""Which points of a grid can be control points, one gene each, and the polygon of those selected
+(elhoseny2017, Section 3).
 
 Coordinates and lengths are in cells from the grid's lower left corner.
 """
@@ -18,11 +19,13 @@ from bezierplan.workspaces.lattice import STEPS
 class Field(NamedTuple):
     """Where the curves lie; lengths in cells from the grid's corner.
 
-    occupied: bool (rows, columns). room: (rows, columns) steps in any of eight directions to the nearest occupied cell, 0 for an occupied
-    one; the longer side where all cells are free. points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in
-    which control points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: the number of lattice
-    points along the longer side, then how many lines of genes, and how many genes of a line, lie on the map: columns and rows, or the other
-    way round if by_rows. start, target: x and y.
+    occupied: bool (rows, columns). room: (rows, columns) steps in any of eight directions to the
+    nearest occupied cell, 0 for an occupied one; the longer side where all cells are free. points:
+    (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
+    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places:
+    the number of lattice points along the longer side, then how many lines of genes, and how many
+    genes of a line, lie on the map: columns and rows, or the other way round if by_rows. start,
+    target: x and y.
     """
 
     occupied: np.ndarray
@@ -37,8 +40,11 @@ class Field(NamedTuple):
     target: tuple[float, float]
 
 
-def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, point_order: str) -> Field:
-    """The genes of a grid and the order in which they are joined; ends: (2, 2) start and target in cells.
+def field_of(
+    grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, point_order: str
+) -> Field:
+    """The genes of a grid and the order in which they are joined; ends: (2, 2) start and target in
+    cells.
 
     Raises ValueError if no cell of the lattice is free.
     """
@@ -47,8 +53,15 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
     rows, columns = grid.occupied.shape
     longer = max(rows, columns)
     # Cell indices of 21 points along the longer side, the outer ones at its ends; or all cells.
-    steps = np.floor(np.arange(21) * (longer - 1) / 20 + 0.5).astype(int) if gene_lattice == "coarse" else np.arange(longer)
-    column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij" if gene_order == "columns" else "xy"))
+    steps = (
+        np.floor(np.arange(21) * (longer - 1) / 20 + 0.5).astype(int)
+        if gene_lattice == "coarse"
+        else np.arange(longer)
+    )
+    column, row = (
+        index.ravel()
+        for index in np.meshgrid(steps, steps, indexing="ij" if gene_order == "columns" else "xy")
+    )
     points = np.column_stack([column, row]) + 0.5
     settable = (column < columns) & (row < rows)
     settable[settable] = ~grid.occupied[row[settable], column[settable]]
@@ -56,7 +69,9 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
         settable &= (column != end[0]) | (row != end[1])
     choices = np.flatnonzero(settable)
     if not len(choices):
-        raise ValueError("gene_lattice: no free gene; every cell of the lattice is occupied, or start or target")
+        raise ValueError(
+            "gene_lattice: no free gene; every cell of the lattice is occupied, or start or target"
+        )
     rank = np.arange(len(points))
     if point_order == "projection":
         along = ends[1] - ends[0]
@@ -64,19 +79,34 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
         rank[np.lexsort((-left, (points - ends[0]) @ along))] = np.arange(len(points))
     elif point_order == "geodesic":
         far = np.full(2 * (longer,), np.inf)
-        far[:columns, :rows] = _distances(np.pad(grid.occupied, 1, constant_values=True), *np.floor(ends[0, ::-1]).astype(int), STEPS).T
+        far[:columns, :rows] = _distances(
+            np.pad(grid.occupied, 1, constant_values=True),
+            *np.floor(ends[0, ::-1]).astype(int),
+            STEPS,
+        ).T
         rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
     room = ndimage.distance_transform_cdt(~grid.occupied, "chessboard")
     room[room < 0] = longer  # there is no occupied cell
     by_rows = gene_order == "rows"
     on_map = int((steps < columns).sum()), int((steps < rows).sum())
     places = (len(steps), *(reversed(on_map) if by_rows else on_map))
-    return Field(grid.occupied, room, points, rank, settable, choices, places, by_rows, *map(tuple, ends.tolist()))
+    return Field(
+        grid.occupied,
+        room,
+        points,
+        rank,
+        settable,
+        choices,
+        places,
+        by_rows,
+        *map(tuple, ends.tolist()),
+    )
 
 
 @compiled
 def _distances(walled, row, column, steps):
-    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours, infinite where there is no path.
+    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours,
+    infinite where there is no path.
 
     walled: the cells with a frame of occupied cells around them.
     """
@@ -97,8 +127,8 @@ def _distances(walled, row, column, steps):
 
 
 def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
-    """The free genes, ascending, in whose cells some points (n, 2) lie, in cells; without those behind the start, to which a robot that has
-    passed them would drive back.
+    """The free genes, ascending, in whose cells some points (n, 2) lie, in cells; without those
+    behind the start, to which a robot that has passed them would drive back.
     """
     apart = np.abs(points[:, None] - field.points).max(axis=2, initial=0.0)
     genes = apart.argmin(axis=1)
@@ -115,7 +145,9 @@ def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
 
 @allocation_free
 def write_polygon(ones: np.ndarray, field: Field, points: np.ndarray, order: np.ndarray) -> int:
-    """Write the `polygon` of a chromosome (n,) to the first n + 2 of some points; returns their number. order: (n,) or more, scratch."""
+    """Write the `polygon` of a chromosome (n,) to the first n + 2 of some points; returns their
+    number. order: (n,) or more, scratch.
+    """
     count = len(ones)
     for i in range(count):
         order[i] = ones[i]

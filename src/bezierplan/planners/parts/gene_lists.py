@@ -1,4 +1,5 @@
-"""Chromosomes of many genes, few of which are 1, stored as ascending lists of these; and pools of them.
+"""Chromosomes of many genes, few of which are 1, stored as ascending lists of these; and pools of
+them.
 
 Functions that change a list or a pool say so; no function keeps state.
 """
@@ -14,8 +15,8 @@ from bezierplan.planners.parts.sorting import sort
 
 
 class Pool(NamedTuple):
-    """Chromosomes: ones (places, room) the genes that are 1, ascending; count (places,) how many; cost (places,) the inverse of the
-    fitness; free (places,) whether the curve is collision-free.
+    """Chromosomes: ones (places, room) the genes that are 1, ascending; count (places,) how many;
+    cost (places,) the inverse of the fitness; free (places,) whether the curve is collision-free.
     """
 
     ones: np.ndarray
@@ -27,7 +28,12 @@ class Pool(NamedTuple):
 @compiled
 def empty_pool(places: int, room: int) -> Pool:
     """A pool with room for `places` chromosomes of `room` genes each."""
-    return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places), np.zeros(places, np.bool_))
+    return Pool(
+        np.empty((places, room), np.int64),
+        np.zeros(places, np.int64),
+        np.empty(places),
+        np.zeros(places, np.bool_),
+    )
 
 
 @allocation_free
@@ -40,7 +46,8 @@ def put(ones: np.ndarray, count: int, cost: float, free: bool, pool: Pool, place
 
 @compiled
 def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
-    """Move the best of the chromosomes at the places from `first` on to the front, in place; ties in their original order.
+    """Move the best of the chromosomes at the places from `first` on to the front, in place; ties
+    in their original order.
 
     spare: a pool with as many places as survive, overwritten.
     """
@@ -58,7 +65,9 @@ def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
         i = order[place]
         put(pool.ones[i], pool.count[i], pool.cost[i], pool.free[i], spare, place)
     for place in range(survivors):
-        put(spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place)
+        put(
+            spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place
+        )
 
 
 @allocation_free
@@ -72,7 +81,9 @@ def position(genes: np.ndarray, count: int, gene: int) -> int:
 
 @allocation_free
 def flip(genes: np.ndarray, count: int, gene: int) -> int:
-    """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are dropped."""
+    """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are
+    dropped.
+    """
     index = position(genes, count, gene)
     if index < count:
         for i in range(index, count - 1):
@@ -90,8 +101,8 @@ def flip(genes: np.ndarray, count: int, gene: int) -> int:
 
 @allocation_free
 def gap(rng: np.random.Generator, unchanged: float) -> int:
-    """Number of genes left unchanged before the next change; 2**31 stands for more than there are genes. unchanged: the logarithm of the
-    probability that a gene does not change.
+    """Number of genes left unchanged before the next change; 2**31 stands for more than there are
+    genes. unchanged: the logarithm of the probability that a gene does not change.
     """
     if unchanged == 0.0:
         return 2**31
@@ -100,7 +111,9 @@ def gap(rng: np.random.Generator, unchanged: float) -> int:
 
 @allocation_free
 def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
-    """Write, to a child, the genes of one chromosome before a cut and of another from it on; returns how many are 1."""
+    """Write, to a child, the genes of one chromosome before a cut and of another from it on;
+    returns how many are 1.
+    """
     count = 0
     for i in range(pool.count[head]):
         if pool.ones[head, i] < cut:
@@ -126,11 +139,15 @@ def same(one: np.ndarray, other: np.ndarray) -> bool:
 
 @allocation_free
 def distinct(pool: Pool, size: int) -> int:
-    """Number of distinct chromosomes among the first `size` of the pool; equal ones have equal costs."""
+    """Number of distinct chromosomes among the first `size` of the pool; equal ones have equal
+    costs.
+    """
     count = size
     for i in range(size):
         for j in range(i - 1, -1, -1):  # in a sorted pool equal ones are neighbours
-            if pool.cost[i] == pool.cost[j] and same(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]):
+            if pool.cost[i] == pool.cost[j] and same(
+                pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]
+            ):
                 count -= 1
                 break
     return count
@@ -138,23 +155,30 @@ def distinct(pool: Pool, size: int) -> int:
 
 @allocation_free
 def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
-    """The Q statistic of two lists, each of a chromosome with the given number of genes (`diversity.q_statistic`)."""
+    """The Q statistic of two lists, each of a chromosome with the given number of genes
+    (`diversity.q_statistic`).
+    """
     both = shared(one, other)
-    return q_statistic(both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both)
+    return q_statistic(
+        both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both
+    )
 
 
 @compiled
 def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
     """Sum of Q over the pairs of the pool whose second chromosome is at a place from `first` on.
 
-    A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum is made in the order of the places.
+    A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum
+    is made in the order of the places.
     """
     kind, heads, kinds = np.empty(filled, dtype=np.int64), np.empty(filled, dtype=np.int64), 0
     for i in range(filled):
         k = kinds - 1
         while k >= 0:
             head = heads[k]  # equal chromosomes have equal costs
-            if pool.cost[i] == pool.cost[head] and same(pool.ones[i, : pool.count[i]], pool.ones[head, : pool.count[head]]):
+            if pool.cost[i] == pool.cost[head] and same(
+                pool.ones[i, : pool.count[i]], pool.ones[head, : pool.count[head]]
+            ):
                 break
             k -= 1
         if k < 0:
@@ -172,7 +196,9 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
             for n in range(pool.count[other]):
                 both += marked[pool.ones[other, n]]
             only_one, only_other = pool.count[chromosome] - both, pool.count[other] - both
-            values[k, m] = values[m, k] = q_statistic(both, genes - both - only_one - only_other, only_one, only_other)
+            values[k, m] = values[m, k] = q_statistic(
+                both, genes - both - only_one - only_other, only_one, only_other
+            )
         for gene in pool.ones[chromosome, : pool.count[chromosome]]:
             marked[gene] = 0
     total = 0.0
@@ -189,7 +215,9 @@ _REMEMBERED = 1024
 
 @compiled
 def empty_memory(room: int) -> Pool:
-    """A memory of the costs of chromosomes of `room` genes each; a newer one can overwrite an older one."""
+    """A memory of the costs of chromosomes of `room` genes each; a newer one can overwrite an older
+    one.
+    """
     memory = empty_pool(_REMEMBERED, room)
     memory.count[:] = -1
     return memory
@@ -203,4 +231,6 @@ def entry(ones: np.ndarray, memory: Pool) -> tuple[int, bool]:
         mixed = (mixed ^ np.uint64(gene)) * np.uint64(0x9E3779B97F4A7C15)
         mixed ^= mixed >> np.uint64(29)
     place = np.int64(mixed & np.uint64(_REMEMBERED - 1))
-    return place, memory.count[place] == len(ones) and same(ones, memory.ones[place, : memory.count[place]])
+    return place, memory.count[place] == len(ones) and same(
+        ones, memory.ones[place, : memory.count[place]]
+    )

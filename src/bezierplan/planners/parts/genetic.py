@@ -1,6 +1,8 @@
-"""Genetic operators on chromosomes of integer genes, each gene a number of `bits` bits, most significant bit first.
+"""Genetic operators on chromosomes of integer genes, each gene a number of `bits` bits, most
+significant bit first.
 
-A chromosome (genes,) is one bit string in the order of its genes. Functions that change a chromosome say so; no function keeps state.
+A chromosome (genes,) is one bit string in the order of its genes. Functions that change a
+chromosome say so; no function keeps state.
 """
 
 import numpy as np
@@ -10,25 +12,35 @@ from bezierplan.planners.parts.random_integers import integer
 
 
 def check_pairs(population: int) -> None:
-    """Raise ValueError, naming the setting and what is expected, for a population that cannot be crossed in pairs."""
+    """Raise ValueError, naming the setting and what is expected, for a population that cannot be
+    crossed in pairs.
+    """
     if population % 2:
-        raise ValueError(f"population: {population}; parents are crossed in pairs, so an even number is needed")
+        raise ValueError(
+            f"population: {population}; parents are crossed in pairs, so an even number is needed"
+        )
 
 
 @compiled
 def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
-    """Indices (draws,) of parents, drawn with replacement in proportion to fitness (n,), all above 0 (song2016, eq. 10)."""
+    """Indices (draws,) of parents, drawn with replacement in proportion to fitness (n,), all above
+    0 (song2016, eq. 10).
+    """
     wheel = np.cumsum(fitness)
     parents = np.empty(draws, dtype=np.int64)
     for draw in range(draws):
         # A draw close to 1 can round up to the whole wheel.
-        parents[draw] = min(np.searchsorted(wheel, rng.random() * wheel[-1], side="right"), len(fitness) - 1)
+        parents[draw] = min(
+            np.searchsorted(wheel, rng.random() * wheel[-1], side="right"), len(fitness) - 1
+        )
     return parents
 
 
 @allocation_free
 def swap_tails(first: np.ndarray, second: np.ndarray, cut: int, bits: int) -> None:
-    """Exchange, in place, the bits after the first `cut` bits of two chromosomes (song2016, Section III-E: single-point crossover)."""
+    """Exchange, in place, the bits after the first `cut` bits of two chromosomes (song2016, Section
+    III-E: single-point crossover).
+    """
     gene = cut // bits
     behind = (1 << (bits - cut % bits)) - 1
     difference = (first[gene] ^ second[gene]) & behind
@@ -40,11 +52,15 @@ def swap_tails(first: np.ndarray, second: np.ndarray, cut: int, bits: int) -> No
 
 @allocation_free
 def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
-    """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section III-E: mutation)."""
+    """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section
+    III-E: mutation).
+    """
     chromosome[position // bits] ^= 1 << (bits - 1 - position % bits)
 
 
 @allocation_free
 def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
-    """Replace, in place, one random gene of a chromosome by a random allele, which may equal the old gene."""
+    """Replace, in place, one random gene of a chromosome by a random allele, which may equal the
+    old gene.
+    """
     chromosome[integer(rng, 0, len(chromosome))] = alleles[integer(rng, 0, len(alleles))]

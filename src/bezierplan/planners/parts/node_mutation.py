@@ -10,7 +10,13 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, inlined
 from bezierplan.planners.parts.random_integers import below
-from bezierplan.workspaces.ground import Ground, edge_energy, free_neighbours, obstacles_met, path_met
+from bezierplan.workspaces.ground import (
+    Ground,
+    edge_energy,
+    free_neighbours,
+    obstacles_met,
+    path_met,
+)
 
 Mutation = IntEnum("Mutation", "random random_repair ref12 ref21 proposed", start=0)
 WithoutObstacle = IntEnum("WithoutObstacle", "any_node none", start=0)
@@ -25,10 +31,19 @@ _TIE = 1e-12
 
 
 @allocation_free
-def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: NamedTuple, neighbours: np.ndarray) -> int:
-    """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it evaluated.
+def mutate(
+    rng: np.random.Generator,
+    path: np.ndarray,
+    drawn: np.ndarray,
+    ground: Ground,
+    rules: NamedTuple,
+    neighbours: np.ndarray,
+) -> int:
+    """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it
+    evaluated.
 
-    drawn: the cells from which random mutation draws. rules: `node_genetic.Settings`. neighbours: (8,) scratch.
+    drawn: the cells from which random mutation draws. rules: `node_genetic.Settings`. neighbours:
+    (8,) scratch.
     """
     if rules.mutation == Mutation.random:
         path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
@@ -37,7 +52,11 @@ def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground
         return _random_repair(rng, path, drawn, ground)
     if rules.mutation == Mutation.ref21:
         return _ref21(rng, path, ground, rules, neighbours)
-    k = _blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour) if rules.mutation == Mutation.proposed else 0
+    k = (
+        _blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour)
+        if rules.mutation == Mutation.proposed
+        else 0
+    )
     if k == 0:
         if rules.mutation == Mutation.proposed and rules.without_obstacle == WithoutObstacle.none:
             return 0
@@ -77,7 +96,9 @@ def _blocked_node(rng, path, ground, beside_obstacle):
 
 @allocation_free
 def _encounters(path, k, ground, beside_obstacle):
-    """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight cells around the node is occupied."""
+    """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight
+    cells around the node is occupied.
+    """
     if not beside_obstacle:
         return obstacles_met(ground, path[k], path[k + 1]) > 0
     row, column = divmod(path[k], ground.occupied.shape[1])
@@ -86,7 +107,8 @@ def _encounters(path, k, ground, beside_obstacle):
 
 @allocation_free
 def _best_neighbour(path, k, ground, rules, neighbours):
-    """Replace node k by the free neighbour cell that gives the best path (Table 1, steps 2 to 4; reference 12).
+    """Replace node k by the free neighbour cell that gives the best path (Table 1, steps 2 to 4;
+    reference 12).
 
     Ties go to the first from the lower left, row by row. Only the two edges of the node change.
     """
@@ -106,13 +128,18 @@ def _best_neighbour(path, k, ground, rules, neighbours):
 def _cost_through(path, k, cell, ground, penalty):
     """Energy plus penalty of the two edges that node k would have if it were in the given cell."""
     met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])
-    return edge_energy(ground, path[k - 1], cell) + edge_energy(ground, cell, path[k + 1]) + penalty * met
+    return (
+        edge_energy(ground, path[k - 1], cell)
+        + edge_energy(ground, cell, path[k + 1])
+        + penalty * met
+    )
 
 
 @allocation_free
 def _ref21(rng, path, ground, rules, neighbours):
-    """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
-    two edges are free, or which makes the whole path free (reference 21).
+    """Replace a random inner node by the first of its free neighbours, in random order, that lies
+    in the direction of the target and whose two edges are free, or which makes the whole path free
+    (reference 21).
     """
     k = 1 + below(rng, len(path) - 2)
     count = free_neighbours(path[k], ground, neighbours)
@@ -123,8 +150,18 @@ def _ref21(rng, path, ground, rules, neighbours):
         chosen = tried + below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
-        accepted = elsewhere == 0 and _towards(path[0], cell, path[-1], ground.occupied.shape[1], rules.direction == Direction.same_signs)
-        if accepted and obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
+        accepted = elsewhere == 0 and _towards(
+            path[0],
+            cell,
+            path[-1],
+            ground.occupied.shape[1],
+            rules.direction == Direction.same_signs,
+        )
+        if (
+            accepted
+            and obstacles_met(ground, path[k - 1], cell) == 0
+            and obstacles_met(ground, cell, path[k + 1]) == 0
+        ):
             path[k] = cell
             return tried + 1
     return count
@@ -132,9 +169,14 @@ def _ref21(rng, path, ground, rules, neighbours):
 
 @allocation_free
 def _towards(start, cell, target, columns, same_signs):
-    """Whether the direction from a cell to the target agrees with that from the start to the target."""
+    """Whether the direction from a cell to the target agrees with that from the start to the
+    target.
+    """
     across, up = target % columns - cell % columns, target // columns - cell // columns
-    whole_across, whole_up = target % columns - start % columns, target // columns - start // columns
+    whole_across, whole_up = (
+        target % columns - start % columns,
+        target // columns - start // columns,
+    )
     if same_signs:
         return np.sign(across) == np.sign(whole_across) and np.sign(up) == np.sign(whole_up)
     return across * whole_across + up * whole_up > 0

@@ -1,10 +1,11 @@
-"""The length of a particle's curve, and the penalty for the circles, spheres and polygons it meets; a particle holds the free control
-points.
+"""The length of a particle's curve, and the penalty for the circles, spheres and polygons it meets;
+a particle holds the free control points.
 
-Kernels take the number of dimensions d, 2 or 3, from the shape of their arrays. tharwat2018 has circles only. Its measure, depth as a share
-of the circle's radius, is read as depth below the obstacle's edge as a share of the largest such depth, which for a circle is the same; so
-it applies to a polygon too, whose largest depth is the radius of its largest inscribed circle. The border is no obstacle: the swarm's own
-bounds keep the control points inside.
+Kernels take the number of dimensions d, 2 or 3, from the shape of their arrays. tharwat2018 has
+circles only. Its measure, depth as a share of the circle's radius, is read as depth below the
+obstacle's edge as a share of the largest such depth, which for a circle is the same; so it applies
+to a polygon too, whose largest depth is the radius of its largest inscribed circle. The border is
+no obstacle: the swarm's own bounds keep the control points inside.
 """
 
 from enum import IntEnum
@@ -22,15 +23,17 @@ if TYPE_CHECKING:
 
 Penalty = IntEnum("Penalty", "multiply add death", start=0)
 
-# A path is feasible if its violation does not exceed this: a converging swarm ends tangent to a circle, a rounding error deep.
+# A path is feasible if its violation does not exceed this: a converging swarm ends tangent to a
+# circle, a rounding error deep.
 FEASIBLE = 1e-9
 
 
 class Polygonal(NamedTuple):
     """Polygonal obstacles, for the kernels, in units.
 
-    edges: (edges, 4), x and y of both ends of the edges of all polygons and their holes, polygon by polygon. first: (obstacles + 1,), where
-    each polygon's edges begin. boxes: (obstacles, 4), left, right, bottom and top. deepest: (obstacles,), the largest depth in it.
+    edges: (edges, 4), x and y of both ends of the edges of all polygons and their holes, polygon by
+    polygon. first: (obstacles + 1,), where each polygon's edges begin. boxes: (obstacles, 4), left,
+    right, bottom and top. deepest: (obstacles,), the largest depth in it.
     """
 
     edges: np.ndarray
@@ -42,9 +45,10 @@ class Polygonal(NamedTuple):
 class Objective(NamedTuple):
     """The fitness of a path, for the kernels.
 
-    ends: (d, samples), the contributions of start and target to the samples, by coordinate. free: (n, samples), the weights of the free
-    control points. balls: (obstacles, d + 1), centre and radius of circles or spheres, in units. polygons: the other obstacles, in the
-    plane. penalty: the rule's number. beta: its factor.
+    ends: (d, samples), the contributions of start and target to the samples, by coordinate. free:
+    (n, samples), the weights of the free control points. balls: (obstacles, d + 1), centre and
+    radius of circles or spheres, in units. polygons: the other obstacles, in the plane. penalty:
+    the rule's number. beta: its factor.
     """
 
     ends: np.ndarray
@@ -57,7 +61,9 @@ class Objective(NamedTuple):
 
 @allocation_free
 def fitness(length: float, violation: float, objective: Objective) -> float:
-    """Length of a path combined with the penalty for its violation (tharwat2018, eq. 22, which leaves the penalty open)."""
+    """Length of a path combined with the penalty for its violation (tharwat2018, eq. 22, which
+    leaves the penalty open).
+    """
     if objective.penalty == Penalty.multiply:
         return length * (1.0 + objective.beta * violation)
     if objective.penalty == Penalty.add:
@@ -72,7 +78,9 @@ def least_fitness(length: float, objective: Objective) -> float:
 
 
 @allocation_free
-def length(particle: np.ndarray, objective: Objective, curve: np.ndarray, chords: np.ndarray) -> float:
+def length(
+    particle: np.ndarray, objective: Objective, curve: np.ndarray, chords: np.ndarray
+) -> float:
     """Length of the polyline through the samples of a particle's curve (tharwat2018, eq. 19).
 
     particle: (d n,). curve: (d, samples), the samples; overwritten. chords: (samples,) scratch.
@@ -97,7 +105,8 @@ def length(particle: np.ndarray, objective: Objective, curve: np.ndarray, chords
         for k in range(threes, n):
             for s in range(samples):
                 x[s] += z[k] * free[k, s]
-    # The square roots are vectorised if their sum is separate; its four partial sums need not wait for each other.
+    # The square roots are vectorised if their sum is separate; its four partial sums need not wait
+    # for each other.
     x, y = curve[0], curve[1]
     if len(ends) == 2:
         for s in range(samples - 1):
@@ -121,7 +130,9 @@ def length(particle: np.ndarray, objective: Objective, curve: np.ndarray, chords
 
 
 def round_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -> np.ndarray:
-    """The circles or spheres of a workspace, grown by a distance in units: (obstacles, d + 1), centre and radius; none among polygons."""
+    """The circles or spheres of a workspace, grown by a distance in units: (obstacles, d + 1),
+    centre and radius; none among polygons.
+    """
     if isinstance(workspace, Polygons):
         return np.empty((0, 3))
     return np.column_stack([workspace.centres, workspace.radii + d_min])
@@ -130,15 +141,22 @@ def round_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -> np
 def polygonal_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -> Polygonal:
     """The polygons of a workspace, grown by a distance in units; none among circles and spheres."""
     if not isinstance(workspace, Polygons) or not workspace.obstacles:
-        return Polygonal(np.empty((0, 4)), np.zeros(1, dtype=np.int64), np.empty((0, 4)), np.empty(0))
+        return Polygonal(
+            np.empty((0, 4)), np.zeros(1, dtype=np.int64), np.empty((0, 4)), np.empty(0)
+        )
     import shapely
 
     shapes = [shapely.Polygon(outer, holes).buffer(d_min) for outer, *holes in workspace.obstacles]
-    edges = [np.concatenate([_sides(ring) for ring in (shape.exterior, *shape.interiors)]) for shape in shapes]
+    edges = [
+        np.concatenate([_sides(ring) for ring in (shape.exterior, *shape.interiors)])
+        for shape in shapes
+    ]
     return Polygonal(
         edges=np.concatenate(edges),
         first=np.concatenate([[0], np.cumsum([len(each) for each in edges])]),
-        boxes=np.array([shape.bounds for shape in shapes]).take([0, 2, 1, 3], axis=1),  # in rows, or the kernels are compiled twice
+        boxes=np.array([shape.bounds for shape in shapes]).take(
+            [0, 2, 1, 3], axis=1
+        ),  # in rows, or the kernels are compiled twice
         deepest=np.array([shapely.maximum_inscribed_circle(shape).length for shape in shapes]),
     )
 
@@ -153,8 +171,9 @@ def _sides(ring: "LinearRing") -> np.ndarray:
 def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
     """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
-    The violation of an obstacle is the mean over the samples of their depth below its edge, as a share of the largest depth (tharwat2018,
-    eqs. 20 and 21; the paper prints control points where only points of the path make sense).
+    The violation of an obstacle is the mean over the samples of their depth below its edge, as a
+    share of the largest depth (tharwat2018, eqs. 20 and 21; the paper prints control points where
+    only points of the path make sense).
 
     curve: (d, samples). scratch: (samples,).
     """
@@ -188,8 +207,8 @@ def _among_polygons(x, y, polygons):
 
 @allocation_free
 def _depth(x, y, edges):
-    """Distance of a point to the nearest edge (n, 4) of a polygon; 0 outside of it, where a ray to the right crosses an even number of
-    edges.
+    """Distance of a point to the nearest edge (n, 4) of a polygon; 0 outside of it, where a ray to
+    the right crosses an even number of edges.
     """
     inside = False
     for e in range(len(edges)):

@@ -1,4 +1,6 @@
-"""Random integers in kernels, for `rng.integers` in compiled code makes an array for each number."""
+"""Random integers in kernels, for `rng.integers` in compiled code makes an array for each
+number.
+"""
 
 import numpy as np
 from numba.np.random.random_methods import buffered_bounded_lemire_uint32
@@ -8,11 +10,15 @@ from bezierplan.kernels import allocation_free
 
 @allocation_free
 def integer(rng: np.random.Generator, low: int, high: int) -> int:
-    """The number that `rng.integers(low, high)` gives (Lemire 2019, as in numpy), many times faster; high - low must lie between 1 and
-    2**32 - 1.
+    """The number that `rng.integers(low, high)` gives (Lemire 2019, as in numpy), many times
+    faster; high - low must lie between 1 and 2**32 - 1.
     """
     # numpy draws nothing if there is no choice.
-    return low + np.int64(buffered_bounded_lemire_uint32(rng.bit_generator, high - low - 1)) if high - low > 1 else low
+    return (
+        low + np.int64(buffered_bounded_lemire_uint32(rng.bit_generator, high - low - 1))
+        if high - low > 1
+        else low
+    )
 
 
 @allocation_free

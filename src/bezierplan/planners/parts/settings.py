@@ -7,8 +7,9 @@
     @with_settings(Settings)
     def plan(problem, rng, settings): ...
 
-Callers give settings by name, choices as words. `plan` gets the named tuple, in which everything is a number, so kernels can read it: a
-choice is an `IntEnum`, whose members are the words. What is accepted, the text of messages and `help(plan)` follow from the declaration.
+Callers give settings by name, choices as words. `plan` gets the named tuple, in which everything is
+a number, so kernels can read it: a choice is an `IntEnum`, whose members are the words. What is
+accepted, the text of messages and `help(plan)` follow from the declaration.
 """
 
 import inspect
@@ -28,7 +29,9 @@ UNITS = "units"
 
 
 class Range(NamedTuple):
-    """Limits of a setting's value, both inclusive. Infinity is a value only where it is given as a limit: few planners end with it."""
+    """Limits of a setting's value, both inclusive. Infinity is a value only where it is given as a
+    limit: few planners end with it.
+    """
 
     low: float = -sys.float_info.max
     high: float = sys.float_info.max
@@ -40,7 +43,9 @@ class Range(NamedTuple):
 
 
 class About(NamedTuple):
-    """What a setting means, in one line; where the paper gives it, and its unit, empty for a pure number or a choice."""
+    """What a setting means, in one line; where the paper gives it, and its unit, empty for a pure
+    number or a choice.
+    """
 
     text: str
     source: str = ASSUMED
@@ -75,7 +80,9 @@ class Setting(NamedTuple):
         if self.words:
             return "one of " + ", ".join(map(str, self.words))
         number = {bool: "true or false", int: "a whole number", float: "a number"}[self.kind]
-        return (number if self.limits == Range() else f"{number} {self.limits}") + (", or null" if self.optional else "")
+        return (number if self.limits == Range() else f"{number} {self.limits}") + (
+            ", or null" if self.optional else ""
+        )
 
     @property
     def meaning(self) -> str:
@@ -84,15 +91,18 @@ class Setting(NamedTuple):
         return text + (f" [{unit}]" if unit else "") + (f" ({source})" if source else "")
 
     def number(self, value: Any) -> Any:
-        """A value for kernels: a choice as its number; None as nan; a decimal never as an integer, which would compile kernels again."""
+        """A value for kernels: a choice as its number; None as nan; a decimal never as an integer,
+        which would compile kernels again.
+        """
         if isinstance(self.kind, EnumMeta):
             return int(self.kind[value])
         return float(math.nan if value is None else value) if self.kind is float else value
 
 
 def setting(annotation: Any) -> Setting:
-    """The setting that an annotation declares. Raises TypeError unless it is `bool`, `int`, `float`, a `Literal` or an `IntEnum`, or one of
-    these `Annotated` with a `Range` and an `About`; None may be allowed as well.
+    """The setting that an annotation declares. Raises TypeError unless it is `bool`, `int`,
+    `float`, a `Literal` or an `IntEnum`, or one of these `Annotated` with a `Range` and an `About`;
+    None may be allowed as well.
     """
     notes: tuple = ()
     if typing.get_origin(annotation) is typing.Annotated:
@@ -108,7 +118,9 @@ def setting(annotation: Any) -> Setting:
         return Setting(str, typing.get_args(annotation), limits, about)
     if isinstance(annotation, EnumMeta) and issubclass(annotation, int) and annotation.__members__:
         return Setting(annotation, tuple(annotation.__members__), limits, about)
-    if annotation not in (bool, int, float) or any(not isinstance(note, Range | About) for note in notes):
+    if annotation not in (bool, int, float) or any(
+        not isinstance(note, Range | About) for note in notes
+    ):
         raise TypeError(f"{annotation} declares no setting")
     return Setting(annotation, (), limits, about)
 
@@ -124,15 +136,19 @@ def setting_fault(declared: Setting, value: Any) -> str | None:
         return str(declared._replace(limits=Range()))
     if declared.kind is bool or declared.limits.low <= value <= declared.limits.high:
         return None
-    return str(declared) if abs(value) < math.inf else f"a finite {str(declared).removeprefix('a ')}"
+    return (
+        str(declared) if abs(value) < math.inf else f"a finite {str(declared).removeprefix('a ')}"
+    )
 
 
 def settings_of(plan: Callable[..., Any]) -> dict[str, Setting]:
-    """Settings of a planner's function `plan`, its keyword-only arguments, by name and in their order. Raises TypeError or NameError for an
-    annotation that declares none.
+    """Settings of a planner's function `plan`, its keyword-only arguments, by name and in their
+    order. Raises TypeError or NameError for an annotation that declares none.
     """
     parameters = inspect.signature(plan, eval_str=True).parameters.values()
-    return {each.name: setting(each.annotation) for each in parameters if each.kind is each.KEYWORD_ONLY}
+    return {
+        each.name: setting(each.annotation) for each in parameters if each.kind is each.KEYWORD_ONLY
+    }
 
 
 T = TypeVar("T", bound=tuple)
@@ -144,42 +160,81 @@ def _declared(settings: type) -> dict[str, Setting]:
 
 
 def filled(settings: type[T], values: dict[str, Any]) -> T:
-    """A class of settings with these values, given by name as in a study. Raises TypeError for a missing or unknown name."""
+    """A class of settings with these values, given by name as in a study. Raises TypeError for a
+    missing or unknown name.
+    """
     return _filled(settings, tuple(values.items()), tuple(map(type, values.values())))
 
 
 @lru_cache(maxsize=256)
 def _filled(settings: type[T], values: tuple[tuple[str, Any], ...], types: tuple[type, ...]) -> T:
-    """`filled`, once for all runs with the same settings. types: of the values, since 1, 1.0 and true are equal."""
+    """`filled`, once for all runs with the same settings. types: of the values, since 1, 1.0 and
+    true are equal.
+    """
     declared = _declared(settings)
-    return settings(**{name: declared[name].number(value) if name in declared else value for name, value in values})
+    return settings(
+        **{
+            name: declared[name].number(value) if name in declared else value
+            for name, value in values
+        }
+    )
 
 
 def in_cells(settings: T, cell: float) -> T:
-    """The same settings for kernels that count in cells: what is in units is divided by the side of a cell."""
-    lengths = [name for name, each in _declared(type(settings)).items() if each.about and each.about.unit == UNITS]
+    """The same settings for kernels that count in cells: what is in units is divided by the side of
+    a cell.
+    """
+    lengths = [
+        name
+        for name, each in _declared(type(settings)).items()
+        if each.about and each.about.unit == UNITS
+    ]
     return settings._replace(**{name: getattr(settings, name) / cell for name in lengths})
 
 
 def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Have `plan(problem, rng, settings, ...)`, with one argument for each of these classes, called with the settings by name."""
+    """Have `plan(problem, rng, settings, ...)`, with one argument for each of these classes, called
+    with the settings by name.
+    """
 
     def decorate(plan: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(plan)
         def planned(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
-            parts = [{name: value for name, value in values.items() if name in each._fields} for each in classes[1:]]
-            rest = {name: value for name, value in values.items() if not any(name in part for part in parts)}
-            tuples = [filled(each, part) for each, part in zip(classes, [rest, *parts], strict=True)]
+            parts = [
+                {name: value for name, value in values.items() if name in each._fields}
+                for each in classes[1:]
+            ]
+            rest = {
+                name: value
+                for name, value in values.items()
+                if not any(name in part for part in parts)
+            }
+            tuples = [
+                filled(each, part) for each, part in zip(classes, [rest, *parts], strict=True)
+            ]
             return plan(problem, rng, *tuples, *further)
 
         signature = inspect.signature(plan)
         kept = list(signature.parameters.values())
         del kept[2 : 2 + len(classes)]
-        names = {name: annotation for each in classes for name, annotation in each.__annotations__.items()}
-        keywords = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=names[name]) for name in names]
+        names = {
+            name: annotation
+            for each in classes
+            for name, annotation in each.__annotations__.items()
+        }
+        keywords = [
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=names[name])
+            for name in names
+        ]
         planned.__signature__ = signature.replace(parameters=[*kept, *keywords])
-        told = [f"{name} : {each}\n    {each.meaning}" for part in classes for name, each in _declared(part).items()]
-        planned.__doc__ = "\n".join([inspect.cleandoc(plan.__doc__ or ""), "\nOther Parameters\n----------------", *told])
+        told = [
+            f"{name} : {each}\n    {each.meaning}"
+            for part in classes
+            for name, each in _declared(part).items()
+        ]
+        planned.__doc__ = "\n".join(
+            [inspect.cleandoc(plan.__doc__ or ""), "\nOther Parameters\n----------------", *told]
+        )
         return planned
 
     return decorate

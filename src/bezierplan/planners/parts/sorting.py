@@ -7,8 +7,8 @@ from bezierplan.kernels import allocation_free, compiled
 
 @compiled
 def ascending(values: np.ndarray) -> np.ndarray:
-    """Indices (n,) that sort values in ascending order, ties in their original order: numpy's stable argsort, which takes far longer to
-    compile.
+    """Indices (n,) that sort values in ascending order, ties in their original order: numpy's
+    stable argsort, which takes far longer to compile.
 
     >>> ascending(np.array([3.0, 1.0, 2.0, 1.0])).tolist()
     [1, 3, 2, 0]
@@ -20,9 +20,11 @@ def ascending(values: np.ndarray) -> np.ndarray:
 
 @allocation_free
 def sort(indices: np.ndarray, values: np.ndarray) -> None:
-    """Sort indices (n,), in place, by their values in ascending order, ties in their original order.
+    """Sort indices (n,), in place, by their values in ascending order, ties in their original
+    order.
 
-    An insertion sort: as fast as any for a few values, and for sorted survivors followed by their offspring.
+    An insertion sort: as fast as any for a few values, and for sorted survivors followed by their
+    offspring.
     """
     for k in range(1, len(indices)):
         i, place = indices[k], k

@@ -1,4 +1,6 @@
-"""A robot among cells that change: from one moment of change to the next along a way, until there is something to decide."""
+"""A robot among cells that change: from one moment of change to the next along a way, until there
+is something to decide.
+"""
 
 import itertools
 import math
@@ -18,23 +20,34 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import ChangingCells
 
 
-def follow(world: ChangingCells, way: Way, time: float, policy: Policy) -> tuple[int, np.ndarray, np.ndarray]:
-    """Follow a way from its beginning, which has just been planned, from a time on, in steps. If it begins in a cell that has become
-    occupied, the robot first drives out of that.
+def follow(
+    world: ChangingCells, way: Way, time: float, policy: Policy
+) -> tuple[int, np.ndarray, np.ndarray]:
+    """Follow a way from its beginning, which has just been planned, from a time on, in steps. If it
+    begins in a cell that has become occupied, the robot first drives out of that.
 
-    Returns why it ends, and times (n,) with the lengths of way (n,) reached at them; between them the robot moves uniformly or waits.
+    Returns why it ends, and times (n,) with the lengths of way (n,) reached at them; between them
+    the robot moves uniformly or waits.
     """
     s, fresh, out = 0.0, True, way_out(world.workspace(time), way)
     times, reached = [time], [s]
     checks = policy.replan == "when_blocked"
     while True:
-        free = free_length(world.workspace(time), way, max(s, out)) if checks or policy.waits else math.inf
+        free = (
+            free_length(world.workspace(time), way, max(s, out))
+            if checks or policy.waits
+            else math.inf
+        )
         if not fresh and policy.replan in ("every_step", "when_changed"):
             return DUE, np.array(times), np.array(reached)
         if not fresh and checks and free < way.length:
             return BLOCKED, np.array(times), np.array(reached)
         fresh = False
-        limit = way.length if free >= way.length or not policy.waits else max(s, out, free - policy.brake)
+        limit = (
+            way.length
+            if free >= way.length or not policy.waits
+            else max(s, out, free - policy.brake)
+        )
         following = next_event(world, time, policy)
         arrival = time + (limit - s) / world.pace
         if arrival <= following:
@@ -57,15 +70,23 @@ def follow(world: ChangingCells, way: Way, time: float, policy: Policy) -> tuple
 def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
     """The next moment, in steps, at which the world changes, a plan is due, or time is over."""
     changes = world.moments[world.moments > time]
-    due = (math.floor(time / policy.every) + 1) * policy.every if policy.replan == "every_step" else math.inf
+    due = (
+        (math.floor(time / policy.every) + 1) * policy.every
+        if policy.replan == "every_step"
+        else math.inf
+    )
     return float(min(changes.min(initial=math.inf), due, world.end))
 
 
 def free_length(grid: Grid, way: Way, s: float) -> float:
-    """The length of a way, from a length s of it on, at which it first enters an occupied cell; infinite if it does not."""
+    """The length of a way, from a length s of it on, at which it first enters an occupied cell;
+    infinite if it does not.
+    """
     points = way.part(s, way.length)
     obstacles = region(grid)
-    collision_at, _ = checker.first_collision(from_origin(np.stack([points[:-1], points[1:]], axis=1), obstacles), obstacles)
+    collision_at, _ = checker.first_collision(
+        from_origin(np.stack([points[:-1], points[1:]], axis=1), obstacles), obstacles
+    )
     if math.isinf(collision_at):
         return math.inf
     lengths = np.concatenate([[s], s + np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
@@ -73,7 +94,9 @@ def free_length(grid: Grid, way: Way, s: float) -> float:
 
 
 def way_out(grid: Grid, way: Way) -> float:
-    """The length of a way after which it first leaves the occupied cells; 0 if it does not begin in one, or does not leave them."""
+    """The length of a way after which it first leaves the occupied cells; 0 if it does not begin in
+    one, or does not leave them.
+    """
     cells = region(grid)
     if not blocks(cells, tuple(way.points[0])):
         return 0.0
@@ -87,7 +110,9 @@ def way_out(grid: Grid, way: Way) -> float:
 
 
 def _crossings(begin: float, end: float) -> np.ndarray:
-    """The shares of a way from one coordinate to another, in cells, at which it crosses a grid line."""
+    """The shares of a way from one coordinate to another, in cells, at which it crosses a grid
+    line.
+    """
     lines = np.arange(math.floor(min(begin, end)) + 1, math.ceil(max(begin, end)))
     return (lines - begin) / (end - begin) if len(lines) else np.empty(0)
 
@@ -97,8 +122,9 @@ _BACK = 0.01
 
 
 def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"]) -> np.ndarray:
-    """Points (n, 2) from where a motion ends to where a plan begins: there, or at the centre of its cell; if that place is occupied, back
-    along the motion to a free one. Only where the motion ends if there is none.
+    """Points (n, 2) from where a motion ends to where a plan begins: there, or at the centre of its
+    cell; if that place is occupied, back along the motion to a free one. Only where the motion ends
+    if there is none.
     """
     robot = motion.points[-1]
     begin = _start(grid, robot, start)
@@ -115,20 +141,29 @@ def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"
 
 
 def least_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float:
-    """The least length, in units, of a plan from where a motion ends that goes to the centre of the cell there, as `way_to_start` says, and
-    from cell centre to cell centre to the target. Infinite if there is none; nan if the target is no centre, or the map too large.
+    """The least length, in units, of a plan from where a motion ends that goes to the centre of the
+    cell there, as `way_to_start` says, and from cell centre to cell centre to the target. Infinite
+    if there is none; nan if the target is no centre, or the map too large.
     """
     approach = way_to_start(motion, grid, "centre")
     try:
-        rest = shortest_paths.centre_path(Problem("rest", grid, tuple(approach[-1].tolist()), target)).length
+        rest = shortest_paths.centre_path(
+            Problem("rest", grid, tuple(approach[-1].tolist()), target)
+        ).length
     except ValueError:
         return math.nan
     return ways.way(approach).length + rest
 
 
-def _start(grid: Grid, place: np.ndarray, start: Literal["position", "centre"]) -> np.ndarray | None:
+def _start(
+    grid: Grid, place: np.ndarray, start: Literal["position", "centre"]
+) -> np.ndarray | None:
     """Where a plan begins for a robot at a place, or None if that is occupied."""
     if start == "position":
         return None if blocks(region(grid), tuple(place)) else place
     row, column = grid.cell_of(*place)
-    return None if grid.occupied[row, column] else np.array(grid.centre(row * grid.occupied.shape[1] + column))
+    return (
+        None
+        if grid.occupied[row, column]
+        else np.array(grid.centre(row * grid.occupied.shape[1] + column))
+    )

@@ -12,8 +12,9 @@ from bezierplan.running.simulation.ways import Way
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
 ARRIVED, BLOCKED, DUE, STOPPED, ENDED = range(5)
-"""Why a robot stops following its way: it is there; the rest of the way is blocked; another plan is due; something is right in front of it;
-the world's time is over."""
+"""Why a robot stops following its way: it is there; the rest of the way is blocked; another plan is
+due; something is right in front of it; the world's time is over.
+"""
 
 
 class _Rules(NamedTuple):
@@ -33,7 +34,8 @@ class _Rules(NamedTuple):
 def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[int, np.ndarray]:
     """Follow a way from its beginning, which has just been planned, from a step on.
 
-    Returns why it ends, and the lengths of way (steps + 1,) at this and every following step; the last one may be reached before its step.
+    Returns why it ends, and the lengths of way (steps + 1,) at this and every following step; the
+    last one may be reached before its step.
     """
     # A circle that moves changes the world at every step. Touching is allowed.
     changes = policy.replan == "when_changed" and bool(world.velocities.any())
@@ -61,14 +63,32 @@ def _follow(points, at, step, circles, pace, end, rules):
     reached[0] = s
     while step + n < end:
         # A robot that looks ahead needs where the circles are now, when it is where it is.
-        seen = positions(centres, velocities, walls, step + n + (rules.looks_after and not rules.foresees))
-        drift = positions(centres, velocities, walls, step + n + 1) - seen if rules.foresees else np.zeros_like(seen)
+        seen = positions(
+            centres, velocities, walls, step + n + (rules.looks_after and not rules.foresees)
+        )
+        drift = (
+            positions(centres, velocities, walls, step + n + 1) - seen
+            if rules.foresees
+            else np.zeros_like(seen)
+        )
         if n > 0:
             if rules.every > 0 and (step + n) % rules.every == 0:
                 return DUE, reached[: n + 1]
-            if rules.checks and comes_near(points, at, s, min(s + rules.horizon, total), seen, drift, radii, rules.check_margin, pace):
+            if rules.checks and comes_near(
+                points,
+                at,
+                s,
+                min(s + rules.horizon, total),
+                seen,
+                drift,
+                radii,
+                rules.check_margin,
+                pace,
+            ):
                 return BLOCKED, reached[: n + 1]
-        if rules.brakes and comes_near(points, at, s, min(s + rules.brake, total), seen, drift, radii, -TOUCHING, pace):
+        if rules.brakes and comes_near(
+            points, at, s, min(s + rules.brake, total), seen, drift, radii, -TOUCHING, pace
+        ):
             if rules.plans:
                 return STOPPED, reached[: n + 1]
         else:
@@ -82,10 +102,12 @@ def _follow(points, at, step, circles, pace, end, rules):
 
 @allocation_free
 def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
-    """Whether a robot that drives the part of a way between two lengths comes nearer to a circle than its radius plus a margin.
+    """Whether a robot that drives the part of a way between two lengths comes nearer to a circle
+    than its radius plus a margin.
 
-    points (n, 2), at (n,): as in `Way`. centres (k, 2): when the robot is at `begin`. drift (k, 2): of the circles, in units per step.
-    radii (k,). pace: of the robot, in units per step. All lengths are in units.
+    points (n, 2), at (n,): as in `Way`. centres (k, 2): when the robot is at `begin`. drift (k, 2):
+    of the circles, in units per step. radii (k,). pace: of the robot, in units per step. All
+    lengths are in units.
     """
     for k in range(len(centres)):
         reach = radii[k] + margin
@@ -94,10 +116,15 @@ def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
         s, (x, y) = begin, _place(points, at, begin)
         while True:
             following = min(at[i], end)
-            next_x, next_y = (points[i, 0], points[i, 1]) if at[i] <= end else _place(points, at, end)
+            next_x, next_y = (
+                (points[i, 0], points[i, 1]) if at[i] <= end else _place(points, at, end)
+            )
             step_x, step_y = next_x - x, next_y - y
             early, late = (s - begin) / pace, (following - begin) / pace
-            dx, dy = x - centres[k, 0] - drift[k, 0] * early, y - centres[k, 1] - drift[k, 1] * early
+            dx, dy = (
+                x - centres[k, 0] - drift[k, 0] * early,
+                y - centres[k, 1] - drift[k, 1] * early,
+            )
             ex, ey = step_x - drift[k, 0] * (late - early), step_y - drift[k, 1] * (late - early)
             last_x, last_y = dx + ex, dy + ey
             along, size = -(dx * ex + dy * ey), ex * ex + ey * ey
@@ -106,7 +133,8 @@ def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
                 dx, dy = dx + share * ex, dy + share * ey
             if dx * dx + dy * dy < reach * reach:
                 return True
-            # The distance shrinks by at most `closing` per unit of way, so the circle is out of reach until then.
+            # The distance shrinks by at most `closing` per unit of way, so the circle is out of
+            # reach until then.
             clear = following + (math.hypot(last_x, last_y) - reach) / closing
             if following >= end or clear >= end or i + 1 >= len(at):
                 break
@@ -122,4 +150,6 @@ def _place(points, at, s):
     if i == 0 or at[i] == at[i - 1]:
         return points[i, 0], points[i, 1]
     share = min(max((s - at[i - 1]) / (at[i] - at[i - 1]), 0.0), 1.0)
-    return points[i - 1, 0] + share * (points[i, 0] - points[i - 1, 0]), points[i - 1, 1] + share * (points[i, 1] - points[i - 1, 1])
+    return points[i - 1, 0] + share * (points[i, 0] - points[i - 1, 0]), points[
+        i - 1, 1
+    ] + share * (points[i, 1] - points[i - 1, 1])

@@ -1,14 +1,18 @@
-"""What a robot could reach that knew the future of its world: a bound below every arrival, and the earliest arrival that a search finds.
+"""What a robot could reach that knew the future of its world: a bound below every arrival, and the
+earliest arrival that a search finds.
 
-The bound, `least_way`, is the shortest way among what stands still all the time. The search goes over safe intervals. A place has safe
-intervals, during which nothing is there; a robot that reaches it in one of them can stay until it ends. So the earliest arrival in each
-interval of each place is all that a search must keep (Phillips and Likhachev, SIPP, ICRA 2011).
+The bound, `least_way`, is the shortest way among what stands still all the time. The search goes
+over safe intervals. A place has safe intervals, during which nothing is there; a robot that reaches
+it in one of them can stay until it ends. So the earliest arrival in each interval of each place is
+all that a search must keep (Phillips and Likhachev, SIPP, ICRA 2011).
 
-Every schedule found is exactly free, so the search bounds the best arrival from above. Among circles the places are the points of a
-lattice. A place is reached from a neighbour or straight from the neighbour's predecessor (Yakovlev and Andreychuk, AA-SIPP, ICAPS 2017),
-and the way found is pulled taut off the lattice; ways with one bend, and a straight drive after a wait, are tried as well. Another robot
-may still be earlier. Among cells the places are start, target and the corners of all maps, and drives lead in any direction: where a map
-only gains obstacles, and once, no robot of any kind is earlier.
+Every schedule found is exactly free, so the search bounds the best arrival from above. Among
+circles the places are the points of a lattice. A place is reached from a neighbour or straight from
+the neighbour's predecessor (Yakovlev and Andreychuk, AA-SIPP, ICAPS 2017), and the way found is
+pulled taut off the lattice; ways with one bend, and a straight drive after a wait, are tried as
+well. Another robot may still be earlier. Among cells the places are start, target and the corners
+of all maps, and drives lead in any direction: where a map only gains obstacles, and once, no robot
+of any kind is earlier.
 """
 
 import heapq
@@ -27,17 +31,23 @@ from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, po
 
 
 class Schedule(NamedTuple):
-    """arrival: in steps, infinite if none was found before the world's end. length: of the way, in units."""
+    """arrival: in steps, infinite if none was found before the world's end. length: of the way, in
+    units.
+    """
 
     arrival: float
     length: float
 
 
 def least_way(world: World, problem: Problem) -> shortest_paths.Bound:
-    """The shortest way through places that are free at some time: no robot's way is shorter, and at its pace no robot arrives earlier."""
+    """The shortest way through places that are free at some time: no robot's way is shorter, and at
+    its pace no robot arrives earlier.
+    """
     if isinstance(world, ChangingCells):
         always = np.all([each.occupied for each in world.maps], axis=0)
-        return shortest_paths.shortest_path(problem._replace(workspace=replace(world.maps[0], occupied=always)))
+        return shortest_paths.shortest_path(
+            problem._replace(workspace=replace(world.maps[0], occupied=always))
+        )
     # A circle that moves lets a robot pass that waits.
     still = ~world.velocities.any(axis=1)
     stays = Circles(world.bounds, world.centres[still], world.radii[still], world.unit)
@@ -46,14 +56,20 @@ def least_way(world: World, problem: Problem) -> shortest_paths.Bound:
 
 def earliest(world: World, problem: Problem) -> Schedule:
     """The earliest arrival found."""
-    return _among_cells(world, problem) if isinstance(world, ChangingCells) else _among_circles(world, problem)
+    return (
+        _among_cells(world, problem)
+        if isinstance(world, ChangingCells)
+        else _among_circles(world, problem)
+    )
 
 
 def reachable(world: World, problem: Problem) -> bool:
     """Whether the search finds a schedule, of any arrival before the world's end."""
     if isinstance(world, ChangingCells):
         return math.isfinite(_among_cells(world, problem).arrival)
-    if problem.start == problem.target or len(_on_lattice(*_search(world, problem), world.end, False)[0]):
+    if problem.start == problem.target or len(
+        _on_lattice(*_search(world, problem), world.end, False)[0]
+    ):
         return True
     return math.isfinite(_straight(world, problem, math.inf))
 
@@ -83,21 +99,29 @@ def _among_circles(world: MovingCircles, problem: Problem) -> Schedule:
 
 
 def _straight(world: MovingCircles, problem: Problem, before: float) -> float:
-    """Arrival of the first straight drive after a wait of whole steps that is free and arrives before a time; infinite if there is none."""
-    ends, duration = np.array([problem.start, problem.target]), math.dist(problem.start, problem.target) / world.pace
+    """Arrival of the first straight drive after a wait of whole steps that is free and arrives
+    before a time; infinite if there is none.
+    """
+    ends, duration = (
+        np.array([problem.start, problem.target]),
+        math.dist(problem.start, problem.target) / world.pace,
+    )
     for wait in range(world.end):
         arrival = wait + duration
         if arrival >= before:
             break
-        points, times = (ends[[0, 0, 1]], [0.0, float(wait), arrival]) if wait else (ends, [0.0, arrival])
+        points, times = (
+            (ends[[0, 0, 1]], [0.0, float(wait), arrival]) if wait else (ends, [0.0, arrival])
+        )
         if math.isnan(check(Motion(points, np.array(times)), world).collision_at):
             return arrival
     return math.inf
 
 
 class _Search(NamedTuple):
-    """A search among circles. origin (2,) and counts (2,): of a lattice through the start whose straight moves take one step. centres:
-    (steps + 2, n, 2), of the circles. radii (n,). start, target: (2,). pace: in units per step.
+    """A search among circles. origin (2,) and counts (2,): of a lattice through the start whose
+    straight moves take one step. centres: (steps + 2, n, 2), of the circles. radii (n,). start,
+    target: (2,). pace: in units per step.
     """
 
     origin: np.ndarray
@@ -115,31 +139,50 @@ def _search(world: MovingCircles, problem: Problem) -> _Search:
     before = np.floor((start - [x_low, y_low]) / pace + 1e-9)
     after = np.floor(([x_high, y_high] - start) / pace + 1e-9)
     walls = np.array(world.walls, dtype=float)
-    centres = np.array([positions(world.centres, world.velocities, walls, step) for step in range(world.end + 2)])
+    centres = np.array(
+        [positions(world.centres, world.velocities, walls, step) for step in range(world.end + 2)]
+    )
     counts = (before + after + 1).astype(np.int64)
-    return _Search(start - before * pace, counts, centres, world.radii, start, np.array(problem.target), pace)
+    return _Search(
+        start - before * pace, counts, centres, world.radii, start, np.array(problem.target), pace
+    )
 
 
 @compiled
 def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_angle):
-    """Points (n, 2) of the earliest schedule found with its bends on the lattice, and the waits (n,) at each; none if it found none.
+    """Points (n, 2) of the earliest schedule found with its bends on the lattice, and the waits
+    (n,) at each; none if it found none.
 
     any_angle: whether a place is reached from its predecessor's predecessor as well.
     """
     columns, rows = counts
     begins = _safe_intervals(origin, columns, rows, centres, radii, pace, end)
-    # `best` and `parents` hold what is reached: to fill them before takes longer than the search, which reaches few intervals.
+    # `best` and `parents` hold what is reached: to fill them before takes longer than the search,
+    # which reaches few intervals.
     reached = np.zeros(begins.shape, dtype=np.bool_)
-    best, parents, since = np.empty(begins.shape), np.empty(begins.shape, dtype=np.int64), np.empty(begins.shape, dtype=np.int64)
-    first_node = round((start[1] - origin[1]) / pace) * columns + round((start[0] - origin[0]) / pace)
+    best, parents, since = (
+        np.empty(begins.shape),
+        np.empty(begins.shape, dtype=np.int64),
+        np.empty(begins.shape, dtype=np.int64),
+    )
+    first_node = round((start[1] - origin[1]) / pace) * columns + round(
+        (start[0] - origin[0]) / pace
+    )
     # Where a circle comes during the first step, the robot must leave at once.
     hurried = begins[first_node, 0] < 0
-    reached[first_node, 0], best[first_node, 0], parents[first_node, 0], since[first_node, 0] = True, 0.0, -1, 0
+    reached[first_node, 0], best[first_node, 0], parents[first_node, 0], since[first_node, 0] = (
+        True,
+        0.0,
+        -1,
+        0,
+    )
     heap = [(math.hypot(target[0] - start[0], target[1] - start[1]) / pace, 0.0, first_node, 0)]
     while len(heap) > 0:
         _, time, node, interval = heapq.heappop(heap)
         if node < 0:
-            return _traced(time, -1 - node, interval, origin, columns, target, pace, best, parents, since)
+            return _traced(
+                time, -1 - node, interval, origin, columns, target, pace, best, parents, since
+            )
         if time > best[node, interval]:
             continue
         x, y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
@@ -148,13 +191,25 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
         # Here and below, an integer in the place of a float would compile the kernel a second time.
         if any_angle or home < 1.5 * pace:
             latest = float(leave) if home < 1.5 * pace else time
-            depart = _departure(x, y, target[0], target[1], time, latest, home / pace, centres, radii)
+            depart = _departure(
+                x, y, target[0], target[1], time, latest, home / pace, centres, radii
+            )
             if depart < np.inf:
-                heapq.heappush(heap, (depart + home / pace, depart + home / pace, -1 - node, interval))
-        parent, parent_interval = parents[node, interval] if any_angle else -1, since[node, interval]
+                heapq.heappush(
+                    heap, (depart + home / pace, depart + home / pace, -1 - node, interval)
+                )
+        parent, parent_interval = (
+            parents[node, interval] if any_angle else -1,
+            since[node, interval],
+        )
         if parent >= 0:
-            parent_x, parent_y = origin[0] + parent % columns * pace, origin[1] + parent // columns * pace
-            parent_leave = _leave(begins, parent, parent_interval, end, hurried and parent == first_node)
+            parent_x, parent_y = (
+                origin[0] + parent % columns * pace,
+                origin[1] + parent // columns * pace,
+            )
+            parent_leave = _leave(
+                begins, parent, parent_interval, end, hurried and parent == first_node
+            )
         for dx in range(-1, 2):
             for dy in range(-1, 2):
                 column, row = node % columns + dx, node // columns + dy
@@ -178,14 +233,33 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
                     arrival, before, before_interval = known, node, interval
                     if parent >= 0:
                         direct = math.hypot(other_x - parent_x, other_y - parent_y) / pace
-                        first, last = max(best[parent, parent_interval], into - direct), min(parent_leave, until - direct)
+                        first, last = (
+                            max(best[parent, parent_interval], into - direct),
+                            min(parent_leave, until - direct),
+                        )
                         if first + direct < arrival:
-                            depart = _departure(parent_x, parent_y, other_x, other_y, first, last, direct, centres, radii)
+                            depart = _departure(
+                                parent_x,
+                                parent_y,
+                                other_x,
+                                other_y,
+                                first,
+                                last,
+                                direct,
+                                centres,
+                                radii,
+                            )
                             if depart + direct < arrival:
-                                arrival, before, before_interval = depart + direct, parent, parent_interval
+                                arrival, before, before_interval = (
+                                    depart + direct,
+                                    parent,
+                                    parent_interval,
+                                )
                     first, last = max(time, into - duration), min(leave, until - duration)
                     if first + duration < arrival:
-                        depart = _departure(x, y, other_x, other_y, first, last, duration, centres, radii)
+                        depart = _departure(
+                            x, y, other_x, other_y, first, last, duration, centres, radii
+                        )
                         if depart + duration < arrival:
                             arrival, before, before_interval = depart + duration, node, interval
                     if arrival < known:
@@ -198,7 +272,9 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
 
 @allocation_free
 def _leave(begins, node, interval, end, hurried):
-    """The step at which a place's safe interval ends; 0 if the robot must leave its first one at once."""
+    """The step at which a place's safe interval ends; 0 if the robot must leave its first one at
+    once.
+    """
     leave = interval
     while leave < end and begins[node, leave] == interval and not (hurried and interval == 0):
         leave += 1
@@ -207,34 +283,50 @@ def _leave(begins, node, interval, end, hurried):
 
 @compiled
 def _traced(arrival, node, interval, origin, columns, target, pace, best, parents, since):
-    """Points and waits, as of `_on_lattice`, of the schedule that goes from a place in an interval to the target, from its predecessors."""
+    """Points and waits, as of `_on_lattice`, of the schedule that goes from a place in an interval
+    to the target, from its predecessors.
+    """
     count, at, during = 2, node, interval
     while parents[at, during] >= 0:
         at, during, count = parents[at, during], since[at, during], count + 1
     points, times = np.empty((count, 2)), np.empty(count)
     points[count - 1, 0], points[count - 1, 1], times[count - 1] = target[0], target[1], arrival
     for k in range(count - 2, -1, -1):
-        points[k, 0], points[k, 1] = origin[0] + node % columns * pace, origin[1] + node // columns * pace
+        points[k, 0], points[k, 1] = (
+            origin[0] + node % columns * pace,
+            origin[1] + node // columns * pace,
+        )
         times[k] = best[node, interval]
         node, interval = parents[node, interval], since[node, interval]
     waits = np.zeros(count)
     for k in range(count - 1):
-        waits[k] = max(times[k + 1] - times[k] - math.hypot(points[k + 1, 0] - points[k, 0], points[k + 1, 1] - points[k, 1]) / pace, 0.0)
+        waits[k] = max(
+            times[k + 1]
+            - times[k]
+            - math.hypot(points[k + 1, 0] - points[k, 0], points[k + 1, 1] - points[k, 1]) / pace,
+            0.0,
+        )
     return points, waits
 
 
 @compiled
 def _with_one_bend(origin, counts, centres, radii, start, target, pace, before):
-    """Points (3, 2) and waits (3,), as of `_on_lattice`, of the earliest schedule with one bend on the lattice and no wait that arrives
-    before a time, in steps; none if there is none. The search misses it where it reaches a place of the way earlier by another one.
+    """Points (3, 2) and waits (3,), as of `_on_lattice`, of the earliest schedule with one bend on
+    the lattice and no wait that arrives before a time, in steps; none if there is none. The search
+    misses it where it reaches a place of the way earlier by another one.
     """
     columns, rows = counts
     best, points, waits = before - _EARLIER, np.empty((3, 2)), np.zeros(3)
     tried = np.empty((3, 2))
     tried[0, 0], tried[0, 1], tried[2, 0], tried[2, 1] = start[0], start[1], target[0], target[1]
     for node in range(columns * rows):
-        tried[1, 0], tried[1, 1] = origin[0] + node % columns * pace, origin[1] + node // columns * pace
-        length = math.hypot(tried[1, 0] - start[0], tried[1, 1] - start[1]) + math.hypot(target[0] - tried[1, 0], target[1] - tried[1, 1])
+        tried[1, 0], tried[1, 1] = (
+            origin[0] + node % columns * pace,
+            origin[1] + node // columns * pace,
+        )
+        length = math.hypot(tried[1, 0] - start[0], tried[1, 1] - start[1]) + math.hypot(
+            target[0] - tried[1, 0], target[1] - tried[1, 1]
+        )
         if length / pace < best and _arrival(tried, waits, 3, centres, radii, pace) < np.inf:
             best = length / pace
             for i in range(3):
@@ -254,8 +346,9 @@ _EARLIER = 1e-6
 
 @compiled
 def _pulled(points, waits, centres, radii, bounds, pace):
-    """Points (m, 2) and waits (m,), as of `_on_lattice`, of a schedule from a free one, with points left out, points shifted and waits cut
-    for as long as that makes it earlier and leaves it free. It changes what it is given. bounds (4,): as in `MovingCircles`.
+    """Points (m, 2) and waits (m,), as of `_on_lattice`, of a schedule from a free one, with points
+    left out, points shifted and waits cut for as long as that makes it earlier and leaves it free.
+    It changes what it is given. bounds (4,): as in `MovingCircles`.
     """
     n = len(points)
     arrival = _arrival(points, waits, n, centres, radii, pace)
@@ -272,19 +365,31 @@ def _pulled(points, waits, centres, radii, bounds, pace):
                 for i in range(n):
                     j = i + 1 if attempt == -2 and i >= k else i
                     if j < n:
-                        tried[i, 0], tried[i, 1], tried_waits[i] = points[j, 0], points[j, 1], waits[j]
+                        tried[i, 0], tried[i, 1], tried_waits[i] = (
+                            points[j, 0],
+                            points[j, 1],
+                            waits[j],
+                        )
                 m = n - 1 if attempt == -2 else n
                 if attempt == -1:
                     tried_waits[k] = max(waits[k] - shift / pace, 0.0)
                 elif attempt >= 0:
                     angle = 2.0 * math.pi * attempt / _SHIFTS
-                    tried[k, 0] = min(max(points[k, 0] + shift * math.cos(angle), bounds[0]), bounds[1])
-                    tried[k, 1] = min(max(points[k, 1] + shift * math.sin(angle), bounds[2]), bounds[3])
+                    tried[k, 0] = min(
+                        max(points[k, 0] + shift * math.cos(angle), bounds[0]), bounds[1]
+                    )
+                    tried[k, 1] = min(
+                        max(points[k, 1] + shift * math.sin(angle), bounds[2]), bounds[3]
+                    )
                 found = _arrival(tried, tried_waits, m, centres, radii, pace)
                 if found < arrival - _EARLIER:
                     n, arrival, better = m, found, True
                     for i in range(n):
-                        points[i, 0], points[i, 1], waits[i] = tried[i, 0], tried[i, 1], tried_waits[i]
+                        points[i, 0], points[i, 1], waits[i] = (
+                            tried[i, 0],
+                            tried[i, 1],
+                            tried_waits[i],
+                        )
                     if attempt == -2:
                         k -= 1
                         break
@@ -307,7 +412,9 @@ def _arrival(points, waits, count, centres, radii, pace):
         time += waits[k]
         duration = math.hypot(next_x - x, next_y - y) / pace
         if duration > 0.0:
-            if time + duration >= len(centres) - 1 or not _is_free(x, y, next_x, next_y, time, duration, centres, radii):
+            if time + duration >= len(centres) - 1 or not _is_free(
+                x, y, next_x, next_y, time, duration, centres, radii
+            ):
                 return np.inf
             time += duration
     return time
@@ -315,19 +422,43 @@ def _arrival(points, waits, count, centres, radii, pace):
 
 @compiled
 def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
-    """For each place and step, the first step of the safe interval that holds it, or -1 if some circle comes there during the step."""
+    """For each place and step, the first step of the safe interval that holds it, or -1 if some
+    circle comes there during the step.
+    """
     begins = np.zeros((columns * rows, end), dtype=np.int16)
     for step in range(end):
         for k in range(len(radii)):
             reach = radii[k]
-            low_x, high_x = min(centres[step, k, 0], centres[step + 1, k, 0]), max(centres[step, k, 0], centres[step + 1, k, 0])
-            low_y, high_y = min(centres[step, k, 1], centres[step + 1, k, 1]), max(centres[step, k, 1], centres[step + 1, k, 1])
-            first, last = math.ceil((low_x - reach - origin[0]) / pace), math.floor((high_x + reach - origin[0]) / pace)
-            bottom, top = math.ceil((low_y - reach - origin[1]) / pace), math.floor((high_y + reach - origin[1]) / pace)
+            low_x, high_x = (
+                min(centres[step, k, 0], centres[step + 1, k, 0]),
+                max(centres[step, k, 0], centres[step + 1, k, 0]),
+            )
+            low_y, high_y = (
+                min(centres[step, k, 1], centres[step + 1, k, 1]),
+                max(centres[step, k, 1], centres[step + 1, k, 1]),
+            )
+            first, last = (
+                math.ceil((low_x - reach - origin[0]) / pace),
+                math.floor((high_x + reach - origin[0]) / pace),
+            )
+            bottom, top = (
+                math.ceil((low_y - reach - origin[1]) / pace),
+                math.floor((high_y + reach - origin[1]) / pace),
+            )
             for row in range(max(bottom, 0), min(top, rows - 1) + 1):
                 for column in range(max(first, 0), min(last, columns - 1) + 1):
                     x, y = origin[0] + column * pace, origin[1] + row * pace
-                    if _meets(x, y, x, y, float(step), step + 1.0, centres[step : step + 2, k], reach, step):
+                    if _meets(
+                        x,
+                        y,
+                        x,
+                        y,
+                        float(step),
+                        step + 1.0,
+                        centres[step : step + 2, k],
+                        reach,
+                        step,
+                    ):
                         begins[row * columns + column, step] = -1
     for node in range(columns * rows):
         begin = 0
@@ -341,8 +472,9 @@ def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
 
 @allocation_free
 def _meets(x, y, to_x, to_y, begin, end, centres, radius, step):
-    """Whether a robot that moves from one point at `begin` to another at `end`, both within a step, enters a circle that moves from the
-    first to the second of two centres (2, 2) during the step."""
+    """Whether a robot that moves from one point at `begin` to another at `end`, both within a step,
+    enters a circle that moves from the first to the second of two centres (2, 2) during the step.
+    """
     early, late = begin - step, end - step
     dx = x - centres[0, 0] - early * (centres[1, 0] - centres[0, 0])
     dy = y - centres[0, 1] - early * (centres[1, 1] - centres[0, 1])
@@ -355,7 +487,9 @@ def _meets(x, y, to_x, to_y, begin, end, centres, radius, step):
 
 @allocation_free
 def _departure(x, y, to_x, to_y, earliest, latest, duration, centres, radii):
-    """The first of some departures between two times, in steps, after which a drive collides with nothing; infinite without one."""
+    """The first of some departures between two times, in steps, after which a drive collides with
+    nothing; infinite without one.
+    """
     depart = earliest
     for _ in range(_MOST_TRIES):
         if depart > latest or depart + duration >= len(centres) - 1:
@@ -376,7 +510,17 @@ def _is_free(x, y, to_x, to_y, depart, duration, centres, radii):
         for k in range(len(radii)):
             here_x, here_y = x + one * (to_x - x), y + one * (to_y - y)
             there_x, there_y = x + other * (to_x - x), y + other * (to_y - y)
-            if _meets(here_x, here_y, there_x, there_y, begin, end, centres[step : step + 2, k], radii[k], step):
+            if _meets(
+                here_x,
+                here_y,
+                there_x,
+                there_y,
+                begin,
+                end,
+                centres[step : step + 2, k],
+                radii[k],
+                step,
+            ):
                 return False
         begin = end
     return True
@@ -390,7 +534,12 @@ def _among_cells(world: ChangingCells, problem: Problem) -> Schedule:
     occupied = np.array([np.pad(each.occupied, 1, constant_values=True) for each in world.maps])
     # In cells from the lower left corner of the ring of occupied cells around the map.
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float)) + 1.0
-    around = occupied[:, :-1, :-1] * 1 + occupied[:, :-1, 1:] + occupied[:, 1:, :-1] + occupied[:, 1:, 1:]
+    around = (
+        occupied[:, :-1, :-1] * 1
+        + occupied[:, :-1, 1:]
+        + occupied[:, 1:, :-1]
+        + occupied[:, 1:, 1:]
+    )
     diagonal = (around == 2) & (occupied[:, :-1, :-1] == occupied[:, 1:, 1:])
     rows, columns = np.nonzero(((around == 1) | diagonal).any(axis=0))
     places = np.concatenate([ends, np.column_stack([columns, rows]) + 1.0])
@@ -401,7 +550,8 @@ def _among_cells(world: ChangingCells, problem: Problem) -> Schedule:
 
 @compiled
 def _between_corners(places, occupied, begins, pace):
-    """Arrival, in steps, and length, in cells, of the earliest schedule from the first place (n, 2) to the second.
+    """Arrival, in steps, and length, in cells, of the earliest schedule from the first place (n, 2)
+    to the second.
 
     occupied: (maps, rows, columns). begins: (maps,) when each map begins. pace: in cells per step.
     """
@@ -444,7 +594,9 @@ def _between_corners(places, occupied, begins, pace):
                 if earliest + size / pace >= min(until, best[j, into]):
                     continue
                 latest = min(leave, until - size / pace)
-                depart = _free_departure(places[i], places[j], size, earliest, latest, occupied, begins, pace, cuts)
+                depart = _free_departure(
+                    places[i], places[j], size, earliest, latest, occupied, begins, pace, cuts
+                )
                 if depart + size / pace < best[j, into]:
                     best[j, into] = depart + size / pace
                     lengths[j, into] = lengths[i, f] + size
@@ -461,7 +613,8 @@ def _end_of(since, first, begins):
 
 @allocation_free
 def _free_departure(start, end, size, depart, latest, occupied, begins, pace, cuts):
-    """The first departure from a time on, in steps, after which the straight drive meets no occupied cell; infinite after the latest.
+    """The first departure from a time on, in steps, after which the straight drive meets no
+    occupied cell; infinite after the latest.
 
     cuts: room for `_write_crossings`.
     """
@@ -489,7 +642,9 @@ def _free_departure(start, end, size, depart, latest, occupied, begins, pace, cu
 
 @allocation_free
 def _write_crossings(start, end, cuts):
-    """Write the ascending parameters from 0 to 1 at which a segment crosses a grid line, each once; returns their number."""
+    """Write the ascending parameters from 0 to 1 at which a segment crosses a grid line, each once;
+    returns their number.
+    """
     cuts[0] = 0.0
     count = 1
     column, columns, right = _lines_between(start[0], end[0])
@@ -512,7 +667,9 @@ def _write_crossings(start, end, cuts):
 
 @allocation_free
 def _lines_between(begin, end):
-    """The first grid line beyond a coordinate on the way to another, how many there are before that one, and the step to the next line."""
+    """The first grid line beyond a coordinate on the way to another, how many there are before that
+    one, and the step to the next line.
+    """
     lines = math.ceil(max(begin, end)) - math.floor(min(begin, end)) - 1
     return (math.floor(begin) + 1, lines, 1) if end > begin else (math.ceil(begin) - 1, lines, -1)
 
@@ -526,4 +683,9 @@ def _inside(x, y, occupied):
     """Whether a point lies in the interior of the occupied cells."""
     left, right = math.floor(x - _ON_LINE), math.floor(x + _ON_LINE)
     bottom, top = math.floor(y - _ON_LINE), math.floor(y + _ON_LINE)
-    return occupied[bottom, left] and occupied[bottom, right] and occupied[top, left] and occupied[top, right]
+    return (
+        occupied[bottom, left]
+        and occupied[bottom, right]
+        and occupied[top, left]
+        and occupied[top, right]
+    )

@@ -8,36 +8,53 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
-# A robot that evades compares standing still with a drive in each of so many directions, during one of so many steps, after which it stays.
-# It looks so many steps ahead.
+# A robot that evades compares standing still with a drive in each of so many directions, during one
+# of so many steps, after which it stays. It looks so many steps ahead.
 _DIRECTIONS = 32
 _DRIVES = (1, 2, 4, 8)
 _AHEAD = 20.0
 
 
 def refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Policy) -> np.ndarray:
-    """The place (2,) where the robot is best at the end of a step: where it stands, unless a circle is about to come there.
+    """The place (2,) where the robot is best at the end of a step: where it stands, unless a circle
+    is about to come there.
 
-    It knows what its policy lets it see. A step in which it meets no circle is better than one in which it does; of two such steps, the
-    better one begins the drive on which it takes longer until a circle comes nearer than `check_margin`; then the one that ends farther
-    from all circles. place (2,): in units. step: the number of the one that begins.
+    It knows what its policy lets it see. A step in which it meets no circle is better than one in
+    which it does; of two such steps, the better one begins the drive on which it takes longer until
+    a circle comes nearer than `check_margin`; then the one that ends farther from all circles.
+    place (2,): in units. step: the number of the one that begins.
     """
     walls = np.array(world.walls, dtype=float)
     looked = step + (policy.sees == "after")
     seen = positions(world.centres, world.velocities, walls, looked)
-    drift = positions(world.centres, world.velocities, walls, looked + 1) - seen if policy.knows == "velocities" else np.zeros_like(seen)
+    drift = (
+        positions(world.centres, world.velocities, walls, looked + 1) - seen
+        if policy.knows == "velocities"
+        else np.zeros_like(seen)
+    )
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    moves = world.pace * np.concatenate([np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])])
+    moves = world.pace * np.concatenate(
+        [np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])]
+    )
     during = seen - drift if policy.sees == "after" else seen
-    return _best(robot, moves, during, drift, world.radii, float(policy.check_margin), np.array(world.bounds, dtype=float))
+    return _best(
+        robot,
+        moves,
+        during,
+        drift,
+        world.radii,
+        float(policy.check_margin),
+        np.array(world.bounds, dtype=float),
+    )
 
 
 @compiled
 def _best(robot, moves, centres, drift, radii, margin, bounds):
     """The place (2,) at the end of the best step, as `refuge` ranks them.
 
-    moves (n, 2): in units per step, of which the first is to stay. centres (k, 2): of the circles at the beginning of the step, with their
-    drift (k, 2) in units per step and radii (k,). bounds (4,): of the field, as in `MovingCircles`. Lengths are in units.
+    moves (n, 2): in units per step, of which the first is to stay. centres (k, 2): of the circles
+    at the beginning of the step, with their drift (k, 2) in units per step and radii (k,). bounds
+    (4,): of the field, as in `MovingCircles`. Lengths are in units.
     """
     best, best_depth, best_time, best_apart = robot, -np.inf, 0.0, 0.0
     for i in range(len(moves)):
@@ -47,14 +64,17 @@ def _best(robot, moves, centres, drift, radii, margin, bounds):
             move_x, move_y = (end_x - robot[0]) / steps, (end_y - robot[1]) / steps
             depth, free, apart = 0.0, _AHEAD, np.inf
             for k in range(len(radii)):
-                # Relative to the circle: during the first step, during the drive, and then while the robot stays.
+                # Relative to the circle: during the first step, during the drive, and then while
+                # the robot stays.
                 dx, dy = robot[0] - centres[k, 0], robot[1] - centres[k, 1]
                 vx, vy = move_x - drift[k, 0], move_y - drift[k, 1]
                 depth = min(depth, _nearest(dx, dy, vx, vy) - radii[k])
                 reach = radii[k] + margin
                 met = _comes_at(dx, dy, vx, vy, reach)
                 if met >= steps:
-                    met = steps + _comes_at(dx + steps * vx, dy + steps * vy, -drift[k, 0], -drift[k, 1], reach)
+                    met = steps + _comes_at(
+                        dx + steps * vx, dy + steps * vy, -drift[k, 0], -drift[k, 1], reach
+                    )
                 free = min(free, met)
                 apart = min(apart, math.hypot(dx + vx, dy + vy) - radii[k])
             if (depth, free, apart) > (best_depth, best_time, best_apart):
@@ -75,7 +95,9 @@ def _nearest(dx, dy, ex, ey):
 
 @allocation_free
 def _comes_at(dx, dy, vx, vy, reach):
-    """When a point at (dx, dy) with a velocity comes nearer than `reach` to the origin, in steps; at most `_AHEAD`."""
+    """When a point at (dx, dy) with a velocity comes nearer than `reach` to the origin, in steps;
+    at most `_AHEAD`.
+    """
     excess, along, size = dx * dx + dy * dy - reach * reach, dx * vx + dy * vy, vx * vx + vy * vy
     if excess < 0.0:
         return 0.0

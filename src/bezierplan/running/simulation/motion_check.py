@@ -1,7 +1,9 @@
-"""Whether a robot collided: exact between steps, and without regard to what the robot saw or planned.
+"""Whether a robot collided: exact between steps, and without regard to what the robot saw or
+planned.
 
-Between two vertices of its way the robot moves uniformly, and so does a circle between two steps; the squared distance is a quadratic in
-time. On cells, the part driven between two changes is judged by the certified check. Touching is allowed.
+Between two vertices of its way the robot moves uniformly, and so does a circle between two steps;
+the squared distance is a quadratic in time. On cells, the part driven between two changes is judged
+by the certified check. Touching is allowed.
 """
 
 import itertools
@@ -16,7 +18,9 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
 TOUCHING = 2 * checker.TOLERANCE
-"""A robot no deeper in an obstacle than this, in units, touches it: so deep can a path be that the checker calls free."""
+"""A robot no deeper in an obstacle than this, in units, touches it: so deep can a path be that the
+checker calls free.
+"""
 
 
 class Motion(NamedTuple):
@@ -27,9 +31,10 @@ class Motion(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """collision_at: time of the first collision, in steps; nan without one. clearance: (steps,) least distance to an obstacle in each step,
-    in units, negative inside a circle; in changing cells 0 when colliding, and the border counts. depth: largest depth in an obstacle.
-    tolerance: error of depth and clearance, in units.
+    """collision_at: time of the first collision, in steps; nan without one. clearance: (steps,)
+    least distance to an obstacle in each step, in units, negative inside a circle; in changing
+    cells 0 when colliding, and the border counts. depth: largest depth in an obstacle. tolerance:
+    error of depth and clearance, in units.
     """
 
     collision_at: float
@@ -47,7 +52,9 @@ def check(motion: Motion, world: World) -> Verdict:
 
 def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
     walls = np.array(world.walls, dtype=float)
-    hit, clearance = _approach(motion.points, motion.times, world.centres, world.velocities, walls, world.radii, TOUCHING)
+    hit, clearance = _approach(
+        motion.points, motion.times, world.centres, world.velocities, walls, world.radii, TOUCHING
+    )
     x_low, x_high, y_low, y_high = world.bounds
     x, y = motion.points.T
     outside = np.max([x_low - x, x - x_high, y_low - y, y - y_high], axis=0)
@@ -65,12 +72,17 @@ def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
 
 @compiled
 def _approach(points, times, centres, velocities, walls, radii, tolerance):
-    """Time of the first collision, infinite without one, and least clearance (steps,) in each step."""
+    """Time of the first collision, infinite without one, and least clearance (steps,) in each
+    step.
+    """
     first_step, last_step = int(np.floor(times[0])), int(np.ceil(times[-1]))
     clearance = np.full(max(last_step - first_step, 1), np.inf)
     collision_at = np.inf
     step = first_step
-    before, after = positions(centres, velocities, walls, step), positions(centres, velocities, walls, step + 1)
+    before, after = (
+        positions(centres, velocities, walls, step),
+        positions(centres, velocities, walls, step + 1),
+    )
     for i in range(len(times) - 1):
         begin = times[i]
         while True:
@@ -93,7 +105,11 @@ def _approach(points, times, centres, velocities, walls, radii, tolerance):
                 clearance[place] = min(clearance[place], nearest)
                 if nearest < -tolerance:
                     excess = apart - radii[k] * radii[k]
-                    entry = 0.0 if excess <= 0.0 else (-along - math.sqrt(max(along * along - size * excess, 0.0))) / size
+                    entry = (
+                        0.0
+                        if excess <= 0.0
+                        else (-along - math.sqrt(max(along * along - size * excess, 0.0))) / size
+                    )
                     collision_at = min(collision_at, begin + entry * (end - begin))
             if end >= times[i + 1]:
                 break
@@ -106,24 +122,37 @@ def _relative(points, i, share, before, after, moved):
     """The robot's place on leg i, relative to a circle that has made a share of its step."""
     x = points[i, 0] + share * (points[i + 1, 0] - points[i, 0])
     y = points[i, 1] + share * (points[i + 1, 1] - points[i, 1])
-    return x - before[0] - moved * (after[0] - before[0]), y - before[1] - moved * (after[1] - before[1])
+    return x - before[0] - moved * (after[0] - before[0]), y - before[1] - moved * (
+        after[1] - before[1]
+    )
 
 
 def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     first, last = math.floor(motion.times[0]), math.ceil(motion.times[-1])
     regions = [region(each) for each in world.maps]
-    clearance, collision_at, depth, tolerance = np.full(max(last - first, 1), np.inf), math.nan, 0.0, 0.0
+    clearance, collision_at, depth, tolerance = (
+        np.full(max(last - first, 1), np.inf),
+        math.nan,
+        0.0,
+        0.0,
+    )
     inner = world.moments[(world.moments > motion.times[0]) & (world.moments < motion.times[-1])]
-    cuts = np.unique(np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner]))
+    cuts = np.unique(
+        np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner])
+    )
     for begin, end in itertools.pairwise(cuts):
         points, times = between(motion, begin, end)
-        check = checker.check(np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)])
+        check = checker.check(
+            np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)]
+        )
         step = math.floor(begin) - first
         clearance[step] = min(clearance[step], check.clearance)
         depth, tolerance = max(depth, check.depth), max(tolerance, check.tolerance)
         if not check.feasible and math.isnan(collision_at):
             leg = min(int(check.collision_at), len(points) - 2)
-            collision_at = float(times[leg] + (check.collision_at - leg) * (times[leg + 1] - times[leg]))
+            collision_at = float(
+                times[leg] + (check.collision_at - leg) * (times[leg + 1] - times[leg])
+            )
     return Verdict(collision_at, clearance, depth, tolerance)
 
 
@@ -131,5 +160,7 @@ def between(motion: Motion, begin: float, end: float) -> Motion:
     """The part of a motion between two times, of at least two vertices."""
     inside = (motion.times > begin) & (motion.times < end)
     times = np.concatenate([[begin], motion.times[inside], [end]])
-    ends = np.column_stack([np.interp([begin, end], motion.times, motion.points[:, axis]) for axis in range(2)])
+    ends = np.column_stack(
+        [np.interp([begin, end], motion.times, motion.points[:, axis]) for axis in range(2)]
+    )
     return Motion(np.concatenate([ends[:1], motion.points[inside], ends[1:]]), times)

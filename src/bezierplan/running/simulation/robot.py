@@ -21,12 +21,15 @@ from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
 
 Planner = Callable[[Problem, Any], tuple[Plan, Any]]
-"""A planner with its settings and random numbers: of a problem and, for a warm start, what it returned second with its last plan."""
+"""A planner with its settings and random numbers: of a problem and, for a warm start, what it
+returned second with its last plan.
+"""
 
 
 class Planned(NamedTuple):
-    """A plan that the robot made. time: in steps. path: the planner's, or None. length: of the way to it and along it, in units. margin: by
-    which circles were grown, in units. seconds: CPU time. evaluations: as in `Plan`.
+    """A plan that the robot made. time: in steps. path: the planner's, or None. length: of the way
+    to it and along it, in units. margin: by which circles were grown, in units. seconds: CPU time.
+    evaluations: as in `Plan`.
     """
 
     time: float
@@ -38,7 +41,9 @@ class Planned(NamedTuple):
 
 
 class Ride(NamedTuple):
-    """A robot's way through a world. arrived: whether it reached the target. waited: time spent waiting, in steps."""
+    """A robot's way through a world. arrived: whether it reached the target. waited: time spent
+    waiting, in steps.
+    """
 
     motion: Motion
     arrived: bool
@@ -60,11 +65,15 @@ class _Log:
     def motion(self) -> Motion:
         """The motion so far, with at least two vertices."""
         points, times = np.concatenate(self.points), np.concatenate(self.times)
-        return Motion(points, times) if len(times) > 1 else Motion(np.repeat(points, 2, axis=0), np.array([0.0, 0.0]))
+        return (
+            Motion(points, times)
+            if len(times) > 1
+            else Motion(np.repeat(points, 2, axis=0), np.array([0.0, 0.0]))
+        )
 
     def follow(self, along: Way, times: np.ndarray, reached: np.ndarray, pace: float) -> None:
-        """Add a drive along a way: the lengths of it reached at some times, between which the robot waits or drives at its pace. It may
-        reach the last one before its time.
+        """Add a drive along a way: the lengths of it reached at some times, between which the robot
+        waits or drives at its pace. It may reach the last one before its time.
         """
         for k, (begin, end) in enumerate(itertools.pairwise(reached)):
             if end == begin:
@@ -92,7 +101,9 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
     log, plans, state = _Log(problem.start), [], None
     time = 0.0
     while time < world.end:
-        made, along, state = _plan(world, problem, policy, planner, log, time, state if policy.warm else None)
+        made, along, state = _plan(
+            world, problem, policy, planner, log, time, state if policy.warm else None
+        )
         plans.append(made)
         event = STOPPED
         if along is not None:
@@ -111,7 +122,9 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
     return Ride(log.motion(), False, log.waited, plans)
 
 
-def _follow(world: World, along: Way, time: float, policy: Policy) -> tuple[int, np.ndarray, np.ndarray]:
+def _follow(
+    world: World, along: Way, time: float, policy: Policy
+) -> tuple[int, np.ndarray, np.ndarray]:
     """`follow` of the world's kind."""
     if isinstance(world, ChangingCells):
         return cells.follow(world, along, time, policy)
@@ -130,12 +143,20 @@ def _aside(world: World, log: _Log, time: float, policy: Policy) -> np.ndarray |
 
 def _after_wait(world: World, time: float) -> float:
     """When a robot without a way looks again: after a step, or as soon as a cell changes."""
-    changes = world.moments[world.moments > time] if isinstance(world, ChangingCells) else np.empty(0)
+    changes = (
+        world.moments[world.moments > time] if isinstance(world, ChangingCells) else np.empty(0)
+    )
     return float(min(math.floor(time) + 1, changes.min(initial=math.inf), world.end))
 
 
 def _plan(
-    world: World, problem: Problem, policy: Policy, planner: Planner, log: _Log, time: float, state: Any
+    world: World,
+    problem: Problem,
+    policy: Policy,
+    planner: Planner,
+    log: _Log,
+    time: float,
+    state: Any,
 ) -> tuple[Planned, Way | None, Any]:
     """A plan from where the robot is, and the way that it follows then; None if it found none."""
     motion = log.motion()
@@ -149,19 +170,35 @@ def _plan(
         place = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), place, problem.target)
         if place == problem.target:
-            return Planned(time, None, 0.0, margin, clock.process_time() - began, 0), way(approach), state
+            return (
+                Planned(time, None, 0.0, margin, clock.process_time() - began, 0),
+                way(approach),
+                state,
+            )
         if not (_is_free(world, seen, place) and _is_free(world, seen, problem.target)):
             continue
         plan, found = planner(seen, state)
         evaluations += plan.evaluations
         if plan.path is not None and plan.claimed_feasible:
             along = way(np.concatenate([approach, drivable(plan.path, policy.spacing, obstacles)]))
-            return Planned(time, plan.path, along.length, margin, clock.process_time() - began, evaluations), along, found
-    return Planned(time, None, math.inf, math.nan, clock.process_time() - began, evaluations), None, state
+            return (
+                Planned(
+                    time, plan.path, along.length, margin, clock.process_time() - began, evaluations
+                ),
+                along,
+                found,
+            )
+    return (
+        Planned(time, None, math.inf, math.nan, clock.process_time() - began, evaluations),
+        None,
+        state,
+    )
 
 
 def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool:
-    """Whether a place is free in the workspace that a planner sees. Where that is drawn as cells, all of the place's cell must be."""
+    """Whether a place is free in the workspace that a planner sees. Where that is drawn as cells,
+    all of the place's cell must be.
+    """
     seen = problem.workspace
     if isinstance(world, MovingCircles) and isinstance(seen, Grid):
         cell = seen.cell_of(*point)

@@ -10,12 +10,15 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, blocks, from_origin
 from bezierplan.workspaces.problem import Path
 
-# A chord this short, in units, is not halved: beside a circle of radius 2 it is as deep in it as the checker calls free.
+# A chord this short, in units, is not halved: beside a circle of radius 2 it is as deep in it as
+# the checker calls free.
 _SHORTEST = 1e-4
 
 
 class Way(NamedTuple):
-    """points: (n, 2), in units, no two successive ones equal. at: (n,) length of the way up to each of them."""
+    """points: (n, 2), in units, no two successive ones equal. at: (n,) length of the way up to each
+    of them.
+    """
 
     points: np.ndarray
     at: np.ndarray
@@ -36,14 +39,18 @@ class Way(NamedTuple):
 
 
 def way(points: np.ndarray) -> Way:
-    """A way through points (n, 2); repeated ones are left out, except that a way has at least one point."""
+    """A way through points (n, 2); repeated ones are left out, except that a way has at least one
+    point.
+    """
     points = np.asarray(points, dtype=float)
     points = points[np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])]
     return Way(points, np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))]))
 
 
 def polyline(path: Path, spacing: float) -> np.ndarray:
-    """The points (n, 2) of a polyline, or chords of another curve whose mean length is at most a spacing, in units."""
+    """The points (n, 2) of a polyline, or chords of another curve whose mean length is at most a
+    spacing, in units.
+    """
     if path.curve == "polyline":
         return path.points
     legs = np.hypot(*np.diff(path.points, axis=0).T).sum()
@@ -55,23 +62,31 @@ def polyline(path: Path, spacing: float) -> np.ndarray:
 
 
 def drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
-    """`polyline` with further points: a chord of a curve that touches an obstacle can enter it. Such a chord, between two free points, is
-    halved until no part of it does.
+    """`polyline` with further points: a chord of a curve that touches an obstacle can enter it.
+    Such a chord, between two free points, is halved until no part of it does.
     """
     points = polyline(path, spacing)
     if path.curve == "polyline" or _free(points, obstacles):
         return points
-    return _halved(path, np.linspace(0.0, len(curves.bezier_pieces(path)), len(points)), points, obstacles)
+    return _halved(
+        path, np.linspace(0.0, len(curves.bezier_pieces(path)), len(points)), points, obstacles
+    )
 
 
 def _halved(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -> np.ndarray:
-    """Points (m, 2) of a path: those given (n, 2), at parameters (n,) as in `curves.point_at`, and more where chords enter an obstacle."""
+    """Points (m, 2) of a path: those given (n, 2), at parameters (n,) as in `curves.point_at`, and
+    more where chords enter an obstacle.
+    """
     corners = [points[0]]
     open_ = list(itertools.pairwise(zip(at, points)))[::-1]
     while open_:
         begin, until = open_.pop()
         chord = np.array([begin[1], until[1]])
-        if math.dist(*chord) < _SHORTEST or _free(chord, obstacles) or any(blocks(obstacles, tuple(end)) for end in chord):
+        if (
+            math.dist(*chord) < _SHORTEST
+            or _free(chord, obstacles)
+            or any(blocks(obstacles, tuple(end)) for end in chord)
+        ):
             corners.append(until[1])
             continue
         between = (begin[0] + until[0]) / 2

@@ -1,16 +1,16 @@
 """One file per kind of workspace: `Options`, the keys of its description, and how it is made.
 
-| name | means |
-| --- | --- |
-| `Options` | the keys that a description of this kind may have |
-| `load(description, folder)` | the workspace of a description, if it is fixed; files are looked up in a folder |
-| `sources(description, folder)` | the files from which it is read, if they are more than those that its keys name |
-| `draw(description, problem, name)` | the workspace of a problem, if it is random; seeded by the name of study and workspace |
-| `candidates(description, problem, name)` | in place of `draw`, workspaces of which the first with a suitable lattice path is taken |
-| `world(description, problem, name, folder, length)` | the world of a problem, if the kind moves |
+| name | means | | --- | --- | | `Options` | the keys that a description of this kind may have | |
+`load(description, folder)` | the workspace of a description, if it is fixed; files are looked up in
+a folder | | `sources(description, folder)` | the files from which it is read, if they are more than
+those that its keys name | | `draw(description, problem, name)` | the workspace of a problem, if it
+is random; seeded by the name of study and workspace | | `candidates(description, problem, name)` |
+in place of `draw`, workspaces of which the first with a suitable lattice path is taken | |
+`world(description, problem, name, folder, length)` | the world of a problem, if the kind moves |
 
-A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5 in absolute value. `length` of a
-map is that of the shortest path from cell to cell between the ends of the problem. All faults are ValueErrors of one line.
+A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5
+in absolute value. `length` of a map is that of the shortest path from cell to cell between the ends
+of the problem. All faults are ValueErrors of one line.
 """
 
 import importlib
@@ -50,14 +50,21 @@ _NOT_IN_NAMES = frozenset('{}*?[]<>|":\\')
 
 def _fits_everywhere(part: str) -> bool:
     """Whether a file or folder can have a name on every system."""
-    return part == part.strip() and len(part) <= LONGEST_NAME and part.partition(".")[0].lower() not in DEVICES
+    return (
+        part == part.strip()
+        and len(part) <= LONGEST_NAME
+        and part.partition(".")[0].lower() not in DEVICES
+    )
 
 
 def _check_file(value: Any) -> str:
     if not (isinstance(value, str) and value.isprintable() and 0 < len(value) <= 200):
         raise PydanticCustomError("expected", "{text}", {"text": "the name of a file"})
     if _NOT_IN_NAMES & set(value) or not all(map(_fits_everywhere, value.split("/"))):
-        wanted = f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and names of devices"
+        wanted = (
+            f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and "
+            f"names of devices"
+        )
         raise wrong(f"{value!r}: expected {wanted}")
     return value
 
@@ -65,7 +72,11 @@ def _check_file(value: Any) -> str:
 _IS_FILE = PlainValidator(_check_file)
 File = Annotated[str, _IS_FILE]
 Unit = Annotated[
-    str, value(lambda given: isinstance(given, str) and re.fullmatch(r"[^\W\d_]{1,20}", given) is not None, "letters, 20 at most")
+    str,
+    value(
+        lambda given: isinstance(given, str) and re.fullmatch(r"[^\W\d_]{1,20}", given) is not None,
+        "letters, 20 at most",
+    ),
 ]
 
 
@@ -80,7 +91,13 @@ def of_length(length: int, expected: str) -> AfterValidator:
     return after(check)
 
 
-Size = Annotated[float, value(lambda given: is_number(given) and given >= SMALLEST_FEATURE, f"a number of at least {SMALLEST_FEATURE:g}")]
+Size = Annotated[
+    float,
+    value(
+        lambda given: is_number(given) and given >= SMALLEST_FEATURE,
+        f"a number of at least {SMALLEST_FEATURE:g}",
+    ),
+]
 """A side or a radius of something solid, in units."""
 
 Bounds = Annotated[list[Number], of_length(4, "[x low, x high, y low, y high]")]
@@ -88,14 +105,18 @@ CircleCount = Annotated[int, value(lambda given: type(given) is int and 1 <= giv
 
 # Descriptions of keys shared by several kinds.
 REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
-MARGIN = "in a file without a border, how far the border lies from the obstacles, in units, a number of at least 0"
+MARGIN = (
+    "in a file without a border, how far the border lies from the obstacles, in units, a "
+    "number of at least 0"
+)
 CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 
 
 class Workspace(Model):
-    """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see; made: for one converted from files of
-    another format, the kind that planners see; with_side: whether its problems have a `side`; moves: whether it is a world, in which runs
-    are simulated drives.
+    """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see;
+    made: for one converted from files of another format, the kind that planners see; with_side:
+    whether its problems have a `side`; moves: whether it is a world, in which runs are simulated
+    drives.
     """
 
     drawn: ClassVar[str | None] = None
@@ -112,18 +133,26 @@ class World(Workspace):
 
     moves: ClassVar[bool] = True
 
-    pace: Positive = Field(description="how far a robot drives in a step, in units, a number above 0")
-    steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
-        description="when a world ends and with it every drive, in steps, a whole number from 1 to 10000"
+    pace: Positive = Field(
+        description="how far a robot drives in a step, in units, a number above 0"
+    )
+    steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = (
+        Field(
+            description="when a world ends and with it every drive, in steps, a whole number from "
+            "1 to 10000"
+        )
     )
 
 
 class RandomMoving(World):
     """Keys common to worlds with circles that move from random places in random directions."""
 
-    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
+    clear_ends: NotNegative = Field(
+        description="how far start and target are from a circle at first, at least 0"
+    )
     speed: NotNegative = Field(
-        description="how far every circle moves in a step, in units, a number of at least 0; their directions are random"
+        description="how far every circle moves in a step, in units, a number of at least 0; "
+        "their directions are random"
     )
 
 
@@ -134,26 +163,38 @@ def kind_of(description: dict) -> ModuleType:
 
 @cache
 def kinds() -> dict[str, type[Workspace]]:
-    """Kind of workspace -> the keys of its descriptions; fixed ones first, then random ones, then worlds."""
+    """Kind of workspace -> the keys of its descriptions; fixed ones first, then random ones, then
+    worlds.
+    """
     names = [file.stem for file in Path(__file__).parent.glob("[!_]*.py")]
     found = {name: kind_of({"kind": name}).Options for name in names}
-    return dict(sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].drawn), each[0])))
+    return dict(
+        sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].drawn), each[0]))
+    )
 
 
 def file_keys(options: type[Workspace]) -> list[str]:
     """The keys of a kind that name files."""
-    return [key for key, field in keys(options).items() if _IS_FILE in unwrapped(field.metadata, field.annotation)[0]]
+    return [
+        key
+        for key, field in keys(options).items()
+        if _IS_FILE in unwrapped(field.metadata, field.annotation)[0]
+    ]
 
 
 def text(description: dict, key: str, folder: Path) -> str:
-    """The text of the file that a key of a description names. Raises ValueError, naming key and file."""
+    """The text of the file that a key of a description names. Raises ValueError, naming key and
+    file.
+    """
     with naming(f"{key}: {description[key]}"):
         return read_text(folder / description[key])
 
 
 @contextmanager
 def naming(file: str) -> Iterator[None]:
-    """Prefix the message of a ValueError with the name of a file, or with a key and the file, as one line."""
+    """Prefix the message of a ValueError with the name of a file, or with a key and the file, as
+    one line.
+    """
     try:
         yield
     except ValueError as error:

@@ -23,7 +23,9 @@ class Change(Model):
 
     file: File = Field(description="the map file that is in force from then on")
     after: Positive | None = Field(
-        None, description="when: the share of its way that a robot on the shortest path from cell to cell has then covered, above 0"
+        None,
+        description="when: the share of its way that a robot on the shortest path from cell to "
+        "cell has then covered, above 0",
     )
     at: Positive | None = Field(None, description="or when: a step, a number above 0")
 
@@ -41,15 +43,22 @@ class Options(World):
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
-    changes: list[Change] = Field(description="a list of {file, after} or {file, at}, in order of time", min_length=1)
+    changes: list[Change] = Field(
+        description="a list of {file, after} or {file, at}, in order of time", min_length=1
+    )
 
 
 def sources(description: dict, folder: Path) -> list[Path]:
     """The map at the beginning, and those of the changes."""
-    return [folder / file for file in (description["file"], *(change["file"] for change in description["changes"]))]
+    return [
+        folder / file
+        for file in (description["file"], *(change["file"] for change in description["changes"]))
+    ]
 
 
-def world(description: dict, problem: dict, name: str, folder: Path, length: Callable[[Grid], float]) -> ChangingCells:
+def world(
+    description: dict, problem: dict, name: str, folder: Path, length: Callable[[Grid], float]
+) -> ChangingCells:
     """The maps of a description, each from its moment on."""
     from bezierplan.workspaces.worlds import ChangingCells
 
@@ -58,11 +67,19 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Cal
     maps = tuple(grid.load(shared | {"file": file}, folder) for file in names)
     for file, each in zip(names, maps):
         if each.occupied.shape != maps[0].occupied.shape:
-            raise ValueError(f"changes: {file}: {each.occupied.shape} cells, but {names[0]} has {maps[0].occupied.shape}")
+            raise ValueError(
+                f"changes: {file}: {each.occupied.shape} cells, but {names[0]} has "
+                f"{maps[0].occupied.shape}"
+            )
     pace = float(description["pace"])
-    moments = np.array([_moment(change, maps[0], length, pace) for change in description["changes"]])
+    moments = np.array(
+        [_moment(change, maps[0], length, pace) for change in description["changes"]]
+    )
     if (np.diff(moments) <= 0).any() or (moments <= 0).any():
-        raise ValueError(f"changes: they are at steps {', '.join(f'{each:g}' for each in moments)}; expected ascending ones above 0")
+        raise ValueError(
+            f"changes: they are at steps {', '.join(f'{each:g}' for each in moments)}; expected "
+            f"ascending ones above 0"
+        )
     return ChangingCells(maps, moments, pace, description["steps"])
 
 
@@ -73,5 +90,8 @@ def _moment(change: dict, first: Grid, length: Callable[[Grid], float], pace: fl
     # A share of the way of a robot that follows the shortest path from cell to cell.
     way = length(first)
     if math.isinf(way):
-        raise ValueError(f"changes: after: {change['after']:g}: no path leads from start to target on the first map; expected at: a step")
+        raise ValueError(
+            f"changes: after: {change['after']:g}: no path leads from start to target on the "
+            f"first map; expected at: a step"
+        )
     return change["after"] * way / pace

@@ -20,7 +20,9 @@ class Options(Workspace):
     """Keys of a workspace."""
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    circles: list[Annotated[list[Number], of_length(3, "[x, y, radius]")]] = Field(description="a list of [x, y, radius]")
+    circles: list[Annotated[list[Number], of_length(3, "[x, y, radius]")]] = Field(
+        description="a list of [x, y, radius]"
+    )
 
 
 def load(description: dict, folder: Path) -> Circles:
@@ -40,8 +42,19 @@ def load(description: dict, folder: Path) -> Circles:
             raise ValueError(f"circles: circle {i}: radius {radius:g}; expected above 0")
         check_thickness(radius, f"circles: circle {i}: radius")
         if math.dist((x, y), np.clip((x, y), limits[::2], limits[1::2])) >= radius:
-            raise ValueError(f"circles: circle {i}: lies outside the bounds; expected a circle that reaches into them")
+            raise ValueError(
+                f"circles: circle {i}: lies outside the bounds; expected a circle that reaches "
+                f"into them"
+            )
         gaps = np.hypot(*(centres[i + 1 :] - (x, y)).T) - radii[i + 1 :] - radius
-        gaps = np.append(gaps, [x - radius - limits[0], limits[1] - x - radius, y - radius - limits[2], limits[3] - y - radius])
+        gaps = np.append(
+            gaps,
+            [
+                x - radius - limits[0],
+                limits[1] - x - radius,
+                y - radius - limits[2],
+                limits[3] - y - radius,
+            ],
+        )
         check_gaps(gaps, f"circles: circle {i}")
     return Circles(limits, centres, radii, description["unit"])

@@ -18,11 +18,15 @@ class Options(Workspace):
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
-    heights: File | None = Field(description="a file of heights in the study's folder", default=None)
+    heights: File | None = Field(
+        description="a file of heights in the study's folder", default=None
+    )
 
 
 def load(description: dict, folder: Path) -> Grid:
-    """The cells of a file of . and #, the top row first; optionally with the heights of a file of numbers, likewise."""
+    """The cells of a file of . and #, the top row first; optionally with the heights of a file of
+    numbers, likewise.
+    """
     check_thickness(description["cell"], "cell:")
     lines = lines_of(text(description, "file", folder))
     with naming(description["file"]):

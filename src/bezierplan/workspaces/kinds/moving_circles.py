@@ -24,7 +24,9 @@ class Options(World):
     made: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description=REFLECTED)
-    circles: list[MovingCircle] = Field(description="a list of [x, y, radius, x velocity, y velocity], velocities in units per step")
+    circles: list[MovingCircle] = Field(
+        description="a list of [x, y, radius, x velocity, y velocity], velocities in units per step"
+    )
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
@@ -34,5 +36,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     centres, radii, velocities = table[:, :2].copy(), table[:, 2].copy(), table[:, 3:].copy()
     low, high = np.reshape(walls, (2, 2)).T
     if ((centres < low) | (centres > high)).any():
-        raise ValueError(f"circles: a centre lies outside bounds {list(walls)}; centres are reflected there")
+        raise ValueError(
+            f"circles: a centre lies outside bounds {list(walls)}; centres are reflected there"
+        )
     return moving.circles(description, walls, centres, velocities, radii)

@@ -28,24 +28,47 @@ class Options(World):
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
-    every: Count = Field(description="after how many steps as many cells change as a problem has obstacles, a whole number of at least 1")
+    every: Count = Field(
+        description="after how many steps as many cells change as a problem has obstacles, a "
+        "whole number of at least 1"
+    )
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> ChangingCells:
-    """At every `every`-th step as many random cells change as the problem has `obstacles`; start and target stay free, and connected."""
+    """At every `every`-th step as many random cells change as the problem has `obstacles`; start
+    and target stay free, and connected.
+    """
     from bezierplan.workspaces.worlds import ChangingCells
 
     first = grid.load({key: description[key] for key in ("unit", "cell", "file")}, folder)
     start, target = (first.cell_of(*map(float, problem[end])) for end in ("start", "target"))
     if start is None or target is None:
         raise ValueError("start or target lies outside the map")
-    moments = np.arange(description["every"], description["steps"], description["every"], dtype=float)
-    rng = generator("/".join(map(str, [name, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]])))
+    moments = np.arange(
+        description["every"], description["steps"], description["every"], dtype=float
+    )
+    rng = generator(
+        "/".join(
+            map(
+                str,
+                [
+                    name,
+                    *problem["start"],
+                    *problem["target"],
+                    problem["obstacles"],
+                    problem["layout"],
+                ],
+            )
+        )
+    )
     changeable = np.ones(first.occupied.shape, dtype=bool)
     changeable[start] = changeable[target] = False
     numbers = np.flatnonzero(changeable)
     if problem["obstacles"] > len(numbers):
-        raise ValueError(f"obstacles: {problem['obstacles']}; expected at most {len(numbers)}, the cells that can change")
+        raise ValueError(
+            f"obstacles: {problem['obstacles']}; expected at most {len(numbers)}, the cells that "
+            f"can change"
+        )
     maps = [first]
     for _ in moments:
         for _ in range(_MOST_CHANGES):
@@ -54,6 +77,9 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
             if random_field.connected(occupied, start, target):
                 break
         else:
-            raise ValueError(f"obstacles: {problem['obstacles']}: start and target are cut off from each other in {_MOST_CHANGES} changes")
+            raise ValueError(
+                f"obstacles: {problem['obstacles']}: start and target are cut off from each other "
+                f"in {_MOST_CHANGES} changes"
+            )
         maps.append(Grid(occupied, first.cell, first.unit))
     return ChangingCells(tuple(maps), moments, float(description["pace"]), description["steps"])

@@ -21,8 +21,12 @@ class Options(Workspace):
 
 
 def draw(description: dict, problem: dict, name: str) -> Circles:
-    """The first so many circles of a layout. Raises ValueError for bounds without room, and if no free place is found."""
+    """The first so many circles of a layout. Raises ValueError for bounds without room, and if no
+    free place is found.
+    """
     x_low, x_high, y_low, y_high = map(float, description["bounds"])
     check_bounds((x_low, x_high, y_low, y_high))
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
-    return random_circles.first(random_circles.layout(description, name, problem["layout"], ends), problem["obstacles"])
+    return random_circles.first(
+        random_circles.layout(description, name, problem["layout"], ends), problem["obstacles"]
+    )

@@ -15,8 +15,12 @@ class Options(Workspace):
     drawn: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
 
-    radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
-    clear_ends: NotNegative = Field(description="how many cells stay free between a circle and start or target, at least 0")
+    radius: Positive = Field(
+        description="the radius of every circle as a share of the field's side, a number above 0"
+    )
+    clear_ends: NotNegative = Field(
+        description="how many cells stay free between a circle and start or target, at least 0"
+    )
 
 
 draw = random_field.field

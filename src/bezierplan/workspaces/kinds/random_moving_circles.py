@@ -27,11 +27,15 @@ class Options(RandomMoving):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """The first so many circles of a layout, as where nothing moves. Raises ValueError if no free place is found."""
+    """The first so many circles of a layout, as where nothing moves. Raises ValueError if no free
+    place is found.
+    """
     walls = moving.walls_of(description["bounds"])
     ends = [*problem["start"], *problem["target"]]
     rng = generator("/".join(map(str, [name, *ends, problem["layout"]])))
     radius, count = description["radius"], problem["obstacles"]
-    centres, velocities = moving.drawn(rng, description, description["circles"], walls, np.reshape(ends, (2, 2)), radius)
+    centres, velocities = moving.drawn(
+        rng, description, description["circles"], walls, np.reshape(ends, (2, 2)), radius
+    )
     radii = np.full(len(centres[:count]), float(radius))
     return moving.circles(description, walls, centres[:count], velocities[:count], radii)

@@ -24,16 +24,22 @@ class Options(RandomMoving):
     drawn: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
 
-    radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
+    radius: Positive = Field(
+        description="the radius of every circle as a share of the field's side, a number above 0"
+    )
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """Circles on a field, which planners see as cells. Raises ValueError if no free place is found."""
+    """Circles on a field, which planners see as cells. Raises ValueError if no free place is
+    found.
+    """
     side, count = problem["side"], problem["obstacles"]
     walls = moving.walls_of([0.0, side, 0.0, side])
     ends = [*problem["start"], *problem["target"]]
     rng = generator("/".join(map(str, [name, side, *ends, count, problem["layout"]])))
     radius = description["radius"] * side
-    centres, velocities = moving.drawn(rng, description, count, walls, np.reshape(ends, (2, 2)), radius)
+    centres, velocities = moving.drawn(
+        rng, description, count, walls, np.reshape(ends, (2, 2)), radius
+    )
     circles = moving.circles(description, walls, centres, velocities, np.full(count, float(radius)))
     return replace(circles, bounds=(-0.5, side + 0.5, -0.5, side + 0.5), seen="cells")

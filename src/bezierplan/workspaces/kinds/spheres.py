@@ -19,7 +19,9 @@ class Options(Workspace):
     """Keys of a workspace."""
 
     bounds: Annotated[list[Number], of_length(6, BOUNDS)] = Field(description=BOUNDS)
-    spheres: list[Annotated[list[Number], of_length(4, "[x, y, z, radius]")]] = Field(description="a list of [x, y, z, radius]")
+    spheres: list[Annotated[list[Number], of_length(4, "[x, y, z, radius]")]] = Field(
+        description="a list of [x, y, z, radius]"
+    )
 
 
 def load(description: dict, folder: Path) -> Spheres:
@@ -35,5 +37,8 @@ def load(description: dict, folder: Path) -> Spheres:
         check_thickness(radius, f"spheres: sphere {i}: radius")
     for i, (*centre, radius) in enumerate(table.tolist()):
         if math.dist(centre, np.clip(centre, bounds[::2], bounds[1::2])) >= radius:
-            raise ValueError(f"spheres: sphere {i}: lies outside the bounds; expected a sphere that reaches into them")
+            raise ValueError(
+                f"spheres: sphere {i}: lies outside the bounds; expected a sphere that reaches "
+                f"into them"
+            )
     return Spheres(bounds, table[:, :3], table[:, 3], description["unit"])

@@ -1,18 +1,20 @@
 """One file per kind of test.
 
-Every file has `Options`, the keys that a check of this kind may have. A kind that judges runs (its `Options` are `OfRuns`) also has
+Every file has `Options`, the keys that a check of this kind may have. A kind that judges runs (its
+`Options` are `OfRuns`) also has
 
-| name | means |
-| --- | --- |
-| `EFFECT` | how an effect follows from the point values of the cells: an `effects.Effect` |
-| `cells(check, rows)` | the cells of each comparison, with its name in words, among the runs of one place |
-| `find(check, comparison, name)` | the `effects.Finding` of a comparison; all random draws are seeded by the name |
+| name | means | | --- | --- | | `EFFECT` | how an effect follows from the point values of the
+cells: an `effects.Effect` | | `cells(check, rows)` | the cells of each comparison, with its name in
+words, among the runs of one place | | `find(check, comparison, name)` | the `effects.Finding` of a
+comparison; all random draws are seeded by the name |
 
-and any other kind `findings(check, claim, material)`: condition, name and finding of each comparison; it raises `Untestable` if there is
-nothing to judge. A check is an instance of its kind's `Options`. All p are two-sided and all intervals 95 %, by bootstrap over units
-within each condition; above `statistics.MOST_RESAMPLED` units by its normal approximation.
+and any other kind `findings(check, claim, material)`: condition, name and finding of each
+comparison; it raises `Untestable` if there is nothing to judge. A check is an instance of its
+kind's `Options`. All p are two-sided and all intervals 95 %, by bootstrap over units within each
+condition; above `statistics.MOST_RESAMPLED` units by its normal approximation.
 
-Options are read at every start of the workflow, so these files import scipy and pandas inside the functions that need them.
+Options are read at every start of the workflow, so these files import scipy and pandas inside the
+functions that need them.
 """
 
 import importlib
@@ -46,16 +48,23 @@ from bezierplan.schema.model import (
 
 Group = Annotated[
     str | float,
-    value(lambda given: is_line(given, LONGEST_LINE) or is_number(given), "a value of the column `across`, or rest"),
+    value(
+        lambda given: is_line(given, LONGEST_LINE) or is_number(given),
+        "a value of the column `across`, or rest",
+    ),
 ]
 Groups = listed(Group)
 Columns = listed(Column)
 
 
 class PublishedMargin(Model):
-    """A share of the other group's value, or the printed difference of the same cells if it is smaller."""
+    """A share of the other group's value, or the printed difference of the same cells if it is
+    smaller.
+    """
 
-    published: Positive = Field(description="the share of the other group's value, a number above 0")
+    published: Positive = Field(
+        description="the share of the other group's value, a number above 0"
+    )
 
 
 Margin = Annotated[Any, mapping_or(PublishedMargin, Positive)]
@@ -63,24 +72,37 @@ Margin = Annotated[Any, mapping_or(PublishedMargin, Positive)]
 # Descriptions of keys shared by several kinds of check.
 SECONDARY = "true: shown, but not counted for the verdict; left out otherwise"
 EXPERIMENT = "the name of an experiment, or a list of at least two"
-PAIRED = "whether equal units are compared with each other, true or false; left out: as the experiment is drawn"
+PAIRED = (
+    "whether equal units are compared with each other, true or false; left out: as the "
+    "experiment is drawn"
+)
 SCALE = "absolute (left out: this), or relative to the value of the other group"
 MARGIN = (
-    "the smallest effect that matters: a number above 0, or {published: share}, that share of the other group's value, or the printed "
+    "the smallest effect that matters: a number above 0, or {published: share}, that share of the "
+    "other group's value, or the printed "
     "difference of the same cells if it is smaller"
 )
-WORK = "the metric of counted work that is judged instead of seconds, which differ from machine to machine and are only reported"
+WORK = (
+    "the metric of counted work that is judged instead of seconds, which differ from machine "
+    "to machine and are only reported"
+)
 TOGETHER = (
-    "true: a sentence such as `the best of all`, whose comparisons at one place (one combination of `every`) make one mark: + if all "
+    "true: a sentence such as `the best of all`, whose comparisons at one place (one combination "
+    "of `every`) make one mark: + if all "
     "are +, - if any is -; they are shown as secondary ones; left out otherwise"
 )
 POOL = "a list of columns whose values are averaged with equal weight"
-GROUPS = "a list of values of the column `across`, or rest: the artefact's groups that are not named"
+GROUPS = (
+    "a list of values of the column `across`, or rest: the artefact's groups that are not named"
+)
 THAN = "likewise: what the groups are compared with, each with each"
 SIDE = "lower or higher: how the groups, or the first tier, compare with the others"
-STATISTIC = "the statistic that is compared: rank (left out: this), mean, median, iqr, range, min or max"
+STATISTIC = (
+    "the statistic that is compared: rank (left out: this), mean, median, iqr, range, min or max"
+)
 FAILURES = (
-    "what a run without a feasible path counts: drop (left out: this), last (worse than any success; also runs that do not satisfy a "
+    "what a run without a feasible path counts: drop (left out: this), last (worse than any "
+    "success; also runs that do not satisfy a "
     "condition on an outcome) or count (the event is false)"
 )
 
@@ -91,8 +113,9 @@ GROUP_KEYS = ("groups", "than", "pairs", "order")
 class Check(Model):
     """A check of any kind, with defaults for keys that other modules ask for.
 
-    of_printed: whether the kind judges the printed numbers themselves. against: whether it compares one group with another. cells_key: the
-    key that names the column whose values are compared, if any.
+    of_printed: whether the kind judges the printed numbers themselves. against: whether it compares
+    one group with another. cells_key: the key that names the column whose values are compared, if
+    any.
     """
 
     of_printed: ClassVar[bool] = False
@@ -104,7 +127,9 @@ class Check(Model):
     _reported: bool = PrivateAttr(False)
 
     def _asked(self, key: str) -> Any:
-        """The value of a key that only some kinds have: as written, or its default; None for a kind without it."""
+        """The value of a key that only some kinds have: as written, or its default; None for a kind
+        without it.
+        """
         return getattr(self, key) if key in type(self).model_fields else None
 
     @property
@@ -125,7 +150,9 @@ class Check(Model):
 
     @property
     def effect_in(self) -> str:
-        """The unit of its effect, if the check states it; empty where it follows from the metric."""
+        """The unit of its effect, if the check states it; empty where it follows from the
+        metric.
+        """
         return self._asked("effect_unit") or ""
 
     @property
@@ -173,23 +200,40 @@ def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
 
 
 class OfRuns(Check):
-    """Checks of runs. What only some kinds have is neutral in the others: no groups pooled, no least effect, failed runs dropped."""
+    """Checks of runs. What only some kinds have is neutral in the others: no groups pooled, no
+    least effect, failed runs dropped.
+    """
 
     experiment: listed(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
     metric: Metric = Field(description="the name of a metric")
-    where: Where = Field({}, description="column of the runs table → value or list of values: the runs that are judged", min_length=1)
-    every: Columns = Field([], description="a list of columns; one comparison for each combination of their values")
-    replicate: Column = Field("repeat", description="the column that numbers independent replicates; left out: repeat")
+    where: Where = Field(
+        {},
+        description="column of the runs table → value or list of values: the runs that are judged",
+        min_length=1,
+    )
+    every: Columns = Field(
+        [], description="a list of columns; one comparison for each combination of their values"
+    )
+    replicate: Column = Field(
+        "repeat", description="the column that numbers independent replicates; left out: repeat"
+    )
 
     @model_validator(mode="after")
     def _check_columns(self) -> "OfRuns":
         """A column is either compared, or told apart, or averaged, or numbers replicates."""
-        named = {key: one_or_list(getattr(self, key, None) or []) for key in ("every", "pool", self.cells_key, "replicate") if key}
+        named = {
+            key: one_or_list(getattr(self, key, None) or [])
+            for key in ("every", "pool", self.cells_key, "replicate")
+            if key
+        }
         owners: dict[str, str] = {}
         for key, columns in named.items():
             for column in columns:
                 if column in owners:
-                    raise wrong(f"{key}: {column}: is in {owners[column]} already; expected it in one of the two")
+                    raise wrong(
+                        f"{key}: {column}: is in {owners[column]} already; expected it in one of "
+                        f"the two"
+                    )
                 owners[column] = key
         return self
 
@@ -197,7 +241,9 @@ class OfRuns(Check):
 
     @property
     def printed_metric(self) -> str:
-        """The metric of the printed numbers: seconds, where counted work is judged in their place."""
+        """The metric of the printed numbers: seconds, where counted work is judged in their
+        place.
+        """
         return self._printed_metric or self.metric
 
     @property
@@ -258,12 +304,16 @@ class OfRuns(Check):
 
     @property
     def limit(self) -> tuple[str, float] | None:
-        """The event whose share is taken, such as `below` and a number, if it is not the metric itself."""
+        """The event whose share is taken, such as `below` and a number, if it is not the metric
+        itself.
+        """
         return event.limit if (event := self._asked("event")) else None
 
     @property
     def picks(self) -> dict[str, str] | None:
-        """The one run of each condition and method that is judged, as `results.pick` takes it; None: all."""
+        """The one run of each condition and method that is judged, as `results.pick` takes it;
+        None: all.
+        """
         return pick.plain() if (pick := self._asked("pick")) else None
 
 
@@ -272,7 +322,9 @@ class Comparing(OfRuns):
 
     cells_key: ClassVar[str | None] = "across"
 
-    across: Column = Field("method", description="the column whose values are the groups; left out: method")
+    across: Column = Field(
+        "method", description="the column whose values are the groups; left out: method"
+    )
     scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
     margin: Margin = Field(description=MARGIN)
 

@@ -1,7 +1,7 @@
 """Whether groups differ at all.
 
-The effect is the range of the means. Two groups are tested as in `lower`; more by Friedman's test (paired; Kendall's W), otherwise by the
-Kruskal-Wallis test (epsilon squared).
+The effect is the range of the means. Two groups are tested as in `lower`; more by Friedman's test
+(paired; Kendall's W), otherwise by the Kruskal-Wallis test (epsilon squared).
 """
 
 from __future__ import annotations
@@ -40,7 +40,9 @@ class Options(Comparing):
 
     secondary: Literal[True] = Field(None, description=SECONDARY)
     paired: Flag = Field(None, description=PAIRED)
-    groups: listed(Group, least=2) = Field(description="a list of at least two values of the column `across`")
+    groups: listed(Group, least=2) = Field(
+        description="a list of at least two values of the column `across`"
+    )
 
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
@@ -49,7 +51,9 @@ def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 
 
 def _range(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The range of more than two groups, relative to their mean if so asked; the difference of two."""
+    """The range of more than two groups, relative to their mean if so asked; the difference of
+    two.
+    """
     if len(cells) == 2:
         return BETWEEN_GROUPS.of(check, points, cells)
     return np.ptp(points, axis=-1) / (points.mean(axis=-1) if check.relative else 1)
@@ -59,13 +63,17 @@ def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | No
     return BETWEEN_GROUPS.gradient(check, ours, cells) if len(cells) == 2 else None
 
 
-EFFECT = BETWEEN_GROUPS._replace(of=_range, gradient=_gradient, claimed=lambda check, effects, margin: np.abs(effects) >= margin)
+EFFECT = BETWEEN_GROUPS._replace(
+    of=_range, gradient=_gradient, claimed=lambda check, effects, margin: np.abs(effects) >= margin
+)
 
 
 def _of_pair(check: Options) -> lower.Options:
     """Whether the first of two groups is higher than the second, as a check."""
     same = {key: getattr(check, key) for key in Comparing.model_fields if key != "test"}
-    return lower.Options.model_construct(test="lower", pairs=[check.groups], direction="higher", paired=check.paired, **same)
+    return lower.Options.model_construct(
+        test="lower", pairs=[check.groups], direction="higher", paired=check.paired, **same
+    )
 
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:
@@ -92,7 +100,15 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         tested = None if np.ptp(np.concatenate(groups)) == 0 else stats.kruskal(*groups)
         size_name, largest = "epsilon squared", total - 1
     return Finding(
-        *(ours, size_name, float(tested.statistic / largest) if tested else 0.0, low, high, n, float(tested.pvalue) if tested else 1.0),
+        *(
+            ours,
+            size_name,
+            float(tested.statistic / largest) if tested else 0.0,
+            low,
+            high,
+            n,
+            float(tested.pvalue) if tested else 1.0,
+        ),
         toward=int(ours >= margin),
         margin=margin,
         negligible=is_negligible(low, high, margin, n),

@@ -1,7 +1,7 @@
 """Whether two groups differ by no more than the margin.
 
-Two one-sided tests: the 90 % interval of the difference, less the target, lies within the margin. Effect and effect size are the difference
-of the statistic that the check names.
+Two one-sided tests: the 90 % interval of the difference, less the target, lies within the margin.
+Effect and effect size are the difference of the statistic that the check names.
 """
 
 from __future__ import annotations
@@ -30,7 +30,16 @@ from bezierplan.analysis.claims.effects import (
     units,
     why_none,
 )
-from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups, with_itself
+from bezierplan.analysis.claims.kinds import (
+    GROUPS,
+    POOL,
+    SECONDARY,
+    THAN,
+    Columns,
+    Comparing,
+    Groups,
+    with_itself,
+)
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
 
@@ -47,7 +56,9 @@ class Options(Comparing):
     pool: Columns = Field([], description=POOL)
     groups: Groups = Field(description=GROUPS)
     than: Groups = Field(description=THAN)
-    statistic: Literal["mean", "median", "min", "max"] = Field(description="the statistic that is compared: mean, median, min or max")
+    statistic: Literal["mean", "median", "min", "max"] = Field(
+        description="the statistic that is compared: mean, median, min or max"
+    )
     target: Number = Field(0, description="the claimed difference, a number; left out: 0")
 
     @model_validator(mode="after")
@@ -70,7 +81,9 @@ EFFECT = BETWEEN_GROUPS._replace(claimed=claimed)
 
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:
-    """Two one-sided tests of whether two cells' difference, less the target, lies within the margin; p of being outside where it is."""
+    """Two one-sided tests of whether two cells' difference, less the target, lies within the
+    margin; p of being outside where it is.
+    """
     ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
     n, reason = units(comparison), too_few(comparison)
     if reason:
@@ -87,5 +100,11 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     elif toward > 0:
         p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
     else:
-        p = min(1.0, 2 * float(np.mean(beyond <= margin) if ours > check.target else np.mean(beyond >= -margin)))
+        p = min(
+            1.0,
+            2
+            * float(
+                np.mean(beyond <= margin) if ours > check.target else np.mean(beyond >= -margin)
+            ),
+        )
     return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=why_none(ours))

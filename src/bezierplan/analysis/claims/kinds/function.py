@@ -1,7 +1,7 @@
 """The finding of a function in the study's module, for sentences that fit no other kind.
 
-It takes the check, the results by experiment, the published numbers by file, and the arguments that the check gives. It returns a mark,
-the effect, its 95 % interval or None, and the number of units.
+It takes the check, the results by experiment, the published numbers by file, and the arguments that
+the check gives. It returns a mark, the effect, its 95 % interval or None, and the number of units.
 """
 
 from __future__ import annotations
@@ -15,7 +15,16 @@ from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import EXPERIMENT, Check
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.schema.model import ARGUMENTS, Arguments, Experiment, Function, Line, Metric, Where, listed
+from bezierplan.schema.model import (
+    ARGUMENTS,
+    Arguments,
+    Experiment,
+    Function,
+    Line,
+    Metric,
+    Where,
+    listed,
+)
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.claim import Claim
@@ -24,23 +33,34 @@ if TYPE_CHECKING:
 class Options(Check):
     """Keys of a check."""
 
-    name: Function = Field(description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`")
+    name: Function = Field(
+        description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`"
+    )
     arguments: Arguments = Field({}, description=ARGUMENTS)
     effect: Line = Field(description="what its effect measures, in words")
     effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")
     experiment: listed(Experiment, least=2, single=True) = Field(None, description=EXPERIMENT)
     metric: Metric = Field(None, description="the name of a metric")
-    where: Where = Field({}, description="column of the runs table → value or list of values", min_length=1)
+    where: Where = Field(
+        {}, description="column of the runs table → value or list of values", min_length=1
+    )
 
 
 def findings(check: Options, claim: Claim, material: Material) -> list[tuple[str, str, Finding]]:
-    """The function's finding. Raises Untestable if the experiment was not run, Fault if there is no function of that name."""
+    """The function's finding. Raises Untestable if the experiment was not run, Fault if there is no
+    function of that name.
+    """
     for experiment in check.experiments:
         if experiment not in material.results:
             raise Untestable(f"the experiment {experiment} was not run")
     if check.name not in material.functions:
-        raise Fault(f"claim {claim.id}: function {check.name}: unknown{closest(check.name, material.functions)}")
+        raise Fault(
+            f"claim {claim.id}: function {check.name}: "
+            f"unknown{closest(check.name, material.functions)}"
+        )
     function = material.functions[check.name]
-    mark, effect, interval, n = function(check, material.results, material.published, **check.arguments)
+    mark, effect, interval, n = function(
+        check, material.results, material.published, **check.arguments
+    )
     low, high = interval or (math.nan, math.nan)
     return [("", check.name, Finding(effect, check.effect, effect, low, high, n, mark=mark))]

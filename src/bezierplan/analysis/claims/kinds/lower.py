@@ -1,14 +1,14 @@
 """Whether groups are lower, or higher, than others.
 
-| statistic | test | effect size |
-| --- | --- | --- |
-| `rank` | Wilcoxon's signed ranks, Pratt's zeros (paired), Mann-Whitney | A12 in the claimed direction |
-| `rank` of booleans | McNemar's exact test (paired), Fisher's exact test | odds ratio |
-| `mean` | Student's t of the differences (paired), Welch's t | A12 |
-| any other, or several conditions | bootstrap | A12; for spreads the difference |
-| `min`, `max`, `range` | how often the sentence holds in draws of the paper's number of runs, on which they depend | the difference |
+| statistic | test | effect size | | --- | --- | --- | | `rank` | Wilcoxon's signed ranks, Pratt's
+zeros (paired), Mann-Whitney | A12 in the claimed direction | | `rank` of booleans | McNemar's exact
+test (paired), Fisher's exact test | odds ratio | | `mean` | Student's t of the differences
+(paired), Welch's t | A12 | | any other, or several conditions | bootstrap | A12; for spreads the
+difference | | `min`, `max`, `range` | how often the sentence holds in draws of the paper's number
+of runs, on which they depend | the difference |
 
-The effect is the group's value minus the other's: of means, or of the statistic that the check names.
+The effect is the group's value minus the other's: of means, or of the statistic that the check
+names.
 """
 
 from __future__ import annotations
@@ -82,17 +82,26 @@ class Options(Comparing):
     paired: Flag = Field(None, description=PAIRED)
     groups: Groups = Field(None, description=GROUPS)
     than: Groups = Field(None, description=THAN)
-    pairs: listed(listed(Group, least=2)) = Field(None, description="a list of [group, other group], in place of groups and than")
+    pairs: listed(listed(Group, least=2)) = Field(
+        None, description="a list of [group, other group], in place of groups and than"
+    )
     direction: Literal["lower", "higher"] = Field(description=SIDE)
-    statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field("rank", description=STATISTIC)
-    least: Positive = Field(None, description="the claimed least effect, a number above 0; left out: any effect")
+    statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field(
+        "rank", description=STATISTIC
+    )
+    least: Positive = Field(
+        None, description="the claimed least effect, a number above 0; left out: any effect"
+    )
     together: Literal[True] = Field(None, description=TOGETHER)
     work: Metric = Field(None, description=WORK)
     failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
 
     @model_validator(mode="after")
     def _check_groups(self) -> Options:
-        if self.model_fields_set & {"groups", "than", "pairs"} not in ({"groups", "than"}, {"pairs"}):
+        if self.model_fields_set & {"groups", "than", "pairs"} not in (
+            {"groups", "than"},
+            {"pairs"},
+        ):
             raise wrong("groups: expected either groups and than, or pairs")
         if any(len(pair) != 2 for pair in self.pairs or []):
             raise wrong("pairs: expected a list of [group, other group]")
@@ -142,7 +151,9 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
     reason = why_none(p) or ("" if toward else no_difference(low, high, n))
     negligible = not infinite and is_negligible(low, high, margin, n, side * least)
-    return finding._replace(negligible=negligible, least_detectable=least_detectable(low, high, n), reason=reason)
+    return finding._replace(
+        negligible=negligible, least_detectable=least_detectable(low, high, n), reason=reason
+    )
 
 
 def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
@@ -152,12 +163,20 @@ def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
     spread = (group - reference).std() if paired else group.std() + reference.std()
     if spread <= 1e-12 * max(np.abs(group).max(), np.abs(reference).max(), 1e-300):
         return rank_test(group, reference, paired)[0]
-    test = stats.ttest_rel(group, reference) if paired else stats.ttest_ind(group, reference, equal_var=False)
+    test = (
+        stats.ttest_rel(group, reference)
+        if paired
+        else stats.ttest_ind(group, reference, equal_var=False)
+    )
     return float(test.pvalue)
 
 
-def _shifted(check: OfRuns, group: np.ndarray, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values of both groups, the other's shifted by the claimed least effect; infinite ones replaced by a value beyond any difference."""
+def _shifted(
+    check: OfRuns, group: np.ndarray, reference: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Values of both groups, the other's shifted by the claimed least effect; infinite ones
+    replaced by a value beyond any difference.
+    """
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, reference)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, reference = (np.where(np.isinf(values), worst, values) for values in (group, reference))
@@ -179,8 +198,12 @@ def _contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
     return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
 
 
-def _effect_size(check: OfRuns, comparison: Comparison, side: int, ours: float) -> tuple[str, float]:
-    """Name and value: odds ratio of booleans; A12, the share of pairs won in the claimed direction; or the difference itself."""
+def _effect_size(
+    check: OfRuns, comparison: Comparison, side: int, ours: float
+) -> tuple[str, float]:
+    """Name and value: odds ratio of booleans; A12, the share of pairs won in the claimed direction;
+    or the difference itself.
+    """
     pairs = [counted(stratum, comparison.paired) for stratum in comparison.strata.values()]
     if comparison.boolean and len(pairs) == 1:
         ((group, other),) = pairs

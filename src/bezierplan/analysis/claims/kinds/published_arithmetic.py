@@ -31,12 +31,17 @@ class Options(Check):
 
     secondary: Literal[True] = Field(None, description=SECONDARY)
     form: Literal["difference", "increase_percent", "equal"] = Field(
-        description="difference (second less first), increase_percent (of the second over the first) or equal (first alone)"
+        description="difference (second less first), increase_percent (of the second over the "
+        "first) or equal (first alone)"
     )
     of: list[Selected] = Field(
-        description="a list of one or two {table: file, column: value, ...}: published cells", min_length=1, max_length=2
+        description="a list of one or two {table: file, column: value, ...}: published cells",
+        min_length=1,
+        max_length=2,
     )
-    equals: Annotated[Any, mapping_or(Selected, Number)] = Field(description="a number, or {table: file, column: value, ...}")
+    equals: Annotated[Any, mapping_or(Selected, Number)] = Field(
+        description="a number, or {table: file, column: value, ...}"
+    )
 
     @model_validator(mode="after")
     def _check_tables(self) -> Options:
@@ -45,7 +50,10 @@ class Options(Check):
             raise wrong(f"of: {len(self.of)} cells; {self.form} needs {wanted}")
         for selector in (*self.of, *([self.equals] if isinstance(self.equals, dict) else [])):
             if "table" not in selector:
-                raise wrong("of: table: missing key; a file of the folder published, or a list of them, without .csv")
+                raise wrong(
+                    "of: table: missing key; a file of the folder published, or a list of them, "
+                    "without .csv"
+                )
         return self
 
 
@@ -58,11 +66,13 @@ def findings(check: Options, claim: Claim, material: Material) -> list[tuple[str
 
 
 def arithmetic(check: Options, published: dict[str, pd.DataFrame]) -> list[tuple[str, Finding]]:
-    """Test whether printed numbers agree. One finding for each cell of the first selector, with the cell's name.
+    """Test whether printed numbers agree. One finding for each cell of the first selector, with the
+    cell's name.
 
-    `difference`: the second minus the first; `increase_percent`: of the second over the first; `equal`: the first alone. Cells of several
-    selectors are matched by equal values of the columns that no selector names; a lone cell matches every other. The computed number
-    may differ from the printed one by half a unit of the last printed digit. NaN where a cell is empty or missing.
+    `difference`: the second minus the first; `increase_percent`: of the second over the first;
+    `equal`: the first alone. Cells of several selectors are matched by equal values of the columns
+    that no selector names; a lone cell matches every other. The computed number may differ from the
+    printed one by half a unit of the last printed digit. NaN where a cell is empty or missing.
     """
     import pandas as pd
 
@@ -73,22 +83,34 @@ def arithmetic(check: Options, published: dict[str, pd.DataFrame]) -> list[tuple
     for number, selector in enumerate(selectors[1:], start=1):
         others = _selected(published, selector)
         columns.append(f"value{number}")
-        common = [column for column in cells.columns.intersection(others.columns) if column not in {*named, *_NOT_KEYS}]
+        common = [
+            column
+            for column in cells.columns.intersection(others.columns)
+            if column not in {*named, *_NOT_KEYS}
+        ]
         others = others.rename(columns={"value": columns[-1]})
         if len(cells) == len(others) == 1:
             cells = cells.assign(**{columns[-1]: others[columns[-1]].iloc[0]})
         else:
             cells = cells.merge(others[[*common, columns[-1]]], how="left", on=common)
     keys = [column for column in cells.columns if column not in {*named, *_NOT_KEYS, *columns}]
-    names = [", ".join(f"{key}={row[key]}" for key in keys if not pd.isna(row[key])) for _, row in cells.iterrows()]
-    return [(name, _computed(check, row)) for name, row in zip(names, cells[columns].to_numpy(dtype=float).tolist())]
+    names = [
+        ", ".join(f"{key}={row[key]}" for key in keys if not pd.isna(row[key]))
+        for _, row in cells.iterrows()
+    ]
+    return [
+        (name, _computed(check, row))
+        for name, row in zip(names, cells[columns].to_numpy(dtype=float).tolist())
+    ]
 
 
 def _selected(published: dict[str, pd.DataFrame], selector: dict) -> pd.DataFrame:
     """The rows of one or several published files that a selector names."""
     import pandas as pd
 
-    rows = pd.concat([published[name] for name in one_or_list(selector["table"])], ignore_index=True)
+    rows = pd.concat(
+        [published[name] for name in one_or_list(selector["table"])], ignore_index=True
+    )
     for column, wanted in selector.items():
         if column != "table":
             rows = rows[rows[column].isin(one_or_list(wanted))]
@@ -107,7 +129,8 @@ def _computed(check: Options, numbers: list[float]) -> Finding:
             computed = 100 * (numbers[1] / numbers[0] - 1) if numbers[0] else math.nan
         case "equal":
             computed = numbers[0]
-    # The larger number of digits of two printed numbers, because a trailing zero is lost on reading.
+    # The larger number of digits of two printed numbers, because a trailing zero is lost on
+    # reading.
     digits = max(map(_decimals, [wanted, computed] if check.form == "equal" else [wanted]))
     fits = abs(computed - wanted) <= 0.5 * 10.0**-digits * (1 + 1e-9)
     return Finding(computed, "printed", wanted, mark="+" if fits else "-")

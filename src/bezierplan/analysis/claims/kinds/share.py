@@ -1,7 +1,8 @@
 """The share of runs in which an event happens.
 
-Exact binomial test with the Clopper-Pearson interval; for six or more pooled conditions, Student's t over their shares. For `all`, `none`
-and `some`, one (counter)example decides. The effect is the share.
+Exact binomial test with the Clopper-Pearson interval; for six or more pooled conditions, Student's
+t over their shares. For `all`, `none` and `some`, one (counter)example decides. The effect is the
+share.
 """
 
 from __future__ import annotations
@@ -13,7 +14,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SIDES, Comparison, Effect, Finding, counted
+from bezierplan.analysis.claims.effects import (
+    LEAST_WITHOUT_EXAMPLE,
+    SIDES,
+    Comparison,
+    Effect,
+    Finding,
+    counted,
+)
 from bezierplan.analysis.claims.kinds import FAILURES, POOL, SECONDARY, Columns, OfRuns
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
@@ -41,7 +49,10 @@ class Event(Model):
     @model_validator(mode="after")
     def _check_one(self) -> Event:
         if len(self.model_fields_set) != 1:
-            raise wrong(f"{len(self.model_fields_set)} keys; expected one of below, above, at_most, at_least, equals")
+            raise wrong(
+                f"{len(self.model_fields_set)} keys; expected one of below, above, at_most, "
+                f"at_least, equals"
+            )
         return self
 
     @property
@@ -57,19 +68,35 @@ class Options(OfRuns):
     secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     event: Event = Field(
-        None, description="one of {below: number}, above, at_most, at_least, equals; left out for a metric that is true or false"
+        None,
+        description="one of {below: number}, above, at_most, at_least, equals; left out for a "
+        "metric that is true or false",
     )
     threshold: Annotated[
-        Any, value(lambda given: given in ("all", "none", "some") if isinstance(given, str) else is_number(given) and 0 <= given <= 1, "")
+        Any,
+        value(
+            lambda given: (
+                given in ("all", "none", "some")
+                if isinstance(given, str)
+                else is_number(given) and 0 <= given <= 1
+            ),
+            "",
+        ),
     ] = Field(description="a share from 0 to 1, or all, none, some")
-    direction: Literal["at_least", "at_most"] = Field(None, description="at_least or at_most, where the threshold is a number")
+    direction: Literal["at_least", "at_most"] = Field(
+        None, description="at_least or at_most, where the threshold is a number"
+    )
     failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
-    pick: Pick = Field(None, description="{lowest: metric}: one feasible run of each condition and method")
+    pick: Pick = Field(
+        None, description="{lowest: metric}: one feasible run of each condition and method"
+    )
 
     @model_validator(mode="after")
     def _check_side(self) -> Options:
         if isinstance(self.threshold, str) != (self.direction is None):
-            needed = "has no direction" if self.direction else "needs a direction, at_least or at_most"
+            needed = (
+                "has no direction" if self.direction else "needs a direction, at_least or at_most"
+            )
             raise wrong(f"threshold: {self.threshold}: {needed}")
         return self
 
@@ -77,13 +104,29 @@ class Options(OfRuns):
     def _check_truth(self) -> Options:
         metric = METRICS.get(self.metric)
         if metric and self.event is None and (metric.unit != "-" or metric.step is None):
-            raise wrong(f"event: missing key; {self.metric} is no truth: expected one of below, above, at_most, at_least, equals")
+            raise wrong(
+                f"event: missing key; {self.metric} is no truth: expected one of below, above, "
+                f"at_most, at_least, equals"
+            )
         return self
 
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """One cell, of all runs."""
-    yield " ".join(map(str, [*(check.limit or ()), "in", *([check.direction] if check.direction else []), check.threshold])), [""]
+    yield (
+        " ".join(
+            map(
+                str,
+                [
+                    *(check.limit or ()),
+                    "in",
+                    *([check.direction] if check.direction else []),
+                    check.threshold,
+                ],
+            )
+        ),
+        [""],
+    )
 
 
 def claimed(check: Options, effects: np.ndarray, margin: float) -> np.ndarray:
@@ -98,19 +141,30 @@ def claimed(check: Options, effects: np.ndarray, margin: float) -> np.ndarray:
     return SIDES[check.direction] * (effects - check.threshold) >= 0
 
 
-EFFECT = Effect(lambda check, points, cells: points[..., 0], lambda check, ours, cells: np.ones(1), claimed, reference=0, statistic="share")
+EFFECT = Effect(
+    lambda check, points, cells: points[..., 0],
+    lambda check, ours, cells: np.ones(1),
+    claimed,
+    reference=0,
+    statistic="share",
+)
 
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Test the share of units in which the event happens."""
     from scipy import stats
 
-    happened = np.concatenate([counted(stratum, False)[0] for stratum in comparison.strata.values()])
+    happened = np.concatenate(
+        [counted(stratum, False)[0] for stratum in comparison.strata.values()]
+    )
     n, k = len(happened), int(happened.sum())
     if not n:
         return Finding(mark="?", reason="no run counts")
     if not np.isin(happened, (0.0, 1.0)).all():
-        raise ValueError(f"{name}: {check['metric']} has values other than true and false; its check needs an event")
+        raise ValueError(
+            f"{name}: {check['metric']} has values other than true and false; its check needs an "
+            f"event"
+        )
     finding = Finding(k / n, "share", k / n, n=n)
     holds = bool(claimed(check, np.array(k / n), math.nan))
     if check.pick:
@@ -118,29 +172,60 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
     finding = finding._replace(low=float(exact.low), high=float(exact.high))
     if isinstance(check.threshold, str):
-        # For `some`, one example decides and many misses are needed to refute it; for `all` and `none` it is the other way round.
+        # For `some`, one example decides and many misses are needed to refute it; for `all` and
+        # `none` it is the other way round.
         decided = holds == (check.threshold == "some") or n >= LEAST_WITHOUT_EXAMPLE
         mark = ("+" if holds else "-") if decided else "?"
-        return finding._replace(mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs")
+        return finding._replace(
+            mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs"
+        )
     if n < LEAST_RUNS:
         return finding._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
     threshold = check.threshold
     if len(comparison.strata) >= LEAST_RUNS:
         return _share_of_conditions(finding, comparison, threshold, SIDES[check.direction])
     # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
-    p = min(1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold))))
+    p = min(
+        1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold)))
+    )
     return finding._replace(p=p, toward=int(np.sign(SIDES[check.direction] * (k / n - threshold))))
 
 
-def _share_of_conditions(finding: Finding, comparison: Comparison, threshold: float, side: int) -> Finding:
-    """Random conditions, such as layouts, are the units, because runs of one are alike. Student's t over their shares."""
+def _share_of_conditions(
+    finding: Finding, comparison: Comparison, threshold: float, side: int
+) -> Finding:
+    """Random conditions, such as layouts, are the units, because runs of one are alike. Student's t
+    over their shares.
+    """
     from scipy import stats
 
-    shares = np.array([np.nanmean(stratum) for stratum in comparison.strata.values() if not np.isnan(stratum).all()])
+    shares = np.array(
+        [
+            np.nanmean(stratum)
+            for stratum in comparison.strata.values()
+            if not np.isnan(stratum).all()
+        ]
+    )
     mean = float(shares.mean())
     toward = int(np.sign(side * (mean - threshold)))
     if not np.ptp(shares):
-        return finding._replace(effect=mean, effect_size=mean, low=mean, high=mean, n=len(shares), p=0.0 if toward else 1.0, toward=toward)
+        return finding._replace(
+            effect=mean,
+            effect_size=mean,
+            low=mean,
+            high=mean,
+            n=len(shares),
+            p=0.0 if toward else 1.0,
+            toward=toward,
+        )
     test = stats.ttest_1samp(shares, threshold)
     low, high = (float(np.clip(end, 0, 1)) for end in test.confidence_interval(0.95))
-    return finding._replace(effect=mean, effect_size=mean, low=low, high=high, n=len(shares), p=float(test.pvalue), toward=toward)
+    return finding._replace(
+        effect=mean,
+        effect_size=mean,
+        low=low,
+        high=high,
+        n=len(shares),
+        p=float(test.pvalue),
+        toward=toward,
+    )

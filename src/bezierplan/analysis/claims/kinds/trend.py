@@ -1,7 +1,8 @@
 """Whether the metric rises, or falls, with a numeric column.
 
-The effect is the change from the lowest to the highest x, the effect size the least-squares slope. Wilcoxon's signed ranks test the slopes
-of the units against 0; with `statistic: std`, the spread of each condition, a bootstrap does.
+The effect is the change from the lowest to the highest x, the effect size the least-squares slope.
+Wilcoxon's signed ranks test the slopes of the units against 0; with `statistic: std`, the spread of
+each condition, a bootstrap does.
 """
 
 from __future__ import annotations
@@ -50,7 +51,9 @@ class Options(OfRuns):
     paired: Flag = Field(None, description=PAIRED)
     x: NumberColumn = Field(description="a column of numbers along which the metric changes")
     direction: Literal["up", "down"] = Field(description="up or down")
-    statistic: Literal["std"] = Field(None, description="std: the spread of each condition; left out: the values themselves")
+    statistic: Literal["std"] = Field(
+        None, description="std: the spread of each condition; left out: the values themselves"
+    )
     scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
     margin: Margin = Field(description=MARGIN)
     work: Metric = Field(None, description=WORK)
@@ -66,13 +69,17 @@ _DIGITS = 12
 
 
 def _weights(x: np.ndarray) -> np.ndarray:
-    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; NaN for a single x."""
+    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; NaN for a
+    single x.
+    """
     from_mean = x - x.mean()
     return from_mean / (from_mean**2).sum() * np.ptp(x)
 
 
 def _change(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The change from the lowest x to the highest; if relative, as a share of the value at the lowest."""
+    """The change from the lowest x to the highest; if relative, as a share of the value at the
+    lowest.
+    """
     change = points @ _weights(np.array(cells, dtype=float))
     return change / points[..., 0] if check.relative else change
 
@@ -94,7 +101,11 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     slopes = _slopes(x, stratum)
     n, statistic = len(slopes), point_statistic(check)
     if n < LEAST_RUNS:
-        return Finding(n=n, mark="?", reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}")
+        return Finding(
+            n=n,
+            mark="?",
+            reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}",
+        )
     # A unit counts wherever it has a value, even if not at every x.
     unpaired = comparison._replace(paired=False)
     ours = points(unpaired, statistic)
@@ -120,7 +131,9 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     linear = known.sum() >= 3 and np.ptp(ours[known]) > 0
     return Finding(
         *(change, "slope", slope, low, high, n, p),
-        toward=0 if abs(change) < margin else int(np.sign(SIDES[check.direction] * np.nan_to_num(change))),
+        toward=0
+        if abs(change) < margin
+        else int(np.sign(SIDES[check.direction] * np.nan_to_num(change))),
         margin=margin,
         negligible=is_negligible(low, high, margin, n),
         least_detectable=least_detectable(low, high, n),
@@ -133,8 +146,8 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
 def _slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
     """Least-squares slopes over x of units that have a finite value at 3 of x or more.
 
-    They are ranked, so those that should be equal, or zero, must not differ by how a processor rounds: slopes are rounded to a share of the
-    steepest, and a constant has none.
+    They are ranked, so those that should be equal, or zero, must not differ by how a processor
+    rounds: slopes are rounded to a share of the steepest, and a constant has none.
     """
     slopes = []
     for values in stratum[np.isfinite(stratum).sum(axis=1) >= 3]:
