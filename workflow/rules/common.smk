@@ -11,7 +11,9 @@ from pathlib import Path
 # does the parallel part.
 SOURCE = str(Path(str(workflow.current_basedir)).parents[1] / "src")
 sys.path.insert(0, SOURCE)
-os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
+os.environ.update(
+    PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1"
+)
 INTERPRETER = sys.executable
 # Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
@@ -46,7 +48,9 @@ def at_changes():
 
 
 try:
-    STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.namespace is not None), at_changes)
+    STUDIES = reading.load(
+        reading.read_config(config, alone=workflow.modifier.namespace is not None), at_changes
+    )
     reading.check_start(workflow.resource_settings.cores)
 except checked.Fault as fault:
     print(fault, file=sys.stderr)
@@ -66,7 +70,9 @@ def of_runs(wildcards):
     """Priority of a chunk of runs. Jobs of one planner need the same kernels, which one of them compiles while the others wait, so each planner has
     a job that comes before all others; planners of one study share kernels as well, so in that the studies take turns.
     """
-    place = first_runs(wildcards.scale).get((wildcards.study, wildcards.experiment, wildcards.method))
+    place = first_runs(wildcards.scale).get(
+        (wildcards.study, wildcards.experiment, wildcards.method)
+    )
     if place is None or wildcards.chunk != "0":
         return OF_STUDY[wildcards.study]
     return CLAIMS + 1 / (1 + place)
@@ -98,19 +104,31 @@ wildcard_constraints:
     method=one_of(name for study in STUDIES.values() for name in study.methods),
     chunk="[0-9]+",
     table=one_of(name for study in STUDIES.values() for name in study.compared()),
-    listing=one_of(name for study in STUDIES.values() for name in study.tables.keys() - study.compared().keys()),
+    listing=one_of(
+        name
+        for study in STUDIES.values()
+        for name in study.tables.keys() - study.compared().keys()
+    ),
     figure=one_of(name for study in STUDIES.values() for name in study.figures),
     alternative=one_of(name for study in STUDIES.values() for name in alternatives.tried(study)),
 
 
 def studies_with(tables):
     """Pattern of the names of studies in paths of tables: a name may be one kind of table in one study and another kind in another."""
-    return "|".join(f"{re.escape(key)}(?=/tables/(?:{one_of(names)})[.])" for key, names in tables.items()) or "(?!)"
+    return (
+        "|".join(
+            f"{re.escape(key)}(?=/tables/(?:{one_of(names)})[.])" for key, names in tables.items()
+        )
+        or "(?!)"
+    )
 
 
 def studies_of(experiments):
     """Pattern of the names of studies in paths of experiments: runs of one experiment may be simulated drives, those of another not."""
-    places = {key: rf"(?=/(?:problems|runs)/(?:{one_of(names)})(?:[.]|/))" for key, names in experiments.items()}
+    places = {
+        key: rf"(?=/(?:problems|runs)/(?:{one_of(names)})(?:[.]|/))"
+        for key, names in experiments.items()
+    }
     return "|".join(re.escape(key) + place for key, place in places.items()) or "(?!)"
 
 

@@ -10,7 +10,10 @@ rule interpretations_of:
         interpretations=report(
             f"{RESULTS}/interpretations.csv",
             category="{study}",
-            labels={"item": "interpretations", "shows": "interpretations of the paper by what they explain"},
+            labels={
+                "item": "interpretations",
+                "shows": "interpretations of the paper by what they explain",
+            },
             caption="../report/claims.rst",
         ),
         explained=f"{RESULTS}/explained.csv",

@@ -8,7 +8,10 @@ rule worth:
         report(
             "results/{scale}/worth.csv",
             category="summary",
-            labels={"item": "worth", "shows": "each method beside the exact shortest path with rounded corners"},
+            labels={
+                "item": "worth",
+                "shows": "each method beside the exact shortest path with rounded corners",
+            },
             caption="../report/summary.rst",
         ),
     log:

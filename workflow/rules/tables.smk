@@ -35,7 +35,10 @@ rule listing:
         report(
             f"{RESULTS}/tables/{{listing}}.csv",
             category="{study}",
-            labels={"item": "{listing}", "shows": "what the paper prints, or what follows from it"},
+            labels={
+                "item": "{listing}",
+                "shows": "what the paper prints, or what follows from it",
+            },
             caption="../report/artefact.rst",
         ),
     log:

@@ -4,7 +4,16 @@
 try:
     reading.check_names(
         STUDIES,
-        [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "interpretations", "narrow", "default"],
+        [
+            *(rule.name for rule in workflow.rules),
+            "all",
+            "smoke",
+            "extended",
+            "alternatives",
+            "interpretations",
+            "narrow",
+            "default",
+        ],
     )
 except checked.Fault as fault:
     sys.exit(str(fault))
