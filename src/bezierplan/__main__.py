@@ -27,6 +27,7 @@ COMMANDS = {
     "check-planner": "the contract tests of a planner, on small and degenerate problems",
     "plan": "one path on a map, checked by exact geometry",
     "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",
+    "needed": "runs that scale extended has, beside those that claims and numbers need",
     "effort": "where the CPU time of the last start of the workflow went, by what it was for",
     "new": "a study of your own, which runs at once",
     "run": "targets of the workflow, from any folder",

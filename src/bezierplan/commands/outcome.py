@@ -14,7 +14,7 @@ import pandas as pd
 
 from bezierplan.analysis import explained, headline, summary
 from bezierplan.analysis.markdown import table_text
-from bezierplan.commands import forecast, replay
+from bezierplan.commands import forecast, needed, replay
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 
@@ -95,6 +95,7 @@ def write() -> None:
             if key in (varied if name == SENSITIVITY else searched):
                 shutil.copyfile(FULL / key / name, kept)
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
+    needed.table(studies, RESULTS).to_csv(KEPT / needed.KEPT, index=False)
     forecast.keep(studies, Path())
     for picture in PICTURES:
         shutil.copyfile(FULL / picture, KEPT / picture.replace("/figures/", "_"))
