@@ -817,8 +817,8 @@ def test_any_comparison_may_hold():
 def test_runs_of_several_conditions_are_never_mixed():
     with pytest.raises(
         Fault,
-        match="claim C1: lower of objective: several values of condition are neither told apart "
-        "nor pooled",
+        match="claim C1: lower of objective: "
+        "several values of condition are neither told apart nor pooled",
     ):
         judged(LOWER, places(1, 1))
     with pytest.raises(Fault, match="several values of method"):

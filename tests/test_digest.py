@@ -132,7 +132,8 @@ KERNELS = """
 import numpy as np
 from bezierplan.planners.parts import genetic
 genetic.complement_bit(np.arange(4), 5, 3)
-print(sum(genetic.complement_bit.stats.cache_hits.values()), genetic.complement_bit.stats.cache_path)
+stats = genetic.complement_bit.stats
+print(sum(stats.cache_hits.values()), stats.cache_path)
 """
 
 

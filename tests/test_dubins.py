@@ -184,8 +184,8 @@ def test_in_a_corridor_the_robot_cannot_turn_and_drives_on_to_where_it_can():
     assert (none.path, none.feasible, none.stop) == (None, False, "none found")
     with pytest.raises(
         ValueError,
-        match="turning_radius: 1 m asked: no path was found; expected one that can be kept, or "
-        "not strict",
+        match="turning_radius: 1 m asked: no path was found; "
+        "expected one that can be kept, or not strict",
     ):
         bp.plan(problem, start_heading=math.pi, target_heading=0.0, turning_radius=1.0, strict=True)
 

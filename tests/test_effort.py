@@ -64,7 +64,7 @@ def test_a_log_holds_what_its_job_noted(tmp_path, caplog, spent):
         logging.info(effort.line())
     file = tmp_path / "job.log"
     file.write_text(
-        f"2026-01-01 00:00:00,000 INFO all 2 runs done\n2026-01-01 00:00:00,000 INFO "
+        "2026-01-01 00:00:00,000 INFO all 2 runs done\n2026-01-01 00:00:00,000 INFO "
         f"{caplog.messages[-1]}\n"
     )
     assert effort.of_job(file)["cpu"] > 0

@@ -243,8 +243,8 @@ def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
     """
     numbers = pd.read_csv(FOLDER.parents[2] / "docs" / "outcome" / "numbers.csv")
     own = numbers.query(
-        "study == 'ma2020' and metric == 'length' and statistic == 'min' and method in ('bca', "
-        "'bca_q')"
+        "study == 'ma2020' and metric == 'length' and "
+        "statistic == 'min' and method in ('bca', 'bca_q')"
     )
     for table, name in (("table1", "environment1"), ("table2", "environment2")):
         lengths = own.loc[own["table"] == table, "value_ours"]

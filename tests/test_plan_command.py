@@ -275,7 +275,8 @@ ANSWERS = {
     "another map": (
         'object.__setattr__(problem.workspace, "occupied", ~problem.workspace.occupied)',
         "answer",
-        "problem: : workspace: occupied: is another after the run; a planner copies what it changes",
+        "problem: : workspace: occupied: is another after the run; "
+        "a planner copies what it changes",
     ),
 }
 
@@ -326,6 +327,6 @@ def test_a_feasible_path_shorter_than_the_bound_is_no_answer(capsys, monkeypatch
         "straight_line",
     )
     assert told.startswith(
-        "--planner: straight_line: its path is 2 long and feasible, but no free path is shorter "
-        "than 3: "
+        "--planner: straight_line: "
+        "its path is 2 long and feasible, but no free path is shorter than 3: "
     )

@@ -126,7 +126,7 @@ def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypat
     assert (
         str(ended.value)
         == f"{damaged}: not a whole Parquet file; delete it and start again: the workflow "
-        f"reproduces it"
+        "reproduces it"
     )
     assert sorted(os.listdir(tmp_path)) == ["cut.parquet"]
     given.input = []

@@ -315,7 +315,7 @@ def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):
         [],
         [
             f"{tmp_path / 'nowhere'}: no runs here; expected a folder of results, such as "
-            f"results/full"
+            "results/full"
         ],
     )
     (results / RUNS).write_bytes(b"PAR1")
@@ -323,7 +323,7 @@ def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):
     assert (status, lines) == (2, [])
     assert told == [
         f"{results / RUNS}: not a whole Parquet file; delete it and start again: the workflow "
-        f"reproduces it"
+        "reproduces it"
     ]
     (results / "s/problems/e.parquet").unlink()
     (results / BOUNDS).unlink()

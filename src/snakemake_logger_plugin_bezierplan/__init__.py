@@ -172,14 +172,14 @@ def unknown_target(message: str) -> str:
     """What to say of a target that no rule makes, from Snakemake's words; empty for other words."""
     from bezierplan.schema.checked import closest
 
-    found = re.search(r"No rule to produce (\S+)", message)
-    if not found or not KNOWN:
+    match = re.search(r"No rule to produce (\S+)", message)
+    if not match or not KNOWN:
         return ""
-    if "/" in found[1]:
+    if "/" in match[1]:
         return (
-            f"{found[1]}: no rule makes this file; `python -m bezierplan list` lists what there is"
+            f"{match[1]}: no rule makes this file; `python -m bezierplan list` lists what there is"
         )
-    return f"{found[1]}: no target{closest(found[1], KNOWN)}"
+    return f"{match[1]}: no target{closest(match[1], KNOWN)}"
 
 
 def headline(folder: Path) -> list[str]:

@@ -71,7 +71,7 @@ def planted(mutant: Mutant, tree: Path = ROOT) -> str:
     if text.count(mutant.old) != 1:
         raise ValueError(
             f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; "
-            f"expected once"
+            "expected once"
         )
     return text.replace(mutant.old, mutant.new)
 

@@ -237,7 +237,7 @@ def main(given: list[str]) -> int:
     say(
         found
         or f"the same bits in all {len(expected)} run tables, tables, data of figures, claims and "
-        f"summaries"
+        "summaries"
     )
     say("the tests with the new versions")
     failed = run(NEWEST, ".venv/bin/python", "-m", "pytest", "-n", "auto", "--dist", "loadfile")

@@ -92,7 +92,7 @@ def check(settings: dict) -> None:
     if shares > 1:
         raise ValueError(
             f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts "
-            f"points"
+            "points"
         )
 
 

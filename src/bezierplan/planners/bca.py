@@ -84,8 +84,8 @@ class Settings(NamedTuple):
     initial: Annotated[
         Initial,
         About(
-            "genes are free cells drawn uniformly; also sorted by x + y; or redrawn until the "
-            "curve is free"
+            "genes are free cells drawn uniformly; "
+            "also sorted by x + y; or redrawn until the curve is free"
         ),
     ]
     population: Annotated[
@@ -149,13 +149,13 @@ def check(settings: dict) -> None:
     pieces = len(curves.piece_matrix(settings["curve"], settings["control_points"] + 2))
     if settings["samples"] < pieces + 1:
         raise ValueError(
-            f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least "
-            f"{pieces + 1}"
+            f"samples: {settings['samples']}; "
+            f"the {pieces} pieces of this curve need at least {pieces + 1}"
         )
     if settings["length_weight"] == 0:
         raise ValueError(
-            "length_weight: 0; a path without any cost has no fitness, so a number above 0 is "
-            "needed"
+            "length_weight: 0; "
+            "a path without any cost has no fitness, so a number above 0 is needed"
         )
 
 

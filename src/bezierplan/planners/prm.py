@@ -246,14 +246,14 @@ def _nearest(points, neighbours):
                 if distance > most or (distance == most and j > nearest[i, -1]):
                     continue
                 count = min(count + 1, neighbours)
-                place = count - 1
-                while place > 0 and (
-                    square[place - 1] > distance
-                    or (square[place - 1] == distance and nearest[i, place - 1] > j)
+                slot = count - 1
+                while slot > 0 and (
+                    square[slot - 1] > distance
+                    or (square[slot - 1] == distance and nearest[i, slot - 1] > j)
                 ):
-                    square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
-                    place -= 1
-                square[place], nearest[i, place] = distance, j
+                    square[slot], nearest[i, slot] = square[slot - 1], nearest[i, slot - 1]
+                    slot -= 1
+                square[slot], nearest[i, slot] = distance, j
                 if count == neighbours:
                     most = square[-1]
     return nearest

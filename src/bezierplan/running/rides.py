@@ -191,7 +191,7 @@ def run_chunk(
             runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
             raise execution.UnfitAnswer(
                 f"run {runs_of}: planner {job['planner']}: problem: {name}: world: is another "
-                f"after the runs"
+                "after the runs"
             )
     runs = rows.table(drives, Planned, Outcome, DriveOutcome)
     return runs, rows.table(times, Times, DriveTimes), pa.Table.from_pylist(traces)

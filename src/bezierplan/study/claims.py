@@ -87,8 +87,8 @@ class Assumption(Model):
 
     not_searched: listed(Setting) = Field(
         [],
-        description="alternatives that `snakemake interpretations` leaves out because they take "
-        "too long",
+        description="alternatives that `snakemake interpretations` "
+        "leaves out because they take too long",
     )
 
     @model_validator(mode="after")
@@ -114,7 +114,7 @@ class Assumption(Model):
         if self.table and self.default != "all":
             raise wrong(
                 f"default: {shown(self.default)}: expected all, since table: {self.table} is not "
-                f"in force"
+                "in force"
             )
         if self.setting is None and self.problems:
             raise wrong(

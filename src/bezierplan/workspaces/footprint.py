@@ -83,7 +83,7 @@ def _points(corners: Sequence[Sequence[float]]) -> np.ndarray:
     if not np.abs(points).max() <= LARGEST:
         raise ValueError(
             f"footprint: {str(corners)[:60]}: expected finite numbers of at most {LARGEST:g} in "
-            f"size"
+            "size"
         )
     return points
 

@@ -132,12 +132,12 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
         if unknown:
             raise ValueError(
                 f"line {number}: unknown character {unknown[0]!r}; a cell is . (free) or # "
-                f"(occupied)"
+                "(occupied)"
             )
         if len(line) != len(lines[0]):
             raise ValueError(
                 f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all "
-                f"lines need the same number"
+                "lines need the same number"
             )
     if len(lines) * len(lines[0]) > MOST_CELLS:
         raise ValueError(
@@ -165,7 +165,7 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
         if len(words) != columns:
             raise ValueError(
                 f"line {number} has {len(words)} heights; expected {columns}, as many as the map "
-                f"has cells"
+                "has cells"
             )
         for column, word in enumerate(words):
             try:

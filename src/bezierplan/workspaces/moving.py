@@ -74,6 +74,6 @@ def _drawn_centres(
         else:
             raise ValueError(
                 f"radius: no circle keeps {least:g} away from start and target in {MOST_DRAWS} "
-                f"draws"
+                "draws"
             )
     return centres

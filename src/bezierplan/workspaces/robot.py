@@ -74,7 +74,7 @@ def _grow(workspace: Workspace, radius: float) -> Workspace:
     if before := grown_of(workspace):
         raise ValueError(
             f"robot_radius: {radius:g}: the map has grown by {before.radius:g} before; expected "
-            f"it once"
+            "it once"
         )
     if isinstance(workspace, Circles):
         bounds = _shrunk(workspace.bounds, radius)
@@ -127,7 +127,7 @@ def _shrunk(
 def _nothing_free(radius: float) -> ValueError:
     return ValueError(
         f"robot_radius: {radius:g}: no place of the map is that far from its obstacles and its "
-        f"border; expected a smaller one"
+        "border; expected a smaller one"
     )
 
 

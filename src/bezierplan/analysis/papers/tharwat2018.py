@@ -137,7 +137,7 @@ def movement(
                 "text": f"{name} {formula}",
             }
             rows.append(words | {"x": moved + aside * 4.3})
-        for role, place, words in (
+        for role, position, words in (
             ("first", x, "x"),
             ("third", p, "p"),
             ("start", moved, "new x"),
@@ -155,13 +155,13 @@ def movement(
                     "role": role,
                     "group": f"{words} {number}",
                     "label": label,
-                    "x": place,
+                    "x": position,
                     "y": line,
                 }
             )
             if words != "new x":
                 rows.append(
-                    {"mark": "text", "role": "note", "x": place, "y": line - 0.75, "text": words}
+                    {"mark": "text", "role": "note", "x": position, "y": line - 0.75, "text": words}
                 )
     return pd.DataFrame(rows)
 

@@ -65,13 +65,13 @@ class Options(RunsPanel):
     )
     until: Whole = Field(
         None,
-        description="the generation at which the axis ends; left out: the last one of the longest "
-        "run",
+        description="the generation at which the axis ends; "
+        "left out: the last one of the longest run",
     )
     printed: PrintedTable = Field(
         None,
-        description="with hue, the name of a published table whose means are marked beside the "
-        "last values",
+        description="with hue, the name of a published table "
+        "whose means are marked beside the last values",
     )
 
     @property

@@ -80,8 +80,8 @@ class Options(Panel):
     )
     embed: Flag = Field(
         False,
-        description="whether a grid is put into one of a power of two of rows and columns, true "
-        "or false",
+        description="whether a grid is put into one of a power "
+        "of two of rows and columns, true or false",
     )
 
     def source(self, sources: Sources) -> Workspace:

@@ -67,7 +67,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     if problem["obstacles"] > len(numbers):
         raise ValueError(
             f"obstacles: {problem['obstacles']}; expected at most {len(numbers)}, the cells that "
-            f"can change"
+            "can change"
         )
     maps = [first]
     for _ in moments:

@@ -39,6 +39,6 @@ def load(description: dict, folder: Path) -> Spheres:
         if math.dist(centre, np.clip(centre, bounds[::2], bounds[1::2])) >= radius:
             raise ValueError(
                 f"spheres: sphere {i}: lies outside the bounds; expected a sphere that reaches "
-                f"into them"
+                "into them"
             )
     return Spheres(bounds, table[:, :3], table[:, 3], description["unit"])
