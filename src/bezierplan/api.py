@@ -714,8 +714,8 @@ def _method(
         return getattr(method, "__name__", "a function"), _Function(method), {}
     if not isinstance(method, str):
         raise TypeError(
-            f"method: is a {type(method).__name__}; expected a name, a planner's module, or its "
-            "function plan"
+            f"method: is a {type(method).__name__}; "
+            "expected a name, a planner's module, or its function plan"
         )
     if method.endswith(".py"):
         if not File(method).is_file():
@@ -871,8 +871,8 @@ def replay(run: str) -> Answer:
     row, study, method = made.runs.iloc[0], run.split("/")[0], run.split("/")[3]
     if made.worlds:
         raise ValueError(
-            f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan "
-            "replay`"
+            f"run: {run}: is a drive; "
+            "expected a run in a world that stands still, or `bezierplan replay`"
         )
     names = planner_settings(planner_module(row["planner"]))
     problem = made.problems[row["problem"]]

@@ -418,8 +418,8 @@ def _ratio(best: pd.Series, default: pd.Series) -> str:
     """How much more likely than under the default interpretation the numbers are."""
     difference = best["score"] - default["score"]
     return (
-        f"log-likelihood ratio against the default {difference:+.1f} ({_times(difference)} as "
-        "likely)"
+        "log-likelihood ratio against the default "
+        f"{difference:+.1f} ({_times(difference)} as likely)"
     )
 
 

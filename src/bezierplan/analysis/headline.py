@@ -150,8 +150,8 @@ def beside_baseline(measured: pd.DataFrame) -> str:
         return f"No method is feasible as often as the baseline, {worth.BASELINE}."
     if not shorter:
         return (
-            f"No method that is feasible as often as the baseline, {worth.BASELINE}, gives a "
-            "shorter path."
+            "No method that is feasible as often as the baseline, "
+            f"{worth.BASELINE}, gives a shorter path."
         )
     gives = "gives" if shorter == 1 else "give"
     return (

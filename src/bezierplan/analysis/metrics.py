@@ -299,8 +299,8 @@ METRICS: dict[str, Metric] = {
     ),
     "max_curvature": Metric(
         "1/u",
-        f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces "
-        "left out",
+        f"largest absolute curvature over {CURVATURE_SAMPLES} samples, "
+        "corners between pieces left out",
         True,
         partial(measures.of_path, measures.max_curvature),
     ),

@@ -142,8 +142,8 @@ def sentence(rows: pd.DataFrame) -> str:
     """What follows from the rows of one study."""
     count = len(rows)
     parts = [
-        f"{_counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs "
-        "(baseline: "
+        f"{_counted(count, 'method')}: "
+        f"feasible in {span(100 * rows['feasible'])} % of the runs (baseline: "
         f"{number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} times the "
         "baseline's CPU time."
     ]
@@ -165,8 +165,8 @@ def _verdict(own: pd.DataFrame) -> str:
         return "No method is feasible as often as the baseline."
     if better.empty:
         return (
-            f"Of the {len(reliable)} feasible as often as the baseline, none is shorter or "
-            "curves less."
+            f"Of the {len(reliable)} feasible as often as the baseline, "
+            "none is shorter or curves less."
         )
     best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
     found = "is shorter or curves less" if len(better) == 1 else "are shorter or curve less"
@@ -174,8 +174,8 @@ def _verdict(own: pd.DataFrame) -> str:
         f"Of the {len(reliable)} feasible as often as the baseline, {len(better)} {found}; the "
         f"least curved, {best['method']}, has "
         f"{number(best['curvature'])} times the curvature, {number(best['length'])} times the "
-        f"length and {number(best['cpu'])} times "
-        "the CPU time."
+        f"length and {number(best['cpu'])} "
+        "times the CPU time."
     )
 
 

@@ -619,8 +619,8 @@ def _told_curvature(judged: api.Judged, smooth: str) -> str:
         told += (
             ", continuous"
             if continuous
-            else f", jumps by up to {judged.curvature_jump:.3g} / {unit} where transitions have "
-            "no room"
+            else f", jumps by up to {judged.curvature_jump:.3g} "
+            f"/ {unit} where transitions have no room"
         )
     return told
 

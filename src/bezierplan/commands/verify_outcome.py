@@ -90,8 +90,8 @@ def lines(found: pd.DataFrame, failed: pd.DataFrame) -> list[str]:
     tested = found[found["p"].notna()]
     equal = int((tested["value_kept"] == tested["value_own"]).sum())
     told = [
-        f"{len(tested)} numbers compared, {equal} equal, {len(failed)} different by more than "
-        "chance"
+        f"{len(tested)} numbers compared, {equal} equal, "
+        f"{len(failed)} different by more than chance"
     ]
     if failed.empty:
         return [

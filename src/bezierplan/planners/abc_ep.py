@@ -91,8 +91,8 @@ def check(settings: dict) -> None:
     shares = settings["move_share"] + settings["removal_share"]
     if shares > 1:
         raise ValueError(
-            f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts "
-            "points"
+            f"move_share: with removal_share {shares:g}; "
+            "expected at most 1, the rest inserts points"
         )
 
 

@@ -190,8 +190,8 @@ def _history(values: Any) -> np.ndarray:
         and not -_LARGEST_EXACT <= int(values.min()) <= int(values.max()) <= _LARGEST_EXACT
     ):
         raise Unfit(
-            f"history: expected whole numbers between -{_LARGEST_EXACT} and {_LARGEST_EXACT}, or "
-            "floats"
+            "history: expected whole numbers between "
+            f"-{_LARGEST_EXACT} and {_LARGEST_EXACT}, or floats"
         )
     history = np.array(values, dtype=float)
     if np.isnan(history).any():

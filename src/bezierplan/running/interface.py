@@ -101,8 +101,8 @@ def interface_fault(module: ModuleType) -> str | None:
     for parameter in parameters:
         if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is not parameter.empty:
             return (
-                f"setting {parameter.name}: has a default value; a study gives a value to "
-                "every setting"
+                f"setting {parameter.name}: has a default value; "
+                "a study gives a value to every setting"
             )
         if parameter.kind is parameter.KEYWORD_ONLY and parameter.annotation is parameter.empty:
             return f"setting {parameter.name}: has no annotation; {_EXPECTED}"

@@ -150,8 +150,8 @@ def damaged(files: Iterable[str]) -> str:
                 )
             if "runs" in Path(file).parts[-4:] and RUNS_COLUMN not in columns:
                 return (
-                    f"{file}: not a table of runs; delete it and start again: the workflow "
-                    "reproduces it"
+                    f"{file}: not a table of runs; "
+                    "delete it and start again: the workflow reproduces it"
                 )
     return ""
 

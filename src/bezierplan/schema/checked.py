@@ -138,8 +138,8 @@ def _check_size(text: str, location: str) -> None:
         anchor, size = getattr(event, "anchor", None) or "", 0
         if getattr(event, "tag", None):
             raise Fault(
-                f"{_line(location, event.start_mark)}: {event.tag}: tags are not read; write the "
-                "plain value"
+                f"{_line(location, event.start_mark)}: {event.tag}: "
+                "tags are not read; write the plain value"
             )
         if isinstance(event, yaml.CollectionStartEvent):
             opened.append((anchor, 1))

@@ -506,8 +506,8 @@ def _check_table(
         published.check(design, table, location)
     elif table.monotone:
         raise Fault(
-            f"{location}: monotone: the table has no published numbers, which it is about; leave "
-            "it out"
+            f"{location}: monotone: "
+            "the table has no published numbers, which it is about; leave it out"
         )
     keys = published.keys(design.study, table)
     for column in table.primary:

@@ -225,8 +225,8 @@ class Problem(Model):
         if ends not in ({"start", "target"}, {"start_cell", "target_cell"}, {"scenario"}):
             given = " and ".join(sorted(ends)) or "neither"
             raise wrong(
-                f"{given}: expected either start and target, or start_cell and target_cell, or "
-                "scenario"
+                f"{given}: expected either start and target, "
+                "or start_cell and target_cell, or scenario"
             )
         if ("layouts" in self.model_fields_set) != ("obstacles" in self.model_fields_set):
             raise wrong("layouts and obstacles go together")

@@ -118,8 +118,8 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
     for name in experiments.baselines:
         if name in experiments.methods:
             raise Fault(
-                f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this "
-                "name already"
+                f"{relative(folder / 'experiments.yaml')}: "
+                f"baselines: {name}: a method has this name already"
             )
     return Study(
         key=folder.resolve().name,
@@ -200,8 +200,8 @@ def check_name(key: str, location: str) -> None:
             "name of a device"
         )
         raise Fault(
-            f"{location}: not a name of a study; expected {wanted}; choose another name for its "
-            "folder"
+            f"{location}: not a name of a study; "
+            f"expected {wanted}; choose another name for its folder"
         )
 
 

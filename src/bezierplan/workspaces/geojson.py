@@ -201,8 +201,8 @@ def _ring(positions: Any, where: str) -> np.ndarray:
     """A ring (n, 2), or (n, 3) with heights, without its last position, which repeats the first."""
     if not isinstance(positions, list) or len(positions) < 4:
         raise ValueError(
-            f"{where}: expected at least four positions, the last one the first again (RFC 7946, "
-            "3.1.6)"
+            f"{where}: expected at least four positions, "
+            "the last one the first again (RFC 7946, 3.1.6)"
         )
     for position in positions:
         fits = (
@@ -217,8 +217,8 @@ def _ring(positions: Any, where: str) -> np.ndarray:
             )
         ):
             raise ValueError(
-                f"{where}: position {str(position)[:60]}; expected [x, y], or [x, y, height] "
-                "throughout"
+                f"{where}: position {str(position)[:60]}; "
+                "expected [x, y], or [x, y, height] throughout"
             )
     try:
         ring = np.array(positions, dtype=float)

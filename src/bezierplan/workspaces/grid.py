@@ -131,8 +131,8 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
         unknown = line.replace(".", "").replace("#", "")
         if unknown:
             raise ValueError(
-                f"line {number}: unknown character {unknown[0]!r}; a cell is . (free) or # "
-                "(occupied)"
+                f"line {number}: unknown character {unknown[0]!r}; "
+                "a cell is . (free) or # (occupied)"
             )
         if len(line) != len(lines[0]):
             raise ValueError(
@@ -164,8 +164,8 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
         words = line.split()
         if len(words) != columns:
             raise ValueError(
-                f"line {number} has {len(words)} heights; expected {columns}, as many as the map "
-                "has cells"
+                f"line {number} has {len(words)} heights; "
+                f"expected {columns}, as many as the map has cells"
             )
         for column, word in enumerate(words):
             try:

@@ -73,8 +73,8 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
 def _grow(workspace: Workspace, radius: float) -> Workspace:
     if before := grown_of(workspace):
         raise ValueError(
-            f"robot_radius: {radius:g}: the map has grown by {before.radius:g} before; expected "
-            "it once"
+            f"robot_radius: {radius:g}: "
+            f"the map has grown by {before.radius:g} before; expected it once"
         )
     if isinstance(workspace, Circles):
         bounds = _shrunk(workspace.bounds, radius)

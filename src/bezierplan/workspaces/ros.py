@@ -229,8 +229,8 @@ def _occupied(
                 shades = _shades(image) if columns * rows <= most_pixels else None
         except MemoryError:
             raise ValueError(
-                f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a "
-                "smaller image"
+                f"image: {columns:,} x {rows:,} pixels: "
+                "more than there is memory for; expected a smaller image"
             ) from None
         except Exception as error:  # of a damaged file each format raises another one
             raise ValueError(

@@ -149,8 +149,8 @@ def _view_box(root: ET.Element) -> list[float]:
         ) from None
     if not (width > 0 and height > 0):
         raise ValueError(
-            f"viewBox: {root.attrib.get('viewBox', '')}: {width:g} x {height:g}; expected numbers "
-            "above 0"
+            f"viewBox: {root.attrib.get('viewBox', '')}: "
+            f"{width:g} x {height:g}; expected numbers above 0"
         )
     return [left, top, width, height]
 
@@ -268,8 +268,8 @@ def _path(name: str, element: ET.Element) -> Any:
             return svgelements.Path(words) if words.strip() else None
         except (ValueError, AttributeError, IndexError, TypeError):
             raise ValueError(
-                f"{name}: d: {words[:60]}: cannot be read; expected commands of a path with their "
-                "numbers"
+                f"{name}: d: {words[:60]}: cannot be read; "
+                "expected commands of a path with their numbers"
             ) from None
     if tag in ("polygon", "polyline"):
         numbers = re.split(r"[\s,]+|(?<=\d)(?=[-+])", element.attrib.get("points", "").strip())
@@ -277,8 +277,8 @@ def _path(name: str, element: ET.Element) -> Any:
             points = np.array([number(word) for word in numbers if word]).reshape(-1, 2)
         except ValueError:
             raise ValueError(
-                f"{name}: points: {element.attrib.get('points', '')[:60]}; expected pairs of "
-                "numbers"
+                f"{name}: points: {element.attrib.get('points', '')[:60]}; "
+                "expected pairs of numbers"
             ) from None
         closed = tag == "polygon" or len(points) == 0
         lines = " L ".join(f"{x!r},{y!r}" for x, y in points.tolist())

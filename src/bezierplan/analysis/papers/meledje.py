@@ -377,8 +377,8 @@ def _fisher_rows(
     return [
         _row(
             *(name, f"metric={metric}, proposed and {other}"),
-            f"the proposed mutation has the {words} beyond chance: p of Fisher's test, corrected "
-            "by Holm",
+            f"the proposed mutation has the {words} beyond chance: "
+            "p of Fisher's test, corrected by Holm",
             *(value, ALPHA, value < ALPHA and sign * (own - theirs) > 0),
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())

@@ -63,8 +63,8 @@ def about_scale(scale: str, repeats: dict[str, list[list[int]]]) -> list[str]:
     first = {
         "smoke": f"Scale smoke is a small subset, of {runs[scale]} runs per method and condition, "
         "which shows that everything works.",
-        "full": f"Scale full has as many runs as the papers report: {runs[scale]} per method and "
-        "condition.",
+        "full": "Scale full has as many runs as the papers report: "
+        f"{runs[scale]} per method and condition.",
         "extended": f"Scale extended has {runs[scale]} runs per method and condition, so its "
         "verdicts are about methods.",
     }[scale]

@@ -208,8 +208,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     fewest, most = frame["runs"].min(), frame["runs"].max()
     return Note(
         "",
-        f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; never: no run "
-        "gets there",
+        f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; "
+        "never: no run gets there",
     )
 
 

@@ -169,8 +169,8 @@ def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
         drawn = [way.assign(part="way", iteration=range(len(paths)))]
     else:
         raise ValueError(
-            f"point: {point}; expected 0 to {len(paths[0].points) - 1}, a control point of the "
-            "curve"
+            f"point: {point}; "
+            f"expected 0 to {len(paths[0].points) - 1}, a control point of the curve"
         )
     return pd.concat(drawn, ignore_index=True).assign(run=run["id"], length=run["length"])
 

@@ -232,8 +232,8 @@ class OfRuns(Check):
             for column in columns:
                 if column in owners:
                     raise wrong(
-                        f"{key}: {column}: is in {owners[column]} already; expected it in one of "
-                        "the two"
+                        f"{key}: {column}: is in {owners[column]} already; "
+                        "expected it in one of the two"
                     )
                 owners[column] = key
         return self

@@ -162,8 +162,8 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         return Finding(mark="?", reason="no run counts")
     if not np.isin(happened, (0.0, 1.0)).all():
         raise ValueError(
-            f"{name}: {check['metric']} has values other than true and false; its check needs an "
-            "event"
+            f"{name}: {check['metric']} has values other than true and false; "
+            "its check needs an event"
         )
     finding = Finding(k / n, "share", k / n, n=n)
     holds = bool(claimed(check, np.array(k / n), math.nan))
