@@ -15,9 +15,8 @@ ASK = "from bezierplan.running.digest import source_digest; print(source_digest(
 
 @pytest.fixture
 def tree(tmp_path):
-    (tmp_path / "config" / "studies").mkdir(
-        parents=True
-    )  # as in a clone, so that caches lie beside it
+    # As in a clone, so that caches lie beside it.
+    (tmp_path / "config" / "studies").mkdir(parents=True)
     return Path(
         shutil.copytree(SOURCE, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
     )

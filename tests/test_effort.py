@@ -112,6 +112,7 @@ def test_table_of_a_start(tmp_path):
         f"results/smoke/song2016/figures/figure4.{ending}" for ending in ("svg", "png", "csv")
     ]
     job(tmp_path, "figure", "figures/figure4", 1050.0, figures, cpu=4.0, importing=1.0)
+    # Of an earlier start.
     job(
         tmp_path,
         "figure",
@@ -119,7 +120,7 @@ def test_table_of_a_start(tmp_path):
         900.0,
         ["results/smoke/song2016/figures/figure5.svg"],
         cpu=50.0,
-    )  # of an earlier start
+    )
     found, jobs, waited = command.spent(SESSION, tmp_path)
     expected = {
         "planning": 5.0,

@@ -71,11 +71,11 @@ figures:
 claims:
   - {id: C1, place: Table 1, statement: The walk with fewer tries is longer., artefact: lengths,
      checks: [
-      {test: lower, experiment: first, metric: length, groups: [line], than: [mine],
-       direction: higher, margin: 0.1}]}
+      {test: lower, experiment: first, metric: length,
+       groups: [line], than: [mine], direction: higher, margin: 0.1}]}
   - {id: C2, place: Table 1, statement: More tries are shorter., artefact: lengths, checks: [
-      {test: trend, experiment: both, metric: length, x: tries, direction: down, margin: 0.1,
-       every: [problem]}]}
+      {test: trend, experiment: both, metric: length,
+       x: tries, direction: down, margin: 0.1, every: [problem]}]}
   - {id: C3, place: Table 1, statement: The printed numbers add up., artefact: lengths, checks: [
       {test: published_arithmetic, form: difference, equals: 1.1,
        of: [{table: lengths, method: mine, statistic: median},
@@ -126,10 +126,8 @@ VALUES = "{metric: length, statistic: [median, min], label: length, decimals: 2}
 CHUNK = "chunk: {smoke: 2, full: 6, extended: 6}"
 ROW = "mine,length,median,10,m,13.1"
 ASSUMED = "alternatives: [10], with: {mine: {}}"
-ARITHMETIC = (
-    "of: [{table: lengths, method: mine, statistic: median}, {table: lengths, method: "
-    "line, statistic: median}]"
-)
+ARITHMETIC = """of: [{table: lengths, method: mine, statistic: median},
+            {table: lengths, method: line, statistic: median}]"""
 KNOWN = "known before a run"
 RESULT = "that a run finds out; expected a column that is known before a run"
 BY_VALUE = "that a run finds out is not selected by its value"

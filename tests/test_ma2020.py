@@ -202,10 +202,11 @@ def test_nearest_lattice_length_is_one_of_a_path_from_corner_to_corner():
         assert straight % 2 == 0
         assert straight + 2 * diagonal >= 40
         assert diagonal >= 1
+    # Near, but no path from corner to corner.
     assert ma2020.nearest_lattice_length(35.4147, SIDE) != (
         34,
         1,
-    )  # near, but no path from corner to corner
+    )
 
 
 def test_lattice_lengths():

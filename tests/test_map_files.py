@@ -226,9 +226,10 @@ def test_projected_coordinates_keep_their_digits(tmp_path, radius):
 
 
 def test_far_maps_of_every_kind(tmp_path):
+    # In a study.
     with pytest.raises(
         ValueError, match=r"is not a coordinate; expected finite numbers of at most 100000 in size"
-    ):  # in a study
+    ):
         ros_map(tmp_path, YAML.replace("[-1.0, 2.0, 0.0]", f"[{UTM[0]}, {UTM[1]}, 0.0]"))
     room = bp.read_map(tmp_path / "room.yaml")
     problem = bp.Problem(

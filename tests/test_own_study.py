@@ -138,9 +138,8 @@ def results(tmp_path_factory):
     }.items():
         (study / name).write_text(text)
     snakemake(folder, "alternatives")
-    snakemake(
-        folder, "all"
-    )  # after the alternatives, because the page shows those that have been tried
+    # After the alternatives, because the page shows those that have been tried.
+    snakemake(folder, "all")
     return folder / "results" / "full" / "bends"
 
 

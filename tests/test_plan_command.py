@@ -46,9 +46,8 @@ def test_without_a_planner_it_is_the_rounded_shortest_path(capsys):
         r"([\d.]+) m, ([\d.e-]+) % above the shortest path", found["length"]
     ).groups()
     assert float(length) / SHORTEST - 1 == pytest.approx(float(gap) / 100, abs=1e-5)
-    assert found["curvature"].startswith(
-        "at most 2.5"
-    )  # one over the turning radius of 0.02 times 20 m
+    # One over the turning radius of 0.02 times 20 m.
+    assert found["curvature"].startswith("at most 2.5")
     assert found["CPU time"].endswith(" s")
 
 

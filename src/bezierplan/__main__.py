@@ -74,9 +74,8 @@ def main(words: list[str]) -> None:
         )
         if sys.stdout:  # which a process without one does not have
             sys.stdout.flush()
-    except (
-        BrokenPipeError
-    ):  # the reader, such as `head`, has enough; Python flushes once more when it exits
+    # The reader, such as `head`, has enough; Python flushes once more when it exits.
+    except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except watchdog.PlannerFailure as failure:
         sys.exit(str(failure))

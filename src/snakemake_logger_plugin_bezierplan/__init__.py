@@ -43,9 +43,8 @@ BETWEEN_LINES = 15.0
 class LogHandler(RichHandler):
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.progress.speed_estimate_period = (
-            24 * 3600
-        )  # seconds looked back on; the usual 30 are shorter than one job
+        # Seconds looked back on; the usual 30 are shorter than one job.
+        self.progress.speed_estimate_period = 24 * 3600
         self.progress.columns = (
             SpinnerColumn(finished_text="✓"),
             TextColumn("{task.description}"),

@@ -38,10 +38,11 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
             "expected at least one word, such as the folder of a study; bezierplan run --help "
             "shows examples"
         )
+    # Here its absence is told as that of the extra.
     from snakemake.cli import (
         get_argument_parser,
         parse_cores,
-    )  # here its absence is told as that of the extra
+    )
     from snakemake.exceptions import CliException
 
     started = command(words)

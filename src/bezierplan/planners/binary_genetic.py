@@ -217,10 +217,11 @@ def _search(rng, cells, occupied, places, curve, rules):
         np.empty((population, len(stretches)), dtype=np.int64),
     )
     parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
+    # The first generation inherits nothing.
     parents, drawn = (
         np.full_like(cells, -1),
         np.zeros(population, dtype=np.int64),
-    )  # the first generation inherits nothing
+    )
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
     history = np.empty(rules.generations + 1)

@@ -248,9 +248,8 @@ def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
         return None
     row, column = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == 1)
     _, end = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == -1)
-    whole = shapely.simplify(
-        shapely.union_all(shapely.box(column, row, end, row + 1)), 0
-    )  # whole numbers: exact
+    # Whole numbers: exact.
+    whole = shapely.simplify(shapely.union_all(shapely.box(column, row, end, row + 1)), 0)
     return shapely.transform(whole, grid.in_units)
 
 

@@ -137,9 +137,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         )
     axes.set_xlabel(axis_label(options.metric, scene))
     medians = frame.loc[frame["part"] == "median", "value"]
-    axes.locator_params(
-        axis="x", nbins=4, steps=[1, 2, 5, 10]
-    )  # labels such as 0.0025 would touch each other
+    # Labels such as 0.0025 would touch each other.
+    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
     if style.is_wide(medians):
         style.fit(axes.xaxis, frame["value"], medians)
         far = set()

@@ -281,9 +281,8 @@ def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: 
     strip.tick_params(labelleft=False, left=False)
     strip.set_xticks([])
     strip.set_xlim(-0.7, len(ends) - 0.3)
-    strip.set_xlabel(
-        f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8
-    )  # level with that of the panel, below its last number
+    # Level with that of the panel, below its last number.
+    strip.set_xlabel(f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8)
     strip.grid(visible=True, axis="y")
     for column, (end, look, value) in enumerate(zip(ends, looks, printed)):
         strip.plot(
