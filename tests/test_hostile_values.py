@@ -283,8 +283,8 @@ FAULTS = {
     ),
     "a metric of a claim": (
         C,
-        "metric: length, groups",
-        "metric: near_optimal, groups",
+        "metric: length,\n       groups",
+        "metric: near_optimal,\n       groups",
         "C1: checks: 0: metric: near_optimal: no run of",
     ),
     "a pick of drives": (
@@ -616,14 +616,14 @@ FAULTS = {
     ),
     "a million decimals": (
         A,
-        "decimals: 2}, {",
-        "decimals: 1000000}, {",
+        "decimals: 2},\n    {",
+        "decimals: 1000000},\n    {",
         "values: 0: decimals: 1000000: expected how many decimals",
     ),
     "sixteen decimals": (
         A,
-        "decimals: 2}, {",
-        "decimals: 16}, {",
+        "decimals: 2},\n    {",
+        "decimals: 16},\n    {",
         "values: 0: decimals: 16: expected how many decimals are printed, a whole",
     ),
     # Names
@@ -874,14 +874,14 @@ FAULTS = {
     ),
     "a tier twice": (
         C,
-        "test: lower, experiment: first, metric: length, " + LOWER,
+        "test: lower, experiment: first, metric: length,\n       " + LOWER,
         "test: ordered, experiment: first, metric: length, order: [[mine], [line], [mine, line]], "
         "direction: lower, margin: 0.1",
         "claims: 0: checks: 0: order: mine: is compared with itself",
     ),
     "equal groups": (
         C,
-        "test: lower, experiment: first, metric: length, " + LOWER,
+        "test: lower, experiment: first, metric: length,\n       " + LOWER,
         "test: equal_within, experiment: first, metric: length, groups: [mine], than: [mine], "
         "statistic: mean, margin: 0.1",
         "claims: 0: checks: 0: than: mine: is compared with itself",
