@@ -497,8 +497,8 @@ def benchmark_growth() -> None:
         told = f"   steeper: {series.reason or 'unexplained'}" if line.steeper else ""
         named = f"{series.kind}: {series.name}"
         print(
-            "  "
-            f"{named:38}{sizes:>20}{costs:>22}{line.value:8.2f}{line.error:7.2f}{LIMIT:9.1f}{told}",
+            f"  {named:38}{sizes:>20}{costs:>22}"
+            f"{line.value:8.2f}{line.error:7.2f}{LIMIT:9.1f}{told}",
             flush=True,
         )
         found += [
