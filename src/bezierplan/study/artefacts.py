@@ -142,7 +142,8 @@ class Pivot(Table):
     experiment: Experiment = Field(description="the name of an experiment")
     where: Where = Field(
         {},
-        description="column of the runs table → value or list of values, which also gives the order",
+        description="column of the runs table → value or list of values, "
+        "which also gives the order",
     )
     index: Columns = Field(
         description="a list of columns of the runs table, `value` or `statistic`: what the rows are"
@@ -203,7 +204,7 @@ class Pivot(Table):
             if label in labels[:number]:
                 raise wrong(
                     f"values: {number}: label: {label}: another entry has this label; expected "
-                    f"one that tells them apart"
+                    "one that tells them apart"
                 )
         if self.reads and self.published is None:
             raise wrong(
@@ -289,8 +290,8 @@ def _joined(part: dict[str, Any], shared: dict[str, Any], location: str) -> dict
     for key in part.keys() & shared.keys():
         if not (isinstance(part[key], dict) and isinstance(shared[key], dict)):
             raise wrong(
-                f"{location}: {key}: is given beside each as well; expected it in one of the two "
-                f"places"
+                f"{location}: {key}: is given beside each as well; "
+                "expected it in one of the two places"
             )
         joined[key] = _joined(part[key], shared[key], f"{location}: {key}")
     return joined
