@@ -52,7 +52,7 @@ def home(study, method):
 
 @cache
 def found_in_force(key, method):
-    """What the few runs of a method find with the values in force."""
+    """What the few runs of a method find with the defaults."""
     return found(STUDIES[key], home(STUDIES[key], method), method)
 
 

@@ -1134,17 +1134,17 @@ WORDS = {
         "secondary: False: expected true: shown, but not counted",
     ),
     # Assumptions
-    "a default that is not in force": (
+    "a default that is not used": (
         S,
         "    default: 6\n",
         "    default: 7\n",
-        "assumptions.yaml: assumptions: O2: default: 7: not in force; genes is 6",
+        "assumptions.yaml: assumptions: O2: default: 7: not the one that is used; genes is 6",
     ),
-    "a default of a method that is not in force": (
+    "a default of a method that is not used": (
         S,
         "default: {nonsmooth: 701,",
         "default: {nonsmooth: 700,",
-        "O3: default: nonsmooth: 700: not in force; its samples is 701",
+        "O3: default: nonsmooth: 700: not the one that is used; its samples is 701",
     ),
     "a default of an unknown method": (
         S,
@@ -1156,7 +1156,7 @@ WORDS = {
         S,
         "    default: 6\n",
         "    default:\n",
-        "assumptions.yaml: assumptions: 1: default: has no value; expected the value in force",
+        "assumptions.yaml: assumptions: 1: default: has no value; expected the value that runs use",
     ),
     "an assumption twice": (
         S,

@@ -24,7 +24,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
 THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
-# Of the planner's settings in force.
+# Of the planner's settings.
 SAMPLES, BETA = 100, 100.0
 SEQUENCES = arguments("tharwat2018", "chaotic_sequences")
 
@@ -343,7 +343,7 @@ def test_ends_are_those_of_the_problems():
 
 def test_movement_follows_equation_8():
     """The parts of each velocity join head to tail from the particle's place to its next one; C1
-    and C2 are those in force.
+    and C2 are the defaults.
     """
     given = arguments("tharwat2018", "movement")
     assert all(given[name] == THARWAT["settings"][name] for name in ("inertia", "c1", "c2"))
@@ -471,5 +471,5 @@ def test_every_default_of_an_assumption_is_in_force(key):
         checks.check_assumption(study, assumption, "here")
         named = isinstance(assumption.default, dict)
         other = dict.fromkeys(assumption.default, "none such") if named else "none such"
-        with pytest.raises(checked.Fault, match="not in force"):
+        with pytest.raises(checked.Fault, match="not the one that is used"):
             checks.check_assumption(study, assumption.but(default=other), "here")

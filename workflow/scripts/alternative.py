@@ -1,5 +1,5 @@
 """Run what an alternative of an assumption changes, and judge its claims on these runs and the
-other methods' runs in force.
+other methods' runs by default.
 """
 
 from bezierplan.running import log

@@ -1,4 +1,4 @@
-"""Compare the verdicts under each alternative with those under the values in force."""
+"""Compare the verdicts under each alternative with those under the defaults."""
 
 from bezierplan.running import log
 

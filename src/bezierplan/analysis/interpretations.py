@@ -2,7 +2,7 @@
 `search` looks for the best interpretation.
 
 An interpretation assigns a value to some choices (`study.choices`), by id; all others keep the
-value in force. It is scored by the joint likelihood of the numbers of each table and part: whole
+default. It is scored by the joint likelihood of the numbers of each table and part: whole
 experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the
 published numbers are placed in the multivariate t distribution of these draws. Numbers of different
 parts, which are methods that no metric compares with each other, count as independent given the

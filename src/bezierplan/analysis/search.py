@@ -79,7 +79,7 @@ class _Book:
         self.seen: dict[str, Interpretation] = {}
 
     def changed(self, interpretation: Interpretation, choice: str, value: Any) -> Interpretation:
-        """An interpretation with one choice made; None stands for the value in force."""
+        """An interpretation with one choice made; None stands for the default."""
         rest = {other: kept for other, kept in interpretation.items() if other != choice}
         return rest if value is None else settled(rest | {choice: value}, self.choices)
 
@@ -149,7 +149,7 @@ def search(
 ) -> Found:
     """The interpretations tried, up to a number, and all that is known of the parts.
 
-    choices: with `id` and `values`, the value in force first, as None. name: seeds the design.
+    choices: with `id` and `values`, the default first, as None. name: seeds the design.
     most: how many interpretations may be evaluated; one that shares parts with others costs only
     the share that is new. All are, if there are no more than that.
     """

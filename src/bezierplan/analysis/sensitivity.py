@@ -1,5 +1,5 @@
 """Which verdicts depend on which choice: each alternative of an assumption, one at a time, next to
-the value in force.
+the default.
 
 Columns: study, assumption, detail, setting, default, alternative; claim, statement; verdict,
 verdict_alternative, changed (empty if either is undecided); holds, holds_alternative; effect,
@@ -16,7 +16,7 @@ def sensitivity(
 ) -> pd.DataFrame:
     """One row per alternative and headline claim.
 
-    claims: claims of the study with all values in force. alternatives: by name, claims with that
+    claims: claims of the study with all defaults. alternatives: by name, claims with that
     alternative. described: by name, the columns study, assumption, detail, setting, default,
     alternative.
     """

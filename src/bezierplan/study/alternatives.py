@@ -57,7 +57,7 @@ def methods_changed(study: Study, name: str) -> list[str]:
 
 
 def with_alternative(study: Study, name: str) -> Study:
-    """The study with one alternative of `alternatives` in force."""
+    """The study under one alternative of `alternatives`."""
     identity, value = alternatives(study)[name]
     assumption = assumption_of(study, identity)
     methods = dict(study.methods)

@@ -669,8 +669,8 @@ def _check_dimensions(study: Study, panel: Panel, location: str) -> None:
 
 
 def check_assumption(study: Study, assumption: Assumption, location: str) -> None:
-    """An assumption's claims belong to the study, its default is in force, and every alternative is
-    a valid value of its setting.
+    """An assumption's claims belong to the study, its default is the value used, and every
+    alternative is a valid value of its setting.
     """
     for identity in assumption.claims:
         _known(identity, [claim.id for claim in study.claims], f"{location}: claims")
@@ -697,7 +697,7 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
             f"{location}: setting: {assumption.setting}: no method has this "
             f"setting{closest(assumption.setting, used)}"
         )
-    _check_in_force(study, assumption, methods, location)
+    _check_used(study, assumption, methods, location)
     for method, settings in assumption.along.items():
         _known(method, methods, f"{location}: with")
         for setting in settings:
@@ -727,8 +727,8 @@ def _check_key(study: Study, assumption: Assumption, name: str, key: str, locati
     _known(key, workspace.plain(), f"{location}: workspace: {name}")
     if workspace.plain()[key] != assumption.default:
         raise Fault(
-            f"{location}: default: {assumption.default}: not in force; the {key} of {name} is "
-            f"{workspace.plain()[key]}"
+            f"{location}: default: {assumption.default}: not the one that is used; "
+            f"the {key} of {name} is {workspace.plain()[key]}"
         )
     for value in assumption.alternatives:
         changed = parsed(
@@ -743,29 +743,28 @@ def _check_key(study: Study, assumption: Assumption, name: str, key: str, locati
                 )
 
 
-def _check_in_force(
-    study: Study, assumption: Assumption, methods: list[str], location: str
-) -> None:
+def _check_used(study: Study, assumption: Assumption, methods: list[str], location: str) -> None:
     """The default is what runs use: those of each method that it names; without names, those of the
     methods without a value of their own or, if all have one, of at least one of them.
     """
-    in_force = {method: study.resolved(method)[assumption.setting] for method in methods}
+    used = {method: study.resolved(method)[assumption.setting] for method in methods}
     default = assumption.default
     if isinstance(default, dict):
-        for method, value in in_force.items():
+        for method, value in used.items():
             if value != default[method]:
                 raise Fault(
-                    f"{location}: default: {method}: {default[method]}: not in force; its "
-                    f"{assumption.setting} is {value}"
+                    f"{location}: default: {method}: {default[method]}: not the one that is used; "
+                    f"its {assumption.setting} is {value}"
                 )
         return
     shared = [
         value
-        for method, value in in_force.items()
+        for method, value in used.items()
         if assumption.setting not in study.methods[method].settings
     ]
-    if any(value != default for value in shared) or default not in in_force.values():
-        values = ", ".join(dict.fromkeys(map(str, shared or in_force.values())))
+    if any(value != default for value in shared) or default not in used.values():
+        values = ", ".join(dict.fromkeys(map(str, shared or used.values())))
         raise Fault(
-            f"{location}: default: {default}: not in force; {assumption.setting} is {values}"
+            f"{location}: default: {default}: not the one that is used; "
+            f"{assumption.setting} is {values}"
         )

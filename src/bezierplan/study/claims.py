@@ -41,14 +41,14 @@ class ClaimsFile(Model):
 
 
 class Assumption(Model):
-    """What a paper leaves open, and the choice in force here."""
+    """What a paper leaves open, and the default here."""
 
     id: Annotated[str, matching(r"[OM][1-9][0-9]*[a-z]?", "O or M and a number")] = Field(
         description="O or M and a number, such as O1; O1b for a second setting of the same point"
     )
     detail: Line = Field(description="what the paper leaves open, one line")
     default: Annotated[Any, mapping_or(Annotated[dict[Name, Setting], MinLen(1)], Setting)] = Field(
-        description="the value in force; or method → value, and then the alternatives are for "
+        description="the value that runs use; or method → value, and then the alternatives are for "
         "these methods alone"
     )
     alternatives: listed(Setting, least=0, most=MOST_ALTERNATIVES) = Field(

@@ -154,7 +154,7 @@ class Choice(Record):
     assumption: str = Field(description="id of the assumption")
     alternative: str
     claim: str = Field(description="id of the claim")
-    verdict: str = Field(description="with the alternative in force")
+    verdict: str = Field(description="under that alternative")
     changed: bool = Field(
         description="whether this differs from the verdict with the default, both being decided"
     )
@@ -195,7 +195,7 @@ class Claim(Record):
 
 
 class Assumption(Record):
-    """What the paper leaves open, and the choice in force."""
+    """What the paper leaves open, and the default."""
 
     address: Address
     id: str
