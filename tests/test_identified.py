@@ -78,7 +78,8 @@ def test_chance_of_as_many():
     assert identified.at_least(1, [0.1, 0.2]) == pytest.approx(0.28)
 
 
-def test_non_smooth_lengths_of_song2016_are_identified():
+def of_song2016(method):
+    """What the audit says of the printed lengths of one of its methods, and of all together."""
     grid = from_lines(
         (FOLDER / "song2016/workspaces/figure2.txt").read_text().split(), 10.0, "unit"
     )
@@ -91,14 +92,32 @@ def test_non_smooth_lengths_of_song2016_are_identified():
     }
     entry = {
         "metric": "objective",
-        "where": {"method": "nonsmooth"},
+        "where": {"method": method},
         "edges": 7,
         "because": "polyline",
     }
     *rows, together = identified.of_table("table1", published, [entry], problems)
+    return rows, together
+
+
+def chance_of(together):
+    return float(together["arithmetic"].rpartition(": ")[2])
+
+
+def test_non_smooth_lengths_of_song2016_are_identified():
+    rows, together = of_song2016("nonsmooth")
     assert [row["consistent"] for row in rows] == [True] * 4
     assert "240 179 181 235 255;" in rows[2]["arithmetic"]
     assert (together["printed"], together["limit"]) == (4, 4)
+    # "once in ten million" in the README
+    assert 0.5e-7 < chance_of(together) < 1.5e-7
+
+
+def test_smooth_lengths_of_song2016_may_be_those_of_control_polygons():
+    """The README says so: three of four, and the chance."""
+    _, together = of_song2016("smooth")
+    assert (together["printed"], together["limit"]) == (3, 4)
+    assert chance_of(together) == pytest.approx(1 / 9000, rel=0.1)
 
 
 @pytest.mark.parametrize(
