@@ -16,6 +16,7 @@ from bezierplan.analysis.claims import kinds, variants, verdicts
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import trend
+from bezierplan.analysis.claims.material import Shown
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.claims.verdicts import Marked
 from bezierplan.analysis.metrics import Metric
@@ -82,7 +83,10 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
         claims,
         results,
         given.pop("published"),
-        given.pop("artefacts"),
+        {
+            name: [Shown.model_validate(part) for part in parts]
+            for name, parts in given.pop("artefacts").items()
+        },
         "study",
         given.pop("functions"),
         **given,
@@ -165,7 +169,7 @@ def test_a_superlative_holds_in_the_printed_numbers_if_all_of_it_does():
                 "n": 10,
             }
         )
-        artefacts = {"t": {"experiment": "tried", "published": "t.csv"}}
+        artefacts = {"t": [{"experiment": "tried", "published": "t.csv"}]}
         assert (
             judged(check, runs, published={"t": printed}, artefacts=artefacts)["published"] == held
         )
@@ -177,7 +181,7 @@ def test_a_median_of_seconds_is_set_beside_the_printed_mean():
     printed = pd.DataFrame(
         {"method": ["a", "b"], "metric": "cpu_s", "statistic": "mean", "value": [1.0, 2.0], "n": 10}
     )
-    artefacts = {"t": {"experiment": "tried", "published": "t.csv"}}
+    artefacts = {"t": [{"experiment": "tried", "published": "t.csv"}]}
     row = judged(check, runs, published={"t": printed}, artefacts=artefacts)
     assert row[["verdict", "published"]].to_list() == ["supported", "1 of 1"]
 
@@ -863,13 +867,11 @@ def test_factors_across_and_where():
 
 
 def test_rest_is_what_the_artefact_shows_and_the_check_does_not_name():
-    artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b", "d"]}}}
+    artefacts = {"table1": [{"experiment": "tried", "where": {"method": ["a", "b", "d"]}}]}
     figure = {
-        "figure1": {
-            "panels": [
-                {"experiment": "tried", "where": {"method": method}} for method in ("d", "b", "a")
-            ]
-        }
+        "figure1": [
+            {"experiment": "tried", "where": {"method": method}} for method in ("d", "b", "a")
+        ]
     }
     check = LOWER | {"than": ["rest"]}
     for known in (artefacts, figure):
@@ -923,7 +925,7 @@ def test_variant_that_is_a_list_is_exchanged_member_by_member():
 
 def test_rest_is_the_same_in_every_variant():
     claim = {"checks": [LOWER | {"than": ["rest"]}], "variants": {"method": ["a", "d"]}}
-    artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b"]}}}
+    artefacts = {"table1": [{"experiment": "tried", "where": {"method": ["a", "b"]}}]}
     found = judge(claim | {"artefact": "table1"}, table(TIERS), artefacts=artefacts)[1]
     assert found["comparison"].to_list() == ["a lower than b", "d lower than b"]
 
@@ -1003,7 +1005,7 @@ def test_rank_is_one_among_the_rows_of_the_artefact(monkeypatch):
         among_rows=True,
     )
     monkeypatch.setitem(metrics.METRICS, "rank", among)
-    artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b", "d"]}}}
+    artefacts = {"table1": [{"experiment": "tried", "where": {"method": ["a", "b", "d"]}}]}
     claim = {
         "checks": [LOWER | {"metric": "rank", "than": ["d"], "margin": 0.5}],
         "artefact": "table1",
@@ -1029,11 +1031,13 @@ PRINTED = pd.DataFrame(
     }
 )
 TABLE = {
-    "table1": {
-        "experiment": "tried",
-        "published": "table1.csv",
-        "where": {"method": ["a", "b", "c"]},
-    }
+    "table1": [
+        {
+            "experiment": "tried",
+            "published": "table1.csv",
+            "where": {"method": ["a", "b", "c"]},
+        }
+    ]
 }
 
 
@@ -1100,7 +1104,7 @@ def test_trend_over_printed_numbers():
             "unit": "m",
         }
     )
-    artefacts = {"table1": {"experiment": "tried", "published": "table1.csv"}}
+    artefacts = {"table1": [{"experiment": "tried", "published": "table1.csv"}]}
     claim = {"checks": [TREND], "artefact": "table1"}
     row = judge(
         claim,

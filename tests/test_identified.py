@@ -13,6 +13,7 @@ from studies import FOLDER
 from bezierplan.analysis import identified, measures
 from bezierplan.analysis.claims import verdicts
 from bezierplan.analysis.sensitivity import changed
+from bezierplan.analysis.table_kinds import Identify
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -89,12 +90,7 @@ def test_non_smooth_lengths_of_song2016_are_identified():
         name: Problem(name, grid, grid.centre(start), grid.centre(target))
         for name, (start, target) in ends.items()
     }
-    entry = {
-        "metric": "objective",
-        "where": {"method": "nonsmooth"},
-        "edges": 7,
-        "because": "polyline",
-    }
+    entry = Identify(metric="objective", where={"method": "nonsmooth"}, edges=7, because="polyline")
     *rows, together = identified.of_table("table1", published, [entry], problems)
     assert [row["consistent"] for row in rows] == [True] * 4
     assert "240 179 181 235 255;" in rows[2]["arithmetic"]

@@ -8,6 +8,7 @@ from functools import partial
 
 from pydantic.fields import FieldInfo
 
+from bezierplan.analysis import table_kinds
 from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures import panels
@@ -34,9 +35,9 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     ],
     "artefacts": [
         ("The file", artefacts.ArtefactsFile),
-        ("A **table** has `kind`, and by kind", artefacts.TABLES),
-        ("An entry of a table's `values`", artefacts.TableValue),
-        ("An entry of a table's `monotone`", artefacts.Monotone),
+        ("A **table** has `kind`, and by kind", table_kinds.TABLES),
+        ("An entry of a table's `values`", table_kinds.TableValue),
+        ("An entry of a table's `monotone`", table_kinds.Monotone),
         ("A **figure**", artefacts.Figure),
         ("A panel has `kind`, and by kind", panels.kinds()),
     ],

@@ -79,7 +79,7 @@ from bezierplan.analysis.claims import comparisons, effects, verdicts
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import ALPHA, Comparison, Finding
 from bezierplan.analysis.claims.kinds import Check, OfRuns, kind_of
-from bezierplan.analysis.claims.material import Material, Untestable
+from bezierplan.analysis.claims.material import Material, Shown, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
@@ -172,7 +172,7 @@ def judge(
     claims: Sequence[Claim],
     results: dict[str, Results],
     published: dict[str, pd.DataFrame],
-    artefacts: dict[str, dict],
+    artefacts: dict[str, list[Shown]],
     study: str,
     functions: dict[str, Any],
     *,
