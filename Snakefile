@@ -1,4 +1,5 @@
-# The door: `snakemake` and `snakemake NAME` start here. The workflow itself is in workflow/, and can be used from there as a module.
+# The door: `snakemake` and `snakemake NAME` start here. The workflow itself is in workflow/, and
+# can be used from there as a module.
 include: "workflow/Snakefile"
 
 

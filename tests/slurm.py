@@ -47,9 +47,10 @@ def _free_port() -> int:
 
 
 def _configuration(folder: Path) -> str:
+    host = socket.gethostname()
     return f"""\
 ClusterName=loopback
-SlurmctldHost={socket.gethostname()}(127.0.0.1)
+SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={_free_port()}
 SlurmdPort={_free_port()}
 AuthType=auth/munge
@@ -71,7 +72,7 @@ AccountingStorageType=accounting_storage/none
 MpiDefault=none
 ReturnToService=2
 SlurmdParameters=config_overrides
-NodeName=node1 NodeHostname={socket.gethostname()} NodeAddr=127.0.0.1 CPUs={CORES} RealMemory={MEMORY}
+NodeName=node1 NodeHostname={host} NodeAddr=127.0.0.1 CPUs={CORES} RealMemory={MEMORY}
 PartitionName=main Nodes=node1 Default=YES MaxTime=INFINITE State=UP
 """
 

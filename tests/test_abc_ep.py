@@ -257,9 +257,8 @@ def test_bees_move_one_coordinate_to_either_side(monkeypatch):
     """By a share of the distance to another source, uniform between -1 and 1."""
     places = np.array([(40.0, 45.0), (50.0, 65.0)])
     tried, _ = colony_of(places, [1.0, 1.0], monkeypatch, cycles=500)
-    bee = (
-        np.abs(tried - places[:, None]).min(axis=2).argmin(axis=0)
-    )  # the source of which one coordinate is kept
+    # The source of which one coordinate is kept.
+    bee = np.abs(tried - places[:, None]).min(axis=2).argmin(axis=0)
     share = (tried - places[bee]) / (places[bee] - places[1 - bee])
     assert ((share == 0).sum(axis=1) == 1).all()
     assert (share[:, 0] != 0).mean() == pytest.approx(0.5, abs=0.05)

@@ -201,7 +201,7 @@ def test_reason_of_a_failed_job_is_the_last_line_and_a_lock_is_explained_in_one(
     reason = "run a: planner b: [red]wrong"
     (tmp_path / "fails.py").write_text(
         f"open(snakemake.log[0], 'w').write('Traceback\\\\n2026 CRITICAL {reason}')\nraise "
-        f"SystemExit(1)\n"
+        "SystemExit(1)\n"
     )
     command = [
         sys.executable,

@@ -312,7 +312,8 @@ from bezierplan.planners import Path, Plan
 def plan(problem, rng):
     world = problem.workspace
     {change}
-    return Plan(Path("polyline", np.array([problem.start, problem.target])), 8.0, True, 1, np.array([8.0]), "one", {{}})
+    path = Path("polyline", np.array([problem.start, problem.target]))
+    return Plan(path, 8.0, True, 1, np.array([8.0]), "one", {{}})
 """
 
 

@@ -79,11 +79,12 @@ def claims(study, *wanted):
     ("claim", "experiment", "methods"),
     [
         ("C21", "maps", ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"]),
+        # `rest`: those of Table 5.
         (
             "C23",
             "maps",
             ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"],
-        ),  # `rest`: those of Table 5
+        ),
         ("C36", "maps", ["cpso2_singer"]),
         ("C35", "rivals", ["cpso1_singer", "cpso2_singer", "ferguson", "prm"]),
         ("C38", "maps", None),  # `rest` over three tables

@@ -184,9 +184,8 @@ def test_long_chords_are_cut_into_parts():
         steps = np.linspace(0, 1, 2001)
         x, y = ends[0] + steps * (ends[2] - ends[0]), ends[1] + steps * (ends[3] - ends[1])
         fine = bca._collisions(x[1:], y[1:], grid.occupied)
-        if (
-            bca._collisions(x[:1], y[:1], grid.occupied) == 0 and fine != 1
-        ):  # starts free; no grazing
+        # Starts free; no grazing.
+        if bca._collisions(x[:1], y[:1], grid.occupied) == 0 and fine != 1:
             assert chord(*ends, grid) == (fine > 0)
             hits += fine > 0
     assert hits > 100

@@ -591,9 +591,8 @@ def test_a_grid_of_a_million_cells_is_ordinary(largest):
     occupied[0, 0] = occupied[-1, -1] = False
     grid = Grid(occupied, 1.0, "cell")
     problem = on_cells(grid.occupied, (0.5, 0.5), (999.5, 999.5))
-    shortest_path(
-        on_cells(grid.occupied[:200, :200], (0.5, 0.5), (150.5, 150.5))
-    )  # so that compiling is not counted
+    # So that compiling is not counted.
+    shortest_path(on_cells(grid.occupied[:200, :200], (0.5, 0.5), (150.5, 150.5)))
     begin = time.process_time()
     bound = shortest_path(problem)
     assert time.process_time() - begin < 10

@@ -440,9 +440,8 @@ def test_odds_ratios():
 def test_share_and_its_exact_interval():
     row = judged(SHARE, MOSTLY)
     assert (row["effect"], row["n"]) == (35 / 40, 40)
-    assert (row["low95"], row["high95"]) == pytest.approx(
-        (0.7320, 0.9581), abs=1e-4
-    )  # Clopper and Pearson (1934)
+    # Clopper and Pearson (1934).
+    assert (row["low95"], row["high95"]) == pytest.approx((0.7320, 0.9581), abs=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -821,8 +820,8 @@ def test_any_comparison_may_hold():
 def test_runs_of_several_conditions_are_never_mixed():
     with pytest.raises(
         Fault,
-        match="claim C1: lower of objective: several values of condition are neither told apart "
-        "nor pooled",
+        match="claim C1: lower of objective: "
+        "several values of condition are neither told apart nor pooled",
     ):
         judged(LOWER, places(1, 1))
     with pytest.raises(Fault, match="several values of method"):
@@ -1145,9 +1144,8 @@ def test_margin_is_a_share_or_the_printed_difference_where_that_is_smaller():
     _, details = with_printed(
         LOWER | {"than": ["b", "c"], "margin": {"published": 0.5}, "scale": "relative"}
     )
-    assert details["margin"].to_list() == pytest.approx(
-        [1 / 6, 0.5]
-    )  # the printed difference of a and c points the other way
+    # The printed difference of a and c points the other way.
+    assert details["margin"].to_list() == pytest.approx([1 / 6, 0.5])
     truths = judge(
         {"checks": [LOWER | {"metric": "claimed_feasible", "margin": {"published": 0.01}}]}, TRUTHS
     )[1]

@@ -56,10 +56,11 @@ def tree(tmp_path_factory):
         f'#!/bin/sh\nexec "{tree}/.venv/bin/python" -m snakemake "$@"\n'
     )
     (tree / ".venv" / "bin" / "snakemake").chmod(0o755)
+    # A test need not wait as long between two looks as a cluster of many users.
     for name in (
         "slurm",
         "cluster",
-    ):  # a test need not wait as long between two looks as a cluster of many users
+    ):
         file = tree / "profiles" / name / "profile.yaml"
         file.write_text(re.sub(r"(checks|latency-wait): \d+", r"\1: 2", file.read_text()))
     done = executed(tree, "make cluster")

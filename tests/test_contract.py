@@ -59,7 +59,8 @@ def plan(problem, rng, *, evaluations: Annotated[int, Range(1)]):
     lengths = np.hypot(*(middles - start).T) + np.hypot(*(middles - target).T)
     history = np.minimum.accumulate(lengths)
     path = Path("polyline", np.array([start, middles[lengths.argmin()], target]))
-    return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history, stop="evaluations", extra={"tries": 1})
+    return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history,
+                stop="evaluations", extra={"tries": 1})
 """
 DRAWN = "rng.uniform(0, 1, (evaluations, 2)) + start"
 RETURN = "    return Plan("
@@ -271,8 +272,8 @@ FAULTS = {
         "Range(1)]",
         'Range(1)], share: Annotated[float, Range(0, 1)], rule: Literal["a", "b"], quick: bool',
         {"quick": True},
-        "missing: evaluations: a whole number at least 1; share: a number from 0 to 1; rule: one "
-        "of a, b",
+        "missing: evaluations: a whole number at least 1; "
+        "share: a number from 0 to 1; rule: one of a, b",
     ),
     "unknown setting": (
         "plan(",

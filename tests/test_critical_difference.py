@@ -138,9 +138,8 @@ def test_ranks_and_critical_difference_are_demsars():
     assert list(ranks) == sorted(ranks)
     tested = frame.iloc[0]
     assert (tested["methods"], tested["units"]) == (4, 14)
-    assert tested["difference"] == pytest.approx(
-        2.569 * np.sqrt(4 * 5 / (6 * 14)), abs=1e-3
-    )  # his equation and Table 5
+    # His equation and Table 5.
+    assert tested["difference"] == pytest.approx(2.569 * np.sqrt(4 * 5 / (6 * 14)), abs=1e-3)
     ties = 4**3 - 4 + 3 * (2**3 - 2)
     assert tested["chi2"] == pytest.approx(9.28 / (1 - ties / (14 * 4 * (4**2 - 1))), abs=0.02), (
         "his formula does not correct for ties"

@@ -15,9 +15,8 @@ ASK = "from bezierplan.running.digest import source_digest; print(source_digest(
 
 @pytest.fixture
 def tree(tmp_path):
-    (tmp_path / "config" / "studies").mkdir(
-        parents=True
-    )  # as in a clone, so that caches lie beside it
+    # As in a clone, so that caches lie beside it.
+    (tmp_path / "config" / "studies").mkdir(parents=True)
     return Path(
         shutil.copytree(SOURCE, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
     )
@@ -132,7 +131,8 @@ KERNELS = """
 import numpy as np
 from bezierplan.planners.parts import genetic
 genetic.complement_bit(np.arange(4), 5, 3)
-print(sum(genetic.complement_bit.stats.cache_hits.values()), genetic.complement_bit.stats.cache_path)
+stats = genetic.complement_bit.stats
+print(sum(stats.cache_hits.values()), stats.cache_path)
 """
 
 

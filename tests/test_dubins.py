@@ -184,8 +184,8 @@ def test_in_a_corridor_the_robot_cannot_turn_and_drives_on_to_where_it_can():
     assert (none.path, none.feasible, none.stop) == (None, False, "none found")
     with pytest.raises(
         ValueError,
-        match="turning_radius: 1 m asked: no path was found; expected one that can be kept, or "
-        "not strict",
+        match="turning_radius: 1 m asked: no path was found; "
+        "expected one that can be kept, or not strict",
     ):
         bp.plan(problem, start_heading=math.pi, target_heading=0.0, turning_radius=1.0, strict=True)
 
@@ -244,10 +244,11 @@ def test_with_a_radius_the_written_path_keeps_its_distance(capsys, tmp_path):
         [shapely.Polygon(outer, holes) for outer, *holes in bp.read_map(file).obstacles]
     )
     line = shapely.LineString(rows[:, 1:3])
+    # Chords of arcs.
     assert (
         min(line.distance(obstacles), line.distance(shapely.box(0, 0, 20, 20).exterior))
         > 0.3 - 1e-5
-    )  # chords of arcs
+    )
     assert rows[0, 3] == pytest.approx(1.5, abs=1e-8)
     assert np.abs(rows[:, 4]).max() < 2 * (1 + dubins.CURVATURE_EXCESS)
 

@@ -64,7 +64,7 @@ def test_a_log_holds_what_its_job_noted(tmp_path, caplog, spent):
         logging.info(effort.line())
     file = tmp_path / "job.log"
     file.write_text(
-        f"2026-01-01 00:00:00,000 INFO all 2 runs done\n2026-01-01 00:00:00,000 INFO "
+        "2026-01-01 00:00:00,000 INFO all 2 runs done\n2026-01-01 00:00:00,000 INFO "
         f"{caplog.messages[-1]}\n"
     )
     assert effort.of_job(file)["cpu"] > 0
@@ -112,6 +112,7 @@ def test_table_of_a_start(tmp_path):
         f"results/smoke/song2016/figures/figure4.{ending}" for ending in ("svg", "png", "csv")
     ]
     job(tmp_path, "figure", "figures/figure4", 1050.0, figures, cpu=4.0, importing=1.0)
+    # Of an earlier start.
     job(
         tmp_path,
         "figure",
@@ -119,7 +120,7 @@ def test_table_of_a_start(tmp_path):
         900.0,
         ["results/smoke/song2016/figures/figure5.svg"],
         cpu=50.0,
-    )  # of an earlier start
+    )
     found, jobs, waited = command.spent(SESSION, tmp_path)
     expected = {
         "planning": 5.0,

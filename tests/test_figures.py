@@ -372,6 +372,7 @@ def test_a_bare_field_shows_no_path(tmp_path):
 
 def test_only_runs_that_have_some_of_a_metric_are_picked():
     found = results((True, True, True))
+    # The second one is the centre of an occupied cell.
     inside = [
         5.0,
         5.0,
@@ -383,7 +384,7 @@ def test_only_runs_that_have_some_of_a_metric_are_picked():
         35.0,
         35.0,
         35.0,
-    ]  # the second one is the centre of an occupied cell
+    ]
     found.runs.at[0, "path_points"] = inside
     best, having = (
         paths.data(found, options_of(paths, pick=LOWEST | more))

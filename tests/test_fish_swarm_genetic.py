@@ -42,9 +42,8 @@ FAR = cell(0, 11)
 
 def test_a_fish_goes_next_to_the_one_in_sight_that_is_nearest_to_the_target():
     assert follow([cell(2, 2), cell(2, 6), cell(8, 2), FAR, FAR]) == cell(3, 2)
-    assert follow([cell(2, 2), cell(2, 6), cell(9, 2), FAR, FAR]) == cell(
-        2, 3
-    )  # the other one is out of sight
+    # The other one is out of sight.
+    assert follow([cell(2, 2), cell(2, 6), cell(9, 2), FAR, FAR]) == cell(2, 3)
 
 
 def test_a_fish_that_is_nearest_itself_follows_nobody():

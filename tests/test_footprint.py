@@ -210,9 +210,8 @@ def test_verdicts_agree_with_dense_samples(kind):
                 least = min(least, affinity.translate(turned, x, y).distance(blocked))
         verdicts.append(found.feasible)
         if found.feasible:
-            assert (
-                found.clearance <= least + CLEARANCE_SHARE * shape.circumscribed + 1e-4
-            )  # circles are polygons to shapely
+            # Circles are polygons to shapely.
+            assert found.clearance <= least + CLEARANCE_SHARE * shape.circumscribed + 1e-4
             assert found.clearance >= least - 0.05
         else:
             assert least < 0.05

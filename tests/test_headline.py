@@ -57,8 +57,8 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
     assert found.sentences == [
         "Of 3 published numbers, 1 agrees, 1 disagrees and 1 is inconclusive.",
         "Of 6 claims, 1 is supported, 1 is supported in part of its comparisons, 2 are "
-        "contradicted, 1 shows no effect and 1 is "
-        "untestable.",
+        "contradicted, 1 shows no "
+        "effect and 1 is untestable.",
         "No method that is feasible as often as the baseline, the exact shortest path with "
         "rounded corners, gives a shorter path.",
     ]

@@ -657,7 +657,8 @@ WORDS = {
     "layouts of a fixed map": (
         E,
         "start_cell: 0, target_cell: 15}",
-        "start_cell: 0, target_cell: 15, layouts: {smoke: 1, full: 1, extended: 1}, obstacles: [1]}",
+        "start_cell: 0, target_cell: 15, layouts: {smoke: 1, full: 1, extended: 1}, "
+        "obstacles: [1]}",
         "layouts and obstacles need a workspace of kind",
     ),
     "layouts without obstacles": (
@@ -676,8 +677,8 @@ WORDS = {
     "1e9 obstacles": (
         E,
         "start_cell: 0, target_cell: 15}",
-        "start_cell: 0, target_cell: 15, layouts: {smoke: 1, full: 1, extended: 1}, obstacles: "
-        "[1000000000]}",
+        "start_cell: 0, target_cell: 15, layouts: "
+        "{smoke: 1, full: 1, extended: 1}, obstacles: [1000000000]}",
         "obstacles: 0: 1000000000: expected",
     ),
     "a side of 1e9": (
@@ -824,8 +825,8 @@ WORDS = {
         "{kind: workspace, workspace: figure2, numbers: free}",
         "{kind: workspace, numbers: free, each: [{workspace: figure2}, {workspace: figure2, "
         "numbers: all}]}",
-        "panels: 0: each: 1: numbers: is given beside each as well; expected it in one of the two "
-        "places",
+        "panels: 0: each: 1: numbers: is given beside each as well; "
+        "expected it in one of the two places",
     ),
     "a column both in each and beside it": (
         A,
@@ -1260,8 +1261,8 @@ PLANNERS = {
     ),
     "a setting of the name of a column that is joined": (
         "def plan(problem, rng, *, bound: int):\n    pass\n",
-        "walk.py: its setting bound is a column of the runs table, or joined to it; give it "
-        "another name",
+        "walk.py: its setting bound is a column of the runs table, "
+        "or joined to it; give it another name",
     ),
     "a setting without a value": (
         "def plan(problem, rng, *, tries: int, more: int):\n    pass\n",

@@ -43,17 +43,20 @@ problems:
   back: {workspace: room, start_cell: 63, target_cell: 0}
   swim: {workspace: pond, start: [1, 1], target: [9, 9]}
 experiments:
-  first: {problems: [across], methods: [mine, line], repeats: {smoke: 2, full: 12, extended: 12}, chunk: {smoke: 2, full: 6, extended: 6}}
-  both: {problems: [across, back], methods: [more], vary: {tries: [4, 8]}, repeats: {smoke: 2, full: 2, extended: 2},
+  first: {problems: [across], methods: [mine, line], repeats: {smoke: 2, full: 12, extended: 12},
+    chunk: {smoke: 2, full: 6, extended: 6}}
+  both: {problems: [across, back], methods: [more], vary: {tries: [4, 8]},
+    repeats: {smoke: 2, full: 2, extended: 2}, chunk: {smoke: 2, full: 2, extended: 2}}
+  water: {problems: [swim], methods: [mine], repeats: {smoke: 2, full: 2, extended: 2},
     chunk: {smoke: 2, full: 2, extended: 2}}
-  water: {problems: [swim], methods: [mine], repeats: {smoke: 2, full: 2, extended: 2}, chunk: {smoke: 2, full: 2, extended: 2}}
 """,
     A: """
 labels: {mine: my walk}
 tables:
-  lengths: {title: Lengths, kind: pivot, experiment: first, index: [method], columns: [value], published: lengths.csv, values: [
-    {metric: length, statistic: [median, min], label: length, decimals: 2}, {metric: feasible, statistic: [share, count], label: share,
-    decimals: 2}]}
+  lengths: {title: Lengths, kind: pivot, experiment: first, index: [method], columns: [value],
+    published: lengths.csv, values: [
+    {metric: length, statistic: [median, min], label: length, decimals: 2},
+    {metric: feasible, statistic: [share, count], label: share, decimals: 2}]}
   printed: {title: Printed, kind: transcribed, published: other.csv}
   beside: {title: Both, kind: comparison, of: [lengths], metrics: [length]}
 figures:
@@ -66,20 +69,25 @@ figures:
 """,
     C: """
 claims:
-  - {id: C1, place: Table 1, statement: The walk with fewer tries is longer., artefact: lengths, checks: [
-      {test: lower, experiment: first, metric: length, groups: [line], than: [mine], direction: higher, margin: 0.1}]}
+  - {id: C1, place: Table 1, statement: The walk with fewer tries is longer., artefact: lengths,
+     checks: [
+      {test: lower, experiment: first, metric: length,
+       groups: [line], than: [mine], direction: higher, margin: 0.1}]}
   - {id: C2, place: Table 1, statement: More tries are shorter., artefact: lengths, checks: [
-      {test: trend, experiment: both, metric: length, x: tries, direction: down, margin: 0.1, every: [problem]}]}
+      {test: trend, experiment: both, metric: length,
+       x: tries, direction: down, margin: 0.1, every: [problem]}]}
   - {id: C3, place: Table 1, statement: The printed numbers add up., artefact: lengths, checks: [
       {test: published_arithmetic, form: difference, equals: 1.1,
-       of: [{table: lengths, method: mine, statistic: median}, {table: lengths, method: line, statistic: median}]}]}
+       of: [{table: lengths, method: mine, statistic: median},
+            {table: lengths, method: line, statistic: median}]}]}
   - {id: C4, place: Table 1, statement: Most walks end., artefact: lengths, checks: [
-      {test: share, experiment: first, metric: feasible, threshold: 0.5, direction: at_least, where: {method: mine}}]}
+      {test: share, experiment: first, metric: feasible, threshold: 0.5, direction: at_least,
+       where: {method: mine}}]}
 """,
     S: """
 assumptions:
-  - {id: O1, detail: how many tries, default: {mine: 20}, alternatives: [10], with: {mine: {}}, reason: none, source: assumed,
-    setting: tries, claims: [C1]}
+  - {id: O1, detail: how many tries, default: {mine: 20}, alternatives: [10], with: {mine: {}},
+    reason: none, source: assumed, setting: tries, claims: [C1]}
 """,
     T: """method,metric,statistic,n,unit,value
 mine,length,median,10,m,13.1
@@ -118,10 +126,8 @@ VALUES = "{metric: length, statistic: [median, min], label: length, decimals: 2}
 CHUNK = "chunk: {smoke: 2, full: 6, extended: 6}"
 ROW = "mine,length,median,10,m,13.1"
 ASSUMED = "alternatives: [10], with: {mine: {}}"
-ARITHMETIC = (
-    "of: [{table: lengths, method: mine, statistic: median}, {table: lengths, method: "
-    "line, statistic: median}]"
-)
+ARITHMETIC = """of: [{table: lengths, method: mine, statistic: median},
+            {table: lengths, method: line, statistic: median}]"""
 KNOWN = "known before a run"
 RESULT = "that a run finds out; expected a column that is known before a run"
 BY_VALUE = "that a run finds out is not selected by its value"
@@ -266,8 +272,8 @@ FAULTS = {
     ),
     "a metric of grids in water": (
         *panel("{kind: boxes, experiment: water, metric: cells4}"),
-        "panels: 0: metric: cells4: no run of water has it: it is for workspaces of kind grid, "
-        "not circles",
+        "panels: 0: metric: cells4: no run of water has it: "
+        "it is for workspaces of kind grid, not circles",
     ),
     "a metric of circles in a room": (
         A,
@@ -277,8 +283,8 @@ FAULTS = {
     ),
     "a metric of a claim": (
         C,
-        "metric: length, groups",
-        "metric: near_optimal, groups",
+        "metric: length,\n       groups",
+        "metric: near_optimal,\n       groups",
         "C1: checks: 0: metric: near_optimal: no run of",
     ),
     "a pick of drives": (
@@ -610,14 +616,14 @@ FAULTS = {
     ),
     "a million decimals": (
         A,
-        "decimals: 2}, {",
-        "decimals: 1000000}, {",
+        "decimals: 2},\n    {",
+        "decimals: 1000000},\n    {",
         "values: 0: decimals: 1000000: expected how many decimals",
     ),
     "sixteen decimals": (
         A,
-        "decimals: 2}, {",
-        "decimals: 16}, {",
+        "decimals: 2},\n    {",
+        "decimals: 16},\n    {",
         "values: 0: decimals: 16: expected how many decimals are printed, a whole",
     ),
     # Names
@@ -868,14 +874,14 @@ FAULTS = {
     ),
     "a tier twice": (
         C,
-        "test: lower, experiment: first, metric: length, " + LOWER,
+        "test: lower, experiment: first, metric: length,\n       " + LOWER,
         "test: ordered, experiment: first, metric: length, order: [[mine], [line], [mine, line]], "
         "direction: lower, margin: 0.1",
         "claims: 0: checks: 0: order: mine: is compared with itself",
     ),
     "equal groups": (
         C,
-        "test: lower, experiment: first, metric: length, " + LOWER,
+        "test: lower, experiment: first, metric: length,\n       " + LOWER,
         "test: equal_within, experiment: first, metric: length, groups: [mine], than: [mine], "
         "statistic: mean, margin: 0.1",
         "claims: 0: checks: 0: than: mine: is compared with itself",
@@ -941,7 +947,7 @@ FAULTS = {
     "many variants": (
         C,
         "checks: [\n      {test: lower",
-        f"variants: {{repeat: [{', '.join(map(str, range(101)))}]}}, checks: [\n      {{test: lower",
+        f"variants: {{repeat: {list(range(101))}}}, checks: [\n      {{test: lower",
         "variants: expected at most 100 combinations",
     ),
     "a printed margin without printed numbers": (
@@ -1125,8 +1131,8 @@ FAULTS = {
         T,
         ",0.9",
         ",90",
-        "lengths.csv: line 4: value: 90: expected a number of at least 0, at most 1, as the share "
-        "of",
+        "lengths.csv: line 4: value: 90: "
+        "expected a number of at least 0, at most 1, as the share of",
     ),
     "a negative share": (
         T,

@@ -565,8 +565,8 @@ def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
     )
     assert "No interpretation explains 1 of the numbers: 1 of table2 for d." in text
     assert text.endswith(
-        "interpretations bring 3 into range, the default 1: the tables held out agree with a "
-        "change."
+        "interpretations bring 3 into range, the default 1: "
+        "the tables held out agree with a change."
     )
     assert "none of 1 interpretations is more likely" in told(default)
     assert "explains their level" not in text
@@ -595,7 +595,7 @@ def test_summary_does_not_follow_an_interpretation_that_other_tables_refuse():
     assert explained.section(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), {}) == []
 
 
-def test_an_interpretation_under_which_a_printed_number_is_impossible_is_ruled_out_whatever_its_score():
+def test_an_interpretation_under_which_a_printed_number_is_impossible_is_ruled_out():
     default = Evaluated({}, numbers([True, False]), {"table1": -9.0})
     likely = Evaluated(
         {"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0}

@@ -167,14 +167,16 @@ from numba.core import caching, config, dispatcher
 def state():
     classes = (caching.Cache, caching.CacheImpl, caching.IndexDataCacheFile, dispatcher.Dispatcher)
     variables = {name: value for name, value in os.environ.items() if name.startswith("NUMBA")}
-    return [vars(each).copy() for each in classes], variables, config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
+    settings = config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
+    return [vars(each).copy() for each in classes], variables, settings
 before = state()
 import bezierplan
 from bezierplan.__main__ import main
 import foreign
 (room := __import__("pathlib").Path("room.txt")).write_text("....\\n.##.\\n....\\n")
 main(["plan", "room.txt", "--start", "0.5,0.5", "--target", "3.5,2.5"])
-print(foreign.twice(21), foreign.twice._cache.cache_path, sum(foreign.twice.stats.cache_hits.values()), state() == before)
+twice = foreign.twice
+print(twice(21), twice._cache.cache_path, sum(twice.stats.cache_hits.values()), state() == before)
 """
 
 

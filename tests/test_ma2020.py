@@ -202,10 +202,11 @@ def test_nearest_lattice_length_is_one_of_a_path_from_corner_to_corner():
         assert straight % 2 == 0
         assert straight + 2 * diagonal >= 40
         assert diagonal >= 1
+    # Near, but no path from corner to corner.
     assert ma2020.nearest_lattice_length(35.4147, SIDE) != (
         34,
         1,
-    )  # near, but no path from corner to corner
+    )
 
 
 def test_lattice_lengths():
@@ -243,8 +244,8 @@ def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
     """
     numbers = pd.read_csv(FOLDER.parents[2] / "docs" / "outcome" / "numbers.csv")
     own = numbers.query(
-        "study == 'ma2020' and metric == 'length' and statistic == 'min' and method in ('bca', "
-        "'bca_q')"
+        "study == 'ma2020' and metric == 'length' and "
+        "statistic == 'min' and method in ('bca', 'bca_q')"
     )
     for table, name in (("table1", "environment1"), ("table2", "environment2")):
         lengths = own.loc[own["table"] == table, "value_ours"]

@@ -162,8 +162,8 @@ def test_an_image_without_a_yaml_file(tmp_path):
     assert bp.read_map(tmp_path / "room.PNG", resolution=0.5, unknown="free").occupied.sum() == 1
     with pytest.raises(
         ValueError,
-        match=r"resolution: missing; expected the length of a pixel's side, or the YAML file of "
-        r".*room\.PNG",
+        match=r"resolution: missing; "
+        r"expected the length of a pixel's side, or the YAML file of .*room\.PNG",
     ):
         bp.read_map(tmp_path / "room.PNG")
     with pytest.raises(ValueError, match=r"nowhere\.png: cannot be read"):
@@ -226,9 +226,10 @@ def test_projected_coordinates_keep_their_digits(tmp_path, radius):
 
 
 def test_far_maps_of_every_kind(tmp_path):
+    # In a study.
     with pytest.raises(
         ValueError, match=r"is not a coordinate; expected finite numbers of at most 100000 in size"
-    ):  # in a study
+    ):
         ros_map(tmp_path, YAML.replace("[-1.0, 2.0, 0.0]", f"[{UTM[0]}, {UTM[1]}, 0.0]"))
     room = bp.read_map(tmp_path / "room.yaml")
     problem = bp.Problem(
@@ -326,8 +327,8 @@ def test_a_huge_image_is_refused_before_it_is_read(tmp_path):
     (tmp_path / "room.yaml").write_text(YAML.replace("room.png", "huge.pgm"))
     with pytest.raises(
         ValueError,
-        match=r"image: 100,000 x 100,000 pixels; expected at most 16,000,000; most_pixels raises "
-        r"the limit",
+        match=r"image: 100,000 x 100,000 pixels; "
+        r"expected at most 16,000,000; most_pixels raises the limit",
     ):
         files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
     with pytest.raises(ValueError, match=r"4 x 3 pixels; expected at most 11"):

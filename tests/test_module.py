@@ -28,12 +28,13 @@ worth: {baseline: best, experiments: [first]}
 ARTEFACTS = f"""
 labels: {{line: "{HOSTILE}", around: "a < b & c"}}
 tables:
-  lengths: {{title: "Lengths {HOSTILE}", kind: pivot, experiment: first, published: lengths.csv, index: [method], columns: [value],
-    values: [
+  lengths: {{title: "Lengths {HOSTILE}", kind: pivot, experiment: first, published: lengths.csv,
+    index: [method], columns: [value], values: [
     {{metric: length, statistic: median, label: "length {HOSTILE}", decimals: 2}}]}}
 figures:
   ways: {{title: Ways, columns: 1, panels: [
-    {{kind: paths, title: "P<svg onload=window.RUN=2>", experiment: first, where: {{method: around}}, pick: {{lowest: length}}}}]}}
+    {{kind: paths, title: "P<svg onload=window.RUN=2>", experiment: first,
+      where: {{method: around}}, pick: {{lowest: length}}}}]}}
 """
 CLAIMS = f"""
 claims:
@@ -41,7 +42,8 @@ claims:
     place: "Table 1 {HOSTILE}"
     statement: "The line is shorter. {HOSTILE}"
     artefact: lengths
-    checks: [{{test: lower, experiment: first, metric: length, groups: [line], than: [around], direction: lower, margin: 0.01}}]
+    checks: [{{test: lower, experiment: first, metric: length, groups: [line], than: [around],
+               direction: lower, margin: 0.01}}]
 """
 SNAKEFILE = f"""
 module paths:
@@ -66,7 +68,8 @@ def folder(tmp_path_factory):
         "walk/experiments.yaml": EXPERIMENTS,
         "walk/artefacts.yaml": ARTEFACTS,
         "walk/claims.yaml": CLAIMS,
-        "walk/published/lengths.csv": "method,metric,statistic,n,unit,value\naround,length,median,2,m,4.2\n",
+        "walk/published/lengths.csv": "method,metric,statistic,n,unit,value\n"
+        "around,length,median,2,m,4.2\n",
     }.items():
         (folder / name).write_text(text)
     for words in (["paths_smoke"], ["paths_all"], ["paths_all", "--report", "report.html"]):

@@ -41,8 +41,9 @@ def plan(problem, rng, *, tries: Annotated[int, Range(1)]):
     x_low, x_high, y_low, y_high = grid.bounds
     for middle in rng.uniform((x_low, y_low), (x_high, y_high), (tries, 2)):
         path = Path("polyline", np.array([problem.start, middle, problem.target]))
-        cells = [grid.cell_of(x, y) for x, y in curves.sample_matrix("polyline", 3, 201) @ path.points]
-        if not any(grid.occupied[cell] for cell in cells) and (best is None or curves.length(path) < curves.length(best)):
+        samples = curves.sample_matrix("polyline", 3, 201) @ path.points
+        free = not any(grid.occupied[grid.cell_of(x, y)] for x, y in samples)
+        if free and (best is None or curves.length(path) < curves.length(best)):
             best = path
         history.append(np.inf if best is None else curves.length(best))
     return Plan(best, history[-1], best is not None, tries, np.array(history), "tries", {})
@@ -57,14 +58,17 @@ settings: {}
 policies:
   replans: {replan: when_blocked, start: centre}
 workspaces:
-  room: {kind: changing_cells, file: first.txt, cell: 1, unit: m, changes: [{file: second.txt, at: 2.5}], pace: 1, steps: 60}
+  room: {kind: changing_cells, file: first.txt, cell: 1, unit: m,
+    changes: [{file: second.txt, at: 2.5}], pace: 1, steps: 60}
   fixed: {kind: grid, file: first.txt, cell: 1, unit: m}
 problems:
   across: {workspace: room, start_cell: 14, target_cell: 20}
   there: {workspace: fixed, start_cell: 14, target_cell: 20}
 experiments:
-  drives: {problems: [across], methods: [mine], repeats: {smoke: 3, full: 3, extended: 3}, chunk: {smoke: 3, full: 3, extended: 3}}
-  plans: {problems: [there], methods: [still], repeats: {smoke: 1, full: 1, extended: 1}, chunk: {smoke: 1, full: 1, extended: 1}}
+  drives: {problems: [across], methods: [mine], repeats: {smoke: 3, full: 3, extended: 3},
+    chunk: {smoke: 3, full: 3, extended: 3}}
+  plans: {problems: [there], methods: [still], repeats: {smoke: 1, full: 1, extended: 1},
+    chunk: {smoke: 1, full: 1, extended: 1}}
 """
 
 FIRST = ".......\n...#...\n.......\n...#...\n...#...\n"
@@ -307,8 +311,8 @@ def test_no_drive_arrives_before_any_robot_can(arrival, refused):
         return
     with pytest.raises(
         ValueError,
-        match=r"across/mine/0 is said to be feasible, but its arrival 2\.9999 lies below the "
-        r"bound 3",
+        match=r"across/mine/0 is said to be feasible, "
+        r"but its arrival 2\.9999 lies below the bound 3",
     ):
         results.joined(runs, {}, bounds)
 

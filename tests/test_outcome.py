@@ -97,10 +97,11 @@ def test_repeats_in_another_table_are_counted_once():
 def test_impossible_and_unjudged_numbers_are_not_counted():
     table = comparison([1.0, 9.0], [1.2, 9.0])
     assert counted(table.assign(possible=[True, False], metric="feasible")) == [True, False]
+    # A length below the bound is impossible on our map alone.
     assert counted(table.assign(possible=[True, False])) == [
         True,
         True,
-    ]  # a length below the bound is impossible on our map alone
+    ]
     assert counted(table.assign(in_range=pd.array([None, True], dtype="boolean"))) == [False, True]
 
 

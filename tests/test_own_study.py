@@ -24,10 +24,12 @@ from bezierplan.planners import Path, Plan
 workspaces = ("circles",)
 
 def plan(problem, rng, *, bend: float):
-    middle = (np.array(problem.start) + problem.target) / 2 + [0, bend + rng.normal(0, nearby.SPREAD)]
+    middle = (np.array(problem.start) + problem.target) / 2
+    middle += [0, bend + rng.normal(0, nearby.SPREAD)]
     path = Path("bezier", np.array([problem.start, middle, problem.target]))
     length = curves.length(path)
-    return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]), stop="one", extra={})
+    return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]),
+                stop="one", extra={})
 """
 
 NEARBY = "SPREAD = 0.01\n"
@@ -62,10 +64,13 @@ ARTEFACTS = """
 tables:
   lengths:
     {title: "Lengths </script><b> `x`_ .. include:: bend.py",
-    kind: pivot, experiment: bends, published: lengths.csv, index: [method], columns: [value], values: [
-      {metric: length, statistic: mean, label: length, decimals: 2}, {metric: feasible, statistic: share, label: feasible, decimals: 2}]}
+    kind: pivot, experiment: bends, published: lengths.csv, index: [method], columns: [value],
+    values: [
+      {metric: length, statistic: mean, label: length, decimals: 2},
+      {metric: feasible, statistic: share, label: feasible, decimals: 2}]}
 figures:
-  paths: {title: One bend, columns: 1, panels: [{kind: paths, experiment: bends, where: {method: low}, pick: {lowest: length}}]}
+  paths: {title: One bend, columns: 1, panels: [
+    {kind: paths, experiment: bends, where: {method: low}, pick: {lowest: length}}]}
 """
 
 CLAIMS = """
@@ -74,25 +79,29 @@ claims:
     place: invented
     statement: The low bend is shorter than the high one.
     artefact: lengths
-    checks: [{test: lower, experiment: [bends, again], every: [experiment], metric: length, groups: [low], than: [high],
-              direction: lower, margin: 0.01}]
+    checks: [{test: lower, experiment: [bends, again], every: [experiment], metric: length,
+              groups: [low], than: [high], direction: lower, margin: 0.01}]
   - id: C2
     place: invented
     statement: The high bend is shorter than the low one, which is false.
     artefact: lengths
-    checks: [{test: lower, experiment: bends, metric: length, groups: [high], than: [low], direction: lower, margin: 0.01}]
+    checks: [{test: lower, experiment: bends, metric: length, groups: [high], than: [low],
+              direction: lower, margin: 0.01}]
 """
 
 ASSUMPTIONS = """
 assumptions:
-  - {id: O1, detail: How far the low bend goes, setting: bend, default: {low: 3.0}, alternatives: [6.0], claims: [C1],
-     reason: invented, source: assumed}
+  - {id: O1, detail: How far the low bend goes, setting: bend, default: {low: 3.0},
+     alternatives: [6.0], claims: [C1], reason: invented, source: assumed}
 """
 
 # The first is the length of the parabola of height 1.5 over a base of 8; the second is shorter than
 # any path round the disc.
 LOW = math.sqrt(64 + 16 * 1.5**2) / 2 + 64 / (8 * 1.5) * math.asinh(4 * 1.5 / 8)
-PUBLISHED = f"problem,method,metric,statistic,n,unit,value\nacross,low,length,mean,30,m,{LOW:.2f}\nacross,high,length,mean,30,m,8.00\n"
+PUBLISHED = f"""problem,method,metric,statistic,n,unit,value
+across,low,length,mean,30,m,{LOW:.2f}
+across,high,length,mean,30,m,8.00
+"""
 
 
 def snakemake(folder, *words):
@@ -129,9 +138,8 @@ def results(tmp_path_factory):
     }.items():
         (study / name).write_text(text)
     snakemake(folder, "alternatives")
-    snakemake(
-        folder, "all"
-    )  # after the alternatives, because the page shows those that have been tried
+    # After the alternatives, because the page shows those that have been tried.
+    snakemake(folder, "all")
     return folder / "results" / "full" / "bends"
 
 
@@ -217,7 +225,7 @@ def test_figure_shows_the_own_planner(results):
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
     assert (
-        "Of 2 published numbers, 1 agrees and 1 disagrees. Of 2 claims, 1 is supported and 1 is "
-        "contradicted." in summary
+        "Of 2 published numbers, 1 agrees and 1 disagrees. "
+        "Of 2 claims, 1 is supported and 1 is contradicted." in summary
     )
     assert "| 1 / 1 / 0 of 2 |" in summary

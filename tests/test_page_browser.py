@@ -108,8 +108,8 @@ def test_page_opens_without_complaint_and_passes_axe(visit, file, options):
 
     tab = visit(file, **options)
     tab.evaluate(
-        "document.querySelectorAll('details').forEach((each, n) => { if (n < 12) each.open = "
-        "true; })"
+        "document.querySelectorAll('details').forEach((each, "
+        "n) => { if (n < 12) each.open = true; })"
     )
     tab.wait_for_timeout(200)
     found = Axe().run(tab, options={"runOnly": ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"]})

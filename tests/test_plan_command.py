@@ -46,9 +46,8 @@ def test_without_a_planner_it_is_the_rounded_shortest_path(capsys):
         r"([\d.]+) m, ([\d.e-]+) % above the shortest path", found["length"]
     ).groups()
     assert float(length) / SHORTEST - 1 == pytest.approx(float(gap) / 100, abs=1e-5)
-    assert found["curvature"].startswith(
-        "at most 2.5"
-    )  # one over the turning radius of 0.02 times 20 m
+    # One over the turning radius of 0.02 times 20 m.
+    assert found["curvature"].startswith("at most 2.5")
     assert found["CPU time"].endswith(" s")
 
 
@@ -275,7 +274,8 @@ ANSWERS = {
     "another map": (
         'object.__setattr__(problem.workspace, "occupied", ~problem.workspace.occupied)',
         "answer",
-        "problem: : workspace: occupied: is another after the run; a planner copies what it changes",
+        "problem: : workspace: occupied: is another after the run; "
+        "a planner copies what it changes",
     ),
 }
 
@@ -326,6 +326,6 @@ def test_a_feasible_path_shorter_than_the_bound_is_no_answer(capsys, monkeypatch
         "straight_line",
     )
     assert told.startswith(
-        "--planner: straight_line: its path is 2 long and feasible, but no free path is shorter "
-        "than 3: "
+        "--planner: straight_line: "
+        "its path is 2 long and feasible, but no free path is shorter than 3: "
     )

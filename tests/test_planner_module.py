@@ -44,15 +44,15 @@ ENDS = {
     "import sys; sys.exit(0)": "line 1: sys.exit: 0",
     "raise KeyboardInterrupt": "line 1: KeyboardInterrupt",
     "raise type('Own', (BaseException,), {})('no')": "line 1: Own: no",
-    "import os; os.kill(os.getpid(), 9)": "when it is imported: its process was ended by signal "
-    "SIGKILL",
-    "import ctypes; ctypes.string_at(0)": "when it is imported: its process was ended by signal "
-    "SIGSEGV",
+    "import os; os.kill(os.getpid(), 9)": "when it is imported: "
+    "its process was ended by signal SIGKILL",
+    "import ctypes; ctypes.string_at(0)": "when it is imported: "
+    "its process was ended by signal SIGSEGV",
     "while True: pass": "when it is imported: not done within the time limit of 1 s; it is ended",
     "import os, time; os.fork() or time.sleep(600)": f"when it is imported: {watchdog.LEFT}",
     "import os, time; os.fork() and os._exit(3) or time.sleep(600)": "when it is imported: its "
-    "process ended itself with "
-    "exit status 3",
+    "process ended itself "
+    "with exit status 3",
     "raise ValueError('\\x1b[31m' + 'a' * 10**6)": r"line 1: ValueError: \x1b[31maaa",
 }
 SOUND = "def plan(problem, rng, *, tries: int):\n    return None\n"
@@ -92,7 +92,7 @@ def test_sound_planner_is_loaded_and_asked(tmp_path):
     file = tmp_path / "sound.py"
     file.write_text(
         f"{SOUND}def check(settings):\n    if settings['tries'] > 3: raise ValueError('tries: 4; "
-        f"expected at most 3')\n"
+        "expected at most 3')\n"
     )
     module = interface.loaded(str(file), "place")
     interface.asked(module.check, "place", {"tries": 3})

@@ -113,8 +113,8 @@ def test_maps_without_a_block_are_empty():
         (
             {},
             {"obstacles": 300},
-            "obstacles: 300: of 50 maps none has so many occupied cells and a path from start to "
-            "target",
+            "obstacles: 300: "
+            "of 50 maps none has so many occupied cells and a path from start to target",
         ),
         (
             {},

@@ -279,9 +279,8 @@ def test_way_points_are_passed_in_their_order():
     assert answer.shortest == pytest.approx(sum(parts), rel=1e-12)
     assert answer.turning_radius == 0.3
     assert not answer.corners
-    assert (
-        bp.plan(two_walls(), via=via, turning_radius=0.0).turning_radius == 0.0
-    )  # the way points are corners
+    # The way points are corners.
+    assert bp.plan(two_walls(), via=via, turning_radius=0.0).turning_radius == 0.0
     assert bp.plan(two_walls(), "shortest_path", via=via).length == pytest.approx(
         sum(parts), rel=1e-9
     )

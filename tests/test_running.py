@@ -161,8 +161,8 @@ def watched(folder, work, limit=2.0, pause=0.0):
         ("os._exit(7)", "its process ended itself with exit status 7, before it was done"),
         (
             "os.kill(os.getpid(), signal.SIGKILL)",
-            "its process was ended by signal SIGKILL, by itself, by another program, or for want "
-            "of memory",
+            "its process was ended by signal SIGKILL, "
+            "by itself, by another program, or for want of memory",
         ),
         ("ctypes.string_at(0)", "its process was ended by signal SIGSEGV"),
         ("os.abort()", "its process was ended by signal SIGABRT"),

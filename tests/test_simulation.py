@@ -223,9 +223,8 @@ def test_a_robot_without_a_plan_waits_until_the_world_ends():
 
 
 def test_a_robot_that_looks_ahead_ignores_a_circle_that_will_have_passed():
-    world = circles(
-        (15, 5, 1, 0, 0.9)
-    )  # on the way at step 5, and far above it when the robot comes at step 15
+    # On the way at step 5, and far above it when the robot comes at step 15.
+    world = circles((15, 5, 1, 0, 0.9))
     near, ahead = (
         drive(world, across(world), REPLANS._replace(knows=knows), round_about)
         for knows in ("positions", "velocities")

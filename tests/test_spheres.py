@@ -85,9 +85,8 @@ def test_a_dip_between_the_planners_samples_is_found():
     """A parabola whose lowest point lies 1e-6 in a sphere whose size is a thousandth of the
     distance of its samples.
     """
-    parabola = np.array(
-        [[[-1, 0, 1], [0, 0, -1], [1, 0, 1.0]]]
-    )  # z = (x^2 + 1) / 2 - 1/2 at its middle: 0
+    # z = (x^2 + 1) / 2 - 1/2 at its middle: 0.
+    parabola = np.array([[[-1, 0, 1], [0, 0, -1], [1, 0, 1.0]]])
     for below, free in ((1e-6, False), (-1e-6, True)):
         assert spheres.is_free(parabola, among((0, 0, below - 1e-3, 1e-3))) is free
 
@@ -111,9 +110,8 @@ def test_in_a_plane_the_verdict_is_that_of_the_checker_in_two_dimensions(control
         flat[None],
         region(Circles((-50.0, 50.0, -50.0, 50.0), circles[:, :2], circles[:, 2], "unit")),
     )
-    assume(
-        (check.clearance if check.feasible else check.depth) > 1e-6
-    )  # turning rounds, so nothing may graze
+    # Turning rounds, so nothing may graze.
+    assume((check.clearance if check.feasible else check.depth) > 1e-6)
     lifted = np.pad(flat, ((0, 0), (0, 1))) @ turn
     centres = np.pad(circles[:, :2], ((0, 0), (0, 1))) @ turn
     assert (
@@ -139,9 +137,8 @@ def test_the_verdict_agrees_with_the_roots_of_the_distance(control, centre, radi
             power, np.polynomial.polynomial.polymul(coordinate, coordinate)
         )
     roots = np.polynomial.Polynomial(power).deriv().roots()
-    places = np.clip(
-        [0.0, 1.0, *roots.real], 0, 1
-    )  # every place is a valid witness; among them is the lowest
+    # Every place is a valid witness; among them is the lowest.
+    places = np.clip([0.0, 1.0, *roots.real], 0, 1)
     least = math.sqrt(max(np.polynomial.polynomial.polyval(places, power).min(), 0.0))
     assume(abs(least - radius) > 1e-5)
     assert spheres.is_free(control[None], among((*centre[0], radius))) == (least > radius)

@@ -134,9 +134,10 @@ def test_fitness_is_that_of_the_planner():
 @pytest.mark.parametrize(("world", "best"), [("equal", 7.7263), ("public", 7.5182)])
 def test_best_known_curves(world, best):
     path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN[world], (4, 6)]], dtype=float)
+    # Their coordinates are rounded.
     assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(
         best, abs=3e-4
-    )  # their coordinates are rounded
+    )
 
 
 @pytest.mark.parametrize("world", ["equal", "public"])

@@ -114,8 +114,8 @@ FAULTS = {
         EXPERIMENTS,
         "\n  0_255: {workspace: figure2,",
         "\n  0_255: {workspace: figure2, settings: {population: 201},",
-        "experiments: routes: methods: nonsmooth: settings: population: 201; parents are crossed "
-        "in pairs",
+        "experiments: routes: methods: nonsmooth: settings: "
+        "population: 201; parents are crossed in pairs",
     ),
     "missing setting": (
         EXPERIMENTS,

@@ -192,11 +192,12 @@ def test_where_of_a_value_and_several_statistics():
     two = ours.runs.query("problem == 'brief' and method == 'plain' and repeat in [1, 2]")["length"]
     assert table.index.to_list() == ["min", "max"]
     assert table["plain: length"].to_list() == [f"{two.min():.3f}", f"{two.max():.3f}"]
+    # All of these runs have a path.
     assert table.columns.to_list() == [
         "fast: length",
         "faster: length",
         "plain: length",
-    ]  # all of these runs have a path
+    ]
 
 
 def test_words_left_out_become_levels_where_needed():

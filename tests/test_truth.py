@@ -143,7 +143,8 @@ policies:
   blind: {{replan: never, waits: false}}
 workspaces:
   disc: {{kind: circles, unit: m, bounds: [-5, 5, -5, 5], circles: [[0, 0, 1]]}}
-  moving: {{kind: moving_circles, unit: m, bounds: [-5, 5, -5, 5], circles: [[0, 0, 1, 0.1, 0]], pace: 1, steps: 20}}
+  moving: {{kind: moving_circles, unit: m, bounds: [-5, 5, -5, 5],
+    circles: [[0, 0, 1, 0.1, 0]], pace: 1, steps: 20}}
 problems:
   across: {{workspace: disc, start: [-4, 4], target: [4, 4]}}
   through: {{workspace: moving, start: [-4, 4], target: [4, 4]}}
@@ -167,10 +168,12 @@ experiments:
 """
 ARTEFACTS = """
 tables:
-  all: {title: All, kind: pivot, experiment: roads, index: [method], columns: [value], values: &length [
-    {metric: length, statistic: mean, label: length, decimals: 2}]}
-  driven: {title: Driven, kind: pivot, experiment: drives, index: [method], columns: [value], values: *length}
-  honest: {title: Honest, kind: pivot, experiment: plain, index: [method], columns: [value], values: *length}
+  all: {title: All, kind: pivot, experiment: roads, index: [method], columns: [value],
+    values: &length [{metric: length, statistic: mean, label: length, decimals: 2}]}
+  driven: {title: Driven, kind: pivot, experiment: drives, index: [method], columns: [value],
+    values: *length}
+  honest: {title: Honest, kind: pivot, experiment: plain, index: [method], columns: [value],
+    values: *length}
 """
 TABLES = "results/smoke/liars/tables"
 
@@ -203,7 +206,7 @@ def snakemake(folder, *words, limit=60.0, stderr=subprocess.PIPE):
     may take.
     """
     call = (
-        f"from bezierplan.running import interface; from snakemake.cli import main; "
+        "from bezierplan.running import interface; from snakemake.cli import main; "
         f"interface.LIMIT = {limit}; main()"
     )
     common = ["-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
@@ -342,7 +345,7 @@ def test_runs_that_were_edited_between_two_jobs_are_shown_nowhere(ended, column,
     assert done.returncode == 1
     told = (
         f"{name}: its rows are not those that were written; delete it and start again: the "
-        f"workflow reproduces it"
+        "workflow reproduces it"
     )
     assert sum(f"{told} (full account: " in line for line in done.stderr.splitlines()) == 1, (
         done.stderr

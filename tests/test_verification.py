@@ -115,7 +115,7 @@ def test_kept_outcome_agrees_with_itself(made):
     assert (
         told[0]
         == f"{found['p'].notna().sum()} numbers compared, {found['p'].notna().sum()} equal, 0 "
-        f"different by more than chance"
+        "different by more than chance"
     )
     assert found["p"].notna().sum() > 20
     assert told[1].startswith("sound: ")

@@ -314,16 +314,16 @@ def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):
         2,
         [],
         [
-            f"{tmp_path / 'nowhere'}: no runs here; expected a folder of results, such as "
-            f"results/full"
+            f"{tmp_path / 'nowhere'}: no runs here; "
+            "expected a folder of results, such as results/full"
         ],
     )
     (results / RUNS).write_bytes(b"PAR1")
     status, lines, told = verified(capsys, results)
     assert (status, lines) == (2, [])
     assert told == [
-        f"{results / RUNS}: not a whole Parquet file; delete it and start again: the workflow "
-        f"reproduces it"
+        f"{results / RUNS}: not a whole Parquet file; "
+        "delete it and start again: the workflow reproduces it"
     ]
     (results / "s/problems/e.parquet").unlink()
     (results / BOUNDS).unlink()

@@ -17,7 +17,8 @@ room = bp.read_map("gaps.geojson")
 answer = bp.plan(bp.Problem("room", room, (2.0, 10.0), (18.0, 10.0)), turning_radius=0.5)
 print(round(answer.length, 3), answer.feasible)
 cells = bp.read_map("gaps.geojson", cell=0.5)
-print(bp.plan(bp.Problem("room", cells, (2.0, 10.0), (18.0, 10.0)), "song2016/smooth", generations=5).evaluations)
+problem = bp.Problem("room", cells, (2.0, 10.0), (18.0, 10.0))
+print(bp.plan(problem, "song2016/smooth", generations=5).evaluations)
 """
 
 
@@ -67,10 +68,13 @@ def away(tmp_path_factory):
         )
     )
     # Where no package index can be reached, this test says so.
+    install = [sys.executable, "-m", "uv", "pip", "install", "--quiet"]
     got = subprocess.run(
-        [sys.executable, "-m", "uv", "pip", "install", "--quiet", "--python", str(python), "--constraint", str(constraints), str(wheel)],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [*install, "--python", str(python), "--constraint", str(constraints), str(wheel)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if got.returncode and "error sending request" in got.stderr.lower():
         pytest.skip("no package index can be reached")
     assert got.returncode == 0, got.stderr

@@ -59,8 +59,8 @@ SENTENCES = {
         {"direction": "lower"},
         "all 3 together",
         "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cell higher (95 % "
-        "interval 1 to 5); the claim says lower in "
-        "all of them; " + OURS.format("0.5 cell"),
+        "interval 1 to 5); "
+        "the claim says lower in all of them; " + OURS.format("0.5 cell"),
     ),
     "a stated difference": (
         {"test": "equal_within", "effect": -0.000331, "low95": math.nan, "margin": 0.01},
@@ -89,8 +89,8 @@ SENTENCES = {
         {"x": "obstacles", "direction": "up"},
         "obstacles up",
         "Case 1: exact arc length falls by 3 cell (95 % interval -5 to -1) from the least to the "
-        "largest obstacles; the claim says that it "
-        "rises; " + OURS.format("0.5 cell"),
+        "largest obstacles; "
+        "the claim says that it rises; " + OURS.format("0.5 cell"),
     ),
     "a function": (
         {

@@ -346,7 +346,7 @@ def test_cut_off_table_of_runs_is_named_and_made_again(finished, tree):
     printed = snakemake(tree, "song2016_figure4", "--forcerun", "figure", check=False)
     assert (
         f"{file.relative_to(tree)}: not a whole Parquet file; delete it and start again: the "
-        f"workflow reproduces it" in printed
+        "workflow reproduces it" in printed
     )
     file.unlink()
     snakemake(tree, file.relative_to(tree))
@@ -464,7 +464,7 @@ def written(tree):
     sys.platform != "linux",
     reason="only the kernel of Linux ends a job with its parent, and has /proc to look into",
 )
-def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_to_the_same_end_but_for_times(
+def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_goes_on_to_the_same_end(
     finished, tree
 ):
     """Killed by itself or with its group, each time when a new file of a kind is there; at most so

@@ -391,9 +391,8 @@ def test_touching_polygons_and_holes_are_accepted(obstacles):
     assert len(polygons_from_geojson(geojson(*obstacles), "m").obstacles) == len(obstacles)
 
 
-@example(
-    -6.04, np.pi / 2, 0.001, 3e4, "cap"
-)  # so far out halving ends at units in the last place that are more than a rounding error
+# So far out halving ends at units in the last place that are more than a rounding error.
+@example(-6.04, np.pi / 2, 0.001, 3e4, "cap")
 @given(
     st.floats(-9.5, -0.1),
     st.floats(0, np.pi),

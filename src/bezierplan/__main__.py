@@ -32,8 +32,8 @@ COMMANDS = {
     "run": "targets of the workflow, from any folder",
     "completion": "what a shell evaluates to complete these words",
     "verify-outcome": "numbers made here beside those of docs/outcome: is this installation sound?",
-    "outcome": "copy the outcome of results/extended and results/full to docs/outcome and into "
-    "the README",
+    "outcome": "copy the outcome of results/extended and "
+    "results/full to docs/outcome and into the README",
 }
 
 
@@ -74,9 +74,8 @@ def main(words: list[str]) -> None:
         )
         if sys.stdout:  # which a process without one does not have
             sys.stdout.flush()
-    except (
-        BrokenPipeError
-    ):  # the reader, such as `head`, has enough; Python flushes once more when it exits
+    # The reader, such as `head`, has enough; Python flushes once more when it exits.
+    except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except watchdog.PlannerFailure as failure:
         sys.exit(str(failure))
@@ -85,7 +84,7 @@ def main(words: list[str]) -> None:
             raise
         print(
             f"{name}: needs {missing.name}, which is not installed; install it with: pip install "
-            f"'bezierplan[workflow]'",
+            "'bezierplan[workflow]'",
             file=sys.stderr,
         )
         sys.exit(2)

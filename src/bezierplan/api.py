@@ -318,7 +318,8 @@ def shortest_path(problem: Problem) -> Shortest:
 
     Examples
     --------
-    >>> disc = Circles((-5.0, 5.0, -5.0, 5.0), centres=np.array([[0.0, 0.0]]), radii=np.array([1.0]), unit="m")
+    >>> bounds = (-5.0, 5.0, -5.0, 5.0)
+    >>> disc = Circles(bounds, centres=np.array([[0.0, 0.0]]), radii=np.array([1.0]), unit="m")
     >>> round(shortest_path(Problem("disc", disc, (-2.0, 0.0), (2.0, 0.0))).length, 5)
     4.5113
     """
@@ -360,7 +361,9 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     Examples
     --------
     >>> room = Grid(np.zeros((4, 4), dtype=bool), cell=1.0, unit="m")
-    >>> judged = check(Problem("room", room, (0.5, 0.5), (3.5, 0.5)), Path("bezier", np.array([(0.5, 0.5), (2.0, 3.0), (3.5, 0.5)])))
+    >>> across = Problem("room", room, (0.5, 0.5), (3.5, 0.5))
+    >>> bend = Path("bezier", np.array([(0.5, 0.5), (2.0, 3.0), (3.5, 0.5)]))
+    >>> judged = check(across, bend)
     >>> judged.feasible, round(judged.length, 3), round(judged.clearance, 3)
     (True, 4.071, 0.5)
     """
@@ -430,7 +433,7 @@ def verdict(
     if grown and verdict.feasible and clearance < grown.radius - robot.TOLERANCE:
         raise ValueError(
             f"its path is feasible, but {clearance:.12g} from an obstacle, less than the robot's "
-            f"radius: the checker is wrong"
+            "radius: the checker is wrong"
         )
     jump = curves.curvature_jump(path)
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
@@ -521,7 +524,8 @@ def plan(
     --------
     >>> wall = np.zeros((8, 8), dtype=bool)
     >>> wall[2:6, 3:5] = True
-    >>> problem = Problem("a block", Grid(wall, cell=1.0, unit="m"), start=(0.5, 4.0), target=(7.5, 4.0))
+    >>> room = Grid(wall, cell=1.0, unit="m")
+    >>> problem = Problem("a block", room, start=(0.5, 4.0), target=(7.5, 4.0))
     >>> answer = plan(problem, turning_radius=0.5)
     >>> answer.feasible, round(answer.length, 3), round(answer.gap, 4)
     (True, 8.416, 0.0015)
@@ -710,8 +714,8 @@ def _method(
         return getattr(method, "__name__", "a function"), _Function(method), {}
     if not isinstance(method, str):
         raise TypeError(
-            f"method: is a {type(method).__name__}; expected a name, a planner's module, or its "
-            f"function plan"
+            f"method: is a {type(method).__name__}; "
+            "expected a name, a planner's module, or its function plan"
         )
     if method.endswith(".py"):
         if not File(method).is_file():
@@ -766,8 +770,8 @@ def _check_settings(name: str, module: Any, settings: Mapping[str, Any], problem
             else ""
         )
         raise ValueError(
-            f"problem: {name} serves workspaces of kind {', '.join(served)}, and this one is "
-            f"{kind}{hint}"
+            f"problem: {name} serves workspaces of kind {', '.join(served)}, "
+            f"and this one is {kind}{hint}"
         )
     if hasattr(module, "serves"):
         module.serves(problem)
@@ -819,7 +823,7 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     if not runs_folder.is_dir():
         raise ValueError(
             f"folder: {folder}: no runs here; expected results of a study, such as "
-            f"results/full/song2016"
+            "results/full/song2016"
         )
     runs: dict[str, list[str]] = {}
     for chunk in sorted(
@@ -867,8 +871,8 @@ def replay(run: str) -> Answer:
     row, study, method = made.runs.iloc[0], run.split("/")[0], run.split("/")[3]
     if made.worlds:
         raise ValueError(
-            f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan "
-            f"replay`"
+            f"run: {run}: is a drive; "
+            "expected a run in a world that stands still, or `bezierplan replay`"
         )
     names = planner_settings(planner_module(row["planner"]))
     problem = made.problems[row["problem"]]

@@ -43,9 +43,8 @@ BETWEEN_LINES = 15.0
 class LogHandler(RichHandler):
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.progress.speed_estimate_period = (
-            24 * 3600
-        )  # seconds looked back on; the usual 30 are shorter than one job
+        # Seconds looked back on; the usual 30 are shorter than one job.
+        self.progress.speed_estimate_period = 24 * 3600
         self.progress.columns = (
             SpinnerColumn(finished_text="✓"),
             TextColumn("{task.description}"),
@@ -172,14 +171,14 @@ def unknown_target(message: str) -> str:
     """What to say of a target that no rule makes, from Snakemake's words; empty for other words."""
     from bezierplan.schema.checked import closest
 
-    found = re.search(r"No rule to produce (\S+)", message)
-    if not found or not KNOWN:
+    match = re.search(r"No rule to produce (\S+)", message)
+    if not match or not KNOWN:
         return ""
-    if "/" in found[1]:
+    if "/" in match[1]:
         return (
-            f"{found[1]}: no rule makes this file; `python -m bezierplan list` lists what there is"
+            f"{match[1]}: no rule makes this file; `python -m bezierplan list` lists what there is"
         )
-    return f"{found[1]}: no target{closest(found[1], KNOWN)}"
+    return f"{match[1]}: no target{closest(match[1], KNOWN)}"
 
 
 def headline(folder: Path) -> list[str]:

@@ -236,7 +236,8 @@ def main() -> None:
     logging.disable(logging.INFO)
     print(f"{EVALUATIONS} evaluations a run, {SEEDS} seeds\n")
     print(
-        f"{'':20}{'evaluations/s':>16}{'ours is faster':>16}{'share < 8':>12}{'quartile 1':>12}{'median':>10}{'quartile 3':>12}"
+        f"{'':20}{'evaluations/s':>16}{'ours is faster':>16}{'share < 8':>12}"
+        f"{'quartile 1':>12}{'median':>10}{'quartile 3':>12}"
     )
     fastest = math.nan
     for name, run in LIBRARIES.items():
@@ -247,7 +248,8 @@ def main() -> None:
         fastest = rate if name == "bezierplan pso" else fastest
         low, median, high = np.quantile(found, [0.25, 0.5, 0.75])
         print(
-            f"{name:20}{rate:16,.0f}{fastest / rate:16.1f}{np.mean(found < GOOD):12.2f}{low:12.3f}{median:10.3f}{high:12.3f}",
+            f"{name:20}{rate:16,.0f}{fastest / rate:16.1f}{np.mean(found < GOOD):12.2f}"
+            f"{low:12.3f}{median:10.3f}{high:12.3f}",
             flush=True,
         )
 

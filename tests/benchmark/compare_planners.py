@@ -56,7 +56,7 @@ try:
 except ImportError as fault:
     sys.exit(
         f"compare_planners: OMPL cannot be imported here ({fault}); its wheels are for Linux and "
-        f"for macOS 15 or later on Apple silicon"
+        "for macOS 15 or later on Apple silicon"
     )
 
 ROOT = File(__file__).resolve().parents[2]
@@ -363,7 +363,7 @@ def main() -> None:
     ompl_planners.start(seed=1)
     print(
         f"CPU time until a path is near the exact shortest one, median of {SEEDS} seeds, and the "
-        f"share of seeds that get there\n"
+        "share of seeds that get there\n"
     )
     found = []
     for number, contest in enumerate(CONTESTS):

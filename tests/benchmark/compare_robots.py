@@ -43,7 +43,7 @@ try:
 except ImportError as fault:
     sys.exit(
         f"compare_robots: OMPL cannot be imported here ({fault}); its wheels are for Linux and "
-        f"for macOS 15 or later on Apple silicon"
+        "for macOS 15 or later on Apple silicon"
     )
 
 ROOT = File(__file__).resolve().parents[2]
@@ -182,7 +182,7 @@ def main() -> None:
     ompl_planners.start(seed=1)
     print(
         f"CPU ms until a path is within {100 * WITHIN:g} % of the shortest (times ours, seeds "
-        f"that get there)\n"
+        "that get there)\n"
     )
     found = []
     for contest in (disc, turning):

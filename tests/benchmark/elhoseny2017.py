@@ -30,8 +30,9 @@ def benchmark_fields() -> None:
             plans = [planner.plan(each, np.random.default_rng(0), **settings) for each in problems]
             seconds = cpu_seconds(
                 lambda: [
-                    planner.plan(each, np.random.default_rng(0), **settings) for each in problems
+                    planner.plan(each, np.random.default_rng(0), **settings)  # noqa: B023
+                    for each in problems  # noqa: B023
                 ]
-            )  # noqa: B023
+            )
             rate = f"{sum(each.evaluations for each in plans) / seconds:16,.0f}"
             print(f"  {method:14}{rate}{1000 * seconds / runs:12.2f}{side:8}  {home}")

@@ -36,14 +36,17 @@ MADE = 50
 ARTEFACTS = """
 tables:
   lengths:
-    {title: Lengths, kind: pivot, experiment: all, published: lengths.csv, index: [method], columns: [problem, value], values: [
+    {title: Lengths, kind: pivot, experiment: all, published: lengths.csv, index: [method],
+    columns: [problem, value], values: [
       {metric: length, statistic: [mean, median, std, min], label: length, decimals: 2},
       {metric: feasible, statistic: share, label: feasible, decimals: 2}]}
 figures:
   spread: {title: Lengths, columns: 2, panels: [
     {kind: boxes, experiment: all, metric: length},
-    {kind: convergence, experiment: all, where: {problem: equal, method: [pso, ferguson]}, hue: method}]}
-  paths: {title: Paths, columns: 1, panels: [{kind: paths, experiment: all, where: {method: pso, problem: equal}, pick: {lowest: length}}]}
+    {kind: convergence, experiment: all, where: {problem: equal, method: [pso, ferguson]},
+     hue: method}]}
+  paths: {title: Paths, columns: 1, panels: [
+    {kind: paths, experiment: all, where: {method: pso, problem: equal}, pick: {lowest: length}}]}
 """
 FIGURE_FILES = {"svg": "svg", "png": "png", "pdf": "pdf", "data": "csv", "caption": "txt"}
 THREADS = 2
@@ -51,9 +54,13 @@ THREADS = 2
 CLAIMS = """
 claims:
   - {id: C1, place: invented, statement: The plain swarm is shorter., artefact: lengths, checks: [
-      {test: lower, experiment: all, every: [problem], metric: length, groups: [pso], than: [ferguson], direction: lower, margin: 0.01}]}
+      {test: lower, experiment: all, every: [problem], metric: length, groups: [pso],
+       than: [ferguson], direction: lower, margin: 0.01}]}
 """
-PUBLISHED = "problem,method,metric,statistic,n,unit,value\nequal,pso,length,mean,30,unit,8.5\nequal,ferguson,length,mean,30,unit,8.0\n"
+PUBLISHED = """problem,method,metric,statistic,n,unit,value
+equal,pso,length,mean,30,unit,8.5
+equal,ferguson,length,mean,30,unit,8.0
+"""
 
 
 def write_study(folder: Path, repeats: int, chunk: int) -> Path:

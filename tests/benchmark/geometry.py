@@ -50,7 +50,8 @@ def benchmark_geometry() -> None:
     from corner to corner.
     """
     print(
-        f"\n{'workspace':26}{'check: median us':>18}{'99 % us':>10}{'colliding':>11}{'bound: ms':>12}"
+        f"\n{'workspace':26}{'check: median us':>18}{'99 % us':>10}"
+        f"{'colliding':>11}{'bound: ms':>12}"
     )
     rng = np.random.default_rng(1)
     for name, workspace in workspaces():
@@ -77,6 +78,6 @@ def benchmark_geometry() -> None:
         )
         bound = 1e3 * cpu_seconds(lambda: shortest_paths.shortest_path(corners))  # noqa: B023
         print(
-            f"  "
-            f"{name:24}{np.median(times):18.0f}{np.quantile(times, 0.99):10.0f}{colliding / 401:11.2f}{bound:12.2f}"
+            f"  {name:24}{np.median(times):18.0f}{np.quantile(times, 0.99):10.0f}"
+            f"{colliding / 401:11.2f}{bound:12.2f}"
         )

@@ -497,8 +497,8 @@ def benchmark_growth() -> None:
         told = f"   steeper: {series.reason or 'unexplained'}" if line.steeper else ""
         named = f"{series.kind}: {series.name}"
         print(
-            f"  "
-            f"{named:38}{sizes:>20}{costs:>22}{line.value:8.2f}{line.error:7.2f}{LIMIT:9.1f}{told}",
+            f"  {named:38}{sizes:>20}{costs:>22}"
+            f"{line.value:8.2f}{line.error:7.2f}{LIMIT:9.1f}{told}",
             flush=True,
         )
         found += [
@@ -517,8 +517,8 @@ def benchmark_growth() -> None:
     print(f"\n{f'memory to gather {RUNS:,} runs':40}{'MB':>12}{'at most':>12}")
     for script, needed in gathering.peaks(RUNS // 10, RUNS // 100).items():
         print(
-            f"  "
-            f"{script:38}{needed / 1e6:12,.0f}{MOST_MEMORY / 1e6:12,.0f}{'' if needed <= MOST_MEMORY else '   too much'}"
+            f"  {script:38}{needed / 1e6:12,.0f}{MOST_MEMORY / 1e6:12,.0f}"
+            f"{'' if needed <= MOST_MEMORY else '   too much'}"
         )
 
 

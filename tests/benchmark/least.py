@@ -326,7 +326,7 @@ def benchmark_least() -> None:
             least = sum(cost[name] * number for name, number in done.items())
             numbers = "".join(f"{done[name] / 1e3:10,.1f}" for name in OPERATIONS)
             print(
-                f"  "
-                f"{key + ' ' + method:32}{1e3 * taken:10.2f}{1e3 * least:10.2f}{taken / least if least else np.nan:8.1f}{numbers}",
+                f"  {key + ' ' + method:32}{1e3 * taken:10.2f}{1e3 * least:10.2f}"
+                f"{taken / least if least else np.nan:8.1f}{numbers}",
                 flush=True,
             )

@@ -104,9 +104,9 @@ def _large() -> Iterator[Timed]:
         problem = Problem("", random_cells(side, largest), (0.5, 0.5), (side - 0.5, side - 0.5))
         yield Timed(
             f"{side} x {side} cells, blocks up to {largest}",
-            cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1),
+            cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1),  # noqa: B023
             limit,
-        )  # noqa: B023
+        )
     problem = star(5000)
     yield Timed(
         "polygon with 5,000 corners",

@@ -40,14 +40,12 @@ def benchmark_node_genetic() -> None:
         runs = 20
         seconds = cpu_seconds(
             lambda: [
-                node_genetic.plan(problem, np.random.default_rng(seed), **settings)
-                for seed in range(runs)
+                node_genetic.plan(problem, np.random.default_rng(seed), **settings)  # noqa: B023
+                for seed in range(runs)  # noqa: B023
             ]
-        )  # noqa: B023
-        print(
-            f"  "
-            f"{name:14}{prepared:16.3f}{1000 * seconds / runs:12.2f}{(ground.met.nbytes + ground.energy.nbytes) / 1e6:16.1f}"
         )
+        megabytes = (ground.met.nbytes + ground.energy.nbytes) / 1e6
+        print(f"  {name:14}{prepared:16.3f}{1000 * seconds / runs:12.2f}{megabytes:16.1f}")
 
 
 def _grid_in_the_way(side: int) -> Grid:

@@ -46,17 +46,18 @@ def benchmark_binary_genetic() -> None:
     problem = Problem("0_240", grid, grid.centre(0), grid.centre(240))
     runs = 20
     print(
-        f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}{'bare minimum/s':>16}{'times the minimum':>20}"
+        f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}"
+        f"{'bare minimum/s':>16}{'times the minimum':>20}"
     )
     for method in study.experiments["routes"].methods:
         settings = study.resolved(method)
         evaluations = runs * settings["population"] * (settings["generations"] + 1)
         seconds = cpu_seconds(
             lambda: [
-                binary_genetic.plan(problem, np.random.default_rng(seed), **settings)
+                binary_genetic.plan(problem, np.random.default_rng(seed), **settings)  # noqa: B023
                 for seed in range(runs)
             ]
-        )  # noqa: B023
+        )
         basis = curves.sample_matrix(settings["curve"], settings["genes"] + 2, settings["samples"])
         stretches = binary_genetic.stretches(basis)
         cells = np.random.default_rng(0).integers(
@@ -75,5 +76,7 @@ def benchmark_binary_genetic() -> None:
             y,
         )
         least = runs * cpu_seconds(lambda: bare_minimum(*arguments))  # noqa: B023
-        rates = f"{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.1f}{evaluations / least:16,.0f}"
-        print(f"  {method:14}{rates}{seconds / least:20.2f}")
+        print(
+            f"  {method:14}{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.1f}"
+            f"{evaluations / least:16,.0f}{seconds / least:20.2f}"
+        )

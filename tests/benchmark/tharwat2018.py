@@ -37,6 +37,6 @@ def benchmark_chaotic_pso() -> None:
             seconds_of_runs(settings | {"particles": 1, "iterations": 0}),
         )
         print(
-            f"  "
-            f"{method:16}{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.2f}{1000 * least / runs:26.2f}"
+            f"  {method:16}{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.2f}"
+            f"{1000 * least / runs:26.2f}"
         )

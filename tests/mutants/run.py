@@ -70,8 +70,8 @@ def planted(mutant: Mutant, tree: Path = ROOT) -> str:
     text = (tree / mutant.file).read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
         raise ValueError(
-            f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; "
-            f"expected once"
+            f"{mutant.fault}: "
+            f"{mutant.file} has the old text {text.count(mutant.old)} times; expected once"
         )
     return text.replace(mutant.old, mutant.new)
 

@@ -236,8 +236,8 @@ def main(given: list[str]) -> int:
     found = changed(NEWEST, libraries)
     say(
         found
-        or f"the same bits in all {len(expected)} run tables, tables, data of figures, claims and "
-        f"summaries"
+        or f"the same bits in all {len(expected)} run tables, "
+        "tables, data of figures, claims and summaries"
     )
     say("the tests with the new versions")
     failed = run(NEWEST, ".venv/bin/python", "-m", "pytest", "-n", "auto", "--dist", "loadfile")

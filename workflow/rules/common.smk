@@ -1,4 +1,5 @@
-# The checked configuration, and what rules share. What a job reads and depends on is in src/bezierplan/study/targets.py.
+# The checked configuration, and what rules share. What a job reads and depends on is in
+# src/bezierplan/study/targets.py.
 import gc
 import os
 import re
@@ -7,18 +8,19 @@ import sys
 from functools import cache, partial
 from pathlib import Path
 
-# The package of this tree, even if another is installed: for this process and for the scripts of jobs. Kernels use one thread; Snakemake
-# does the parallel part.
+# The package of this tree, even if another is installed: for this process and for the scripts of
+# jobs. Kernels use one thread; Snakemake does the parallel part.
 SOURCE = str(Path(str(workflow.current_basedir)).parents[1] / "src")
 sys.path.insert(0, SOURCE)
 os.environ.update(
     PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1"
 )
 INTERPRETER = sys.executable
-# Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
+# Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have
+# any name.
 sys.executable = shlex.quote(sys.executable)
-# Snakemake writes a message and its end apart, and flushes then. What a job says between the two would stand on the message's line, so both are
-# to be one write.
+# Snakemake writes a message and its end apart, and flushes then. What a job says between the two
+# would stand on the message's line, so both are to be one write.
 if hasattr(sys.stderr, "reconfigure"):
     sys.stderr.reconfigure(line_buffering=False, write_through=False)
 
@@ -32,8 +34,9 @@ FORKS, in_an_interpreter = forks.Forks(INTERPRETER, script), script
 
 
 def script(*given):
-    """What the directive of this name calls: a fork of one process with all libraries, instead of a new interpreter. But a process that a cluster
-    starts for one job imports only what that job needs.
+    """What the directive of this name calls: a fork of one process with all libraries, instead of a
+    new interpreter. But a process that a cluster starts for one job imports only what that job
+    needs.
     """
     alone = len(workflow.dag_settings.target_jobs) == 1
     # A script gets the words of a study as they are.
@@ -42,7 +45,9 @@ def script(*given):
 
 
 def at_changes():
-    """Jobs are to come, so import for them beside the checks. If nothing has changed, there may be none."""
+    """Jobs are to come, so import for them beside the checks. If nothing has changed, there may be
+    none.
+    """
     if sys.platform == "linux" and not workflow.output_settings.dryrun:
         FORKS.start()
 
@@ -58,8 +63,9 @@ except checked.Fault as fault:
 # All this stays until the end: to look for garbage in it takes a tenth of a start.
 gc.freeze()
 
-# Priorities. Of the jobs that can start, the one with the highest does: problems; a chunk of runs of each planner (`first_runs`); claims, which take
-# longest of all that follows the runs; one study after the other, its runs, then its bounds. Tables and figures, many short jobs, come last (0), so
+# Priorities. Of the jobs that can start, the one with the highest does: problems; a chunk of runs
+# of each planner (`first_runs`); claims, which take longest of all that follows the runs; one study
+# after the other, its runs, then its bounds. Tables and figures, many short jobs, come last (0), so
 # that no core is left without work while another has a long job.
 OF_STUDY = dict(zip(STUDIES, range(len(STUDIES), 0, -1)))
 CLAIMS = len(STUDIES) + 1
@@ -67,8 +73,9 @@ PROBLEMS = CLAIMS + 2
 
 
 def of_runs(wildcards):
-    """Priority of a chunk of runs. Jobs of one planner need the same kernels, which one of them compiles while the others wait, so each planner has
-    a job that comes before all others; planners of one study share kernels as well, so in that the studies take turns.
+    """Priority of a chunk of runs. Jobs of one planner need the same kernels, which one of them
+    compiles while the others wait, so each planner has a job that comes before all others; planners
+    of one study share kernels as well, so in that the studies take turns.
     """
     place = first_runs(wildcards.scale).get(
         (wildcards.study, wildcards.experiment, wildcards.method)
@@ -114,7 +121,9 @@ wildcard_constraints:
 
 
 def studies_with(tables):
-    """Pattern of the names of studies in paths of tables: a name may be one kind of table in one study and another kind in another."""
+    """Pattern of the names of studies in paths of tables: a name may be one kind of table in one
+    study and another kind in another.
+    """
     return (
         "|".join(
             f"{re.escape(key)}(?=/tables/(?:{one_of(names)})[.])" for key, names in tables.items()
@@ -124,7 +133,9 @@ def studies_with(tables):
 
 
 def studies_of(experiments):
-    """Pattern of the names of studies in paths of experiments: runs of one experiment may be simulated drives, those of another not."""
+    """Pattern of the names of studies in paths of experiments: runs of one experiment may be
+    simulated drives, those of another not.
+    """
     places = {
         key: rf"(?=/(?:problems|runs)/(?:{one_of(names)})(?:[.]|/))"
         for key, names in experiments.items()
@@ -137,12 +148,15 @@ COMPARED = {key: study.compared().keys() for key, study in STUDIES.items()}
 LISTED = {key: study.tables.keys() - study.compared().keys() for key, study in STUDIES.items()}
 
 
-# What a module that uses this workflow puts before each path of results; it stands in no path that rules write.
+# What a module that uses this workflow puts before each path of results; it stands in no path that
+# rules write.
 PREFIX = workflow.modifier.path_modifier.prefix or ""
 
 
 def placed(files):
-    """Files that a job reads. Those of a study stay where they are, wherever a module has its results."""
+    """Files that a job reads. Those of a study stay where they are, wherever a module has its
+    results.
+    """
     if isinstance(files, dict):
         return {name: placed(each) for name, each in files.items()}
     if isinstance(files, str):
@@ -161,7 +175,9 @@ def maps(wildcards):
 
 
 def params(function, *names):
-    """Params from `targets`, for the wildcards of a job. Snakemake prints them into its report as they are, so no words in them are markup."""
+    """Params from `targets`, for the wildcards of a job. Snakemake prints them into its report as
+    they are, so no words in them are markup.
+    """
 
     def param(name, wildcards):
         return targets.hidden(function(STUDIES, **wildcards)[name])
@@ -170,5 +186,7 @@ def params(function, *names):
 
 
 def caption(wildcards, output):
-    """The report's caption of a table or figure. Snakemake does not compare params derived from `output`: no file depends on it."""
+    """The report's caption of a table or figure. Snakemake does not compare params derived from
+    `output`: no file depends on it.
+    """
     return targets.caption(STUDIES, **wildcards)

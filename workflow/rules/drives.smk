@@ -1,4 +1,5 @@
-# Experiments in worlds that move: the same files as those of the others, and the trace of every drive.
+# Experiments in worlds that move: the same files as those of the others, and the trace of every
+# drive.
 
 
 rule worlds:

@@ -1,4 +1,5 @@
-# Figures: the picture in three formats, what its caption says of the runs, and exactly the data drawn in it.
+# Figures: the picture in three formats, what its caption says of the runs, and exactly the data
+# drawn in it.
 
 
 rule figure:

@@ -1,6 +1,7 @@
-# Which interpretation of what a paper leaves open explains its published numbers? One job per study, which keeps the runs of each interpretation, so that
-# an interrupted search goes on where it was. A search is a hundred steps, each of which follows from the one before and is a batch of runs: the
-# threads of the job share it, and the result does not depend on their number.
+# Which interpretation of what a paper leaves open explains its published numbers? One job per
+# study, which keeps the runs of each interpretation, so that an interrupted search goes on where it
+# was. A search is a hundred steps, each of which follows from the one before and is a batch of
+# runs: the threads of the job share it, and the result does not depend on their number.
 
 
 rule interpretations_of:

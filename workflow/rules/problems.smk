@@ -1,4 +1,5 @@
-# Workspaces, starts and targets: drawn once, shared by all methods of an experiment. Runs do not depend on bounds.
+# Workspaces, starts and targets: drawn once, shared by all methods of an experiment. Runs do not
+# depend on bounds.
 
 
 rule problems:

@@ -42,7 +42,8 @@ rule summary:
         "../scripts/summary.py"
 
 
-# Every path that the page shows, judged again from its row, and every bound, computed again, in processes that no planner was in.
+# Every path that the page shows, judged again from its row, and every bound, computed again, in
+# processes that no planner was in.
 rule verified:
     input:
         inputs(page.verified_inputs),

@@ -1,4 +1,5 @@
-# Tables, laid out like the paper's, and the comparison of each with the published numbers; tables without runs have no comparison.
+# Tables, laid out like the paper's, and the comparison of each with the published numbers; tables
+# without runs have no comparison.
 
 
 rule table:
@@ -52,7 +53,8 @@ rule listing:
         "../scripts/listing.py"
 
 
-# All tables of a study as LaTeX, with their captions: one quick job, which a new title runs again instead of the tables.
+# All tables of a study as LaTeX, with their captions: one quick job, which a new title runs again
+# instead of the tables.
 rule latex:
     input:
         inputs(targets.latex_inputs),

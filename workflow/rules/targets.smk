@@ -1,5 +1,6 @@
-# Names for what a user may want: everything, a scale, a study, a table or figure. `snakemake --list-target-rules` lists them. What takes time
-# to find is a function, which only a start for that target calls.
+# Names for what a user may want: everything, a scale, a study, a table or figure. `snakemake
+# --list-target-rules` lists them. What takes time to find is a function, which only a start for
+# that target calls.
 
 try:
     reading.check_names(

@@ -137,7 +137,7 @@ class Cell(NamedTuple):
 
 def _row(
     item: str,
-    place: str,
+    location: str,
     rule: str,
     printed: float,
     limit: float,
@@ -146,7 +146,7 @@ def _row(
 ) -> dict:
     described = {
         "item": item,
-        "place": place,
+        "place": location,
         "rule": rule,
         "printed": printed,
         "limit": float(limit),
@@ -279,13 +279,13 @@ def _grim(cell: Cell, name: str, mean: Printed, step: Fraction, values: str) -> 
             f"{_text(2 * mean.half)}: every one is possible"
         )
         return cell.row(name, rule, nearest, None, apart)
-    found = possible.sums(mean, cell.n, step)
+    possible_sums = possible.sums(mean, cell.n, step)
     nearby = f"nearest possible: {_text(nearest * cell.n)} / {cell.n} = {float(nearest):.6g}"
     return cell.row(
         name,
         rule,
         nearest,
-        len(found) > 0,
+        len(possible_sums) > 0,
         f"{text} x {cell.n} = {_text(mean.value * cell.n)}; {nearby}",
     )
 

@@ -1,36 +1,49 @@
 """Every published number of a table next to ours.
 
 One row for each group of runs, metric and statistic; an empty cell means that there is no such
-number.
+number. Columns:
 
-| column | meaning | | --- | --- | | key columns | columns of the runs table that identify the rows:
-those left of `metric` in the published file, then the table's others | | metric | what is measured,
-a name of `metrics.METRICS` | | statistic | the statistic that the paper prints; `unstated` if it
-does not say, in which case ours is the median | | unit | unit of the metric; `-` for a number
-without one | | n_published | runs behind the published number, if the paper states it | |
-value_published | the published number; a variant of a published method is compared with that
-method's number | | n_ours | our runs that count: feasible ones for metrics of feasible paths, all
-for the others | | n_asked | runs among which these are: the others failed, or have no such value |
-| value_ours | the statistic of these runs | | value_ours_scaled | the same for n_published runs
-(`statistics.scaled`): counts and extremes depend on their number | | best, mean, median, quartile1,
-quartile3 | of the same runs; best is the lowest | | low95_ours, high95_ours | 95 % bootstrap
-interval of value_ours; empty below two runs, and for min, max and range | | low95_predicted,
-high95_predicted | 95 % prediction interval for the number printed by an experiment of n_published
-runs | | quantile_published | quantile of the published number in experiments of n_published runs;
-in our runs if n_published is empty | | in_range | whether it lies in the central 95 %. Ours are
-rounded like the printed one, ties count; empty for times, and below six runs | | can_fail | whether
-a number on the published one's side of ours could have been rejected (`statistics.can_fail`) | |
-power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the
-published one | | identified | cells of the paths whose length the published number is to the last
-digit (`identified`), and the chance of a match | | verdict | identified; disagrees; inconclusive;
-agrees | | why | why it is inconclusive: not defined by the paper, or the interval has no end there,
-or contains most of the numbers that matter | | possible | whether the metric can have the published
-value, and ranks add up. A length below the bound of our map is judged all the same | |
-share_claimed | share of all runs whose path passed the planner's own test | | share_feasible |
-share of all runs whose path the certified checker accepts | | bound | least length of the problem,
-of the metric's kind (`metrics.Metric`); for several problems, the median over the runs | | gap |
-median over the feasible runs of that kind of length / bound - 1 | | primary | whether the row is
-the paper's interpretation: no variant of a method, and what the table's `primary` names |
+- key columns: columns of the runs table that identify the rows: those left of `metric` in the
+  published file, then the table's others
+- metric: what is measured, a name of `metrics.METRICS`
+- statistic: the statistic that the paper prints; `unstated` if it does not say, in which case ours
+  is the median
+- unit: unit of the metric; `-` for a number without one
+- n_published: runs behind the published number, if the paper states it
+- value_published: the published number; a variant of a published method is compared with that
+  method's number
+- n_ours: our runs that count: feasible ones for metrics of feasible paths, all for the others
+- n_asked: runs among which these are: the others failed, or have no such value
+- value_ours: the statistic of these runs
+- value_ours_scaled: the same for n_published runs (`statistics.scaled`): counts and extremes depend
+  on their number
+- best, mean, median, quartile1, quartile3: of the same runs; best is the lowest
+- low95_ours, high95_ours: 95 % bootstrap interval of value_ours; empty below two runs, and for min,
+  max and range
+- low95_predicted, high95_predicted: 95 % prediction interval for the number printed by an
+  experiment of n_published runs
+- quantile_published: quantile of the published number in experiments of n_published runs; in our
+  runs if n_published is empty
+- in_range: whether it lies in the central 95 %. Ours are rounded like the printed one, ties count;
+  empty for times, and below six runs
+- can_fail: whether a number on the published one's side of ours could have been rejected
+  (`statistics.can_fail`)
+- power: share of the numbers that matter (`_rivals`) that would have been rejected instead of the
+  published one
+- identified: cells of the paths whose length the published number is to the last digit
+  (`identified`), and the chance of a match
+- verdict: identified; disagrees; inconclusive; agrees
+- why: why it is inconclusive: not defined by the paper, or the interval has no end there, or
+  contains most of the numbers that matter
+- possible: whether the metric can have the published value, and ranks add up. A length below the
+  bound of our map is judged all the same
+- share_claimed: share of all runs whose path passed the planner's own test
+- share_feasible: share of all runs whose path the certified checker accepts
+- bound: least length of the problem, of the metric's kind (`metrics.Metric`); for several problems,
+  the median over the runs
+- gap: median over the feasible runs of that kind of length / bound - 1
+- primary: whether the row is the paper's interpretation: no variant of a method, and what the
+  table's `primary` names
 """
 
 import math
@@ -161,13 +174,13 @@ def compare(
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
-    found = pd.Series(
+    identities = pd.Series(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
     )
     table["identified"], table["verdict"] = (
-        found,
-        table["verdict"].astype(object).mask(found.notna(), "identified"),
+        identities,
+        table["verdict"].astype(object).mask(identities.notna(), "identified"),
     )
     undefined = _undefined(both, spec) & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
@@ -198,14 +211,18 @@ def _identified(
         return None
     for entry in entries:
         if entry.counts and identified.applies(entry, row):
-            found = identified.in_problem(
+            identification = identified.in_problem(
                 problems[row["problem"]],
                 row["value_published"],
                 int(row["decimals"]),
                 entry.edges,
             )
-            if found and found.paths and found.chance < identified.UNLIKELY:
-                return identified.in_words(found)
+            if (
+                identification
+                and identification.paths
+                and identification.chance < identified.UNLIKELY
+            ):
+                return identified.in_words(identification)
     return None
 
 

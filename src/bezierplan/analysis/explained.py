@@ -3,17 +3,21 @@ the summary.
 
 Columns of interpretations.csv, one row per interpretation, the best first:
 
-| column | meaning | | --- | --- | | study, interpretation | its changes, such as `O2=0.9,
-O7=clamp`; `default` without any | | in_words | what the paper's experiment would have been: each
-choice made, in words | | confirmed | whether it was one of the best, which are judged by more runs;
-only these are compared in what follows | | one column per choice | its value, empty for the default
-| | in_range, numbers | how many of the published numbers lie in range, and of how many | |
-by_chance | how many would if each printed number were exchanged with another of its kind in the
-same table (expected value) | | impossible | printed means and extremes below the exact bound of
-their map under this interpretation; with one, it is ruled out | | score | sum of the logarithms of
-the tables' likelihoods, by which interpretations that are not ruled out are compared | |
-in_range_<table> | in_range by table | | fresh_in_range, fresh_score | those of the best
-interpretation by runs of its own, with other seeds, that the search did not see |
+- study, interpretation: its changes, such as `O2=0.9, O7=clamp`; `default` without any
+- in_words: what the paper's experiment would have been: each choice made, in words
+- confirmed: whether it was one of the best, which are judged by more runs; only these are compared
+  in what follows
+- one column per choice: its value, empty for the default
+- in_range, numbers: how many of the published numbers lie in range, and of how many
+- by_chance: how many would if each printed number were exchanged with another of its kind in the
+  same table (expected value)
+- impossible: printed means and extremes below the exact bound of their map under this
+  interpretation; with one, it is ruled out
+- score: sum of the logarithms of the tables' likelihoods, by which interpretations that are not
+  ruled out are compared
+- in_range_<table>: in_range by table
+- fresh_in_range, fresh_score: those of the best interpretation by runs of its own, with other
+  seeds, that the search did not see
 
 Columns of explained.csv, one row per published number, those that no interpretation gives first:
 study, table, the table's keys, metric, statistic, value_published; default and best, whether it
@@ -174,7 +178,7 @@ def explained_table(
     }
     for tried in of_parts:
         inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
-        own = {
+        settings_tried = {
             name_of(
                 {
                     choice: value
@@ -188,7 +192,7 @@ def explained_table(
         nearest = missed.argmin(axis=0)
         told["interpretations"] += inside.tolist()
         told["tried"] += [len(tried)] * len(inside)
-        told["settings"] += [len(own)] * len(inside)
+        told["settings"] += [len(settings_tried)] * len(inside)
         least = missed.min(axis=0)
         told["missed_by"] += np.where(np.isinf(least), np.nan, least).tolist()
         told["nearest"] += [name_of(tried[place].interpretation) for place in nearest]
@@ -301,13 +305,13 @@ def section(
     parts = [
         "## Interpretations that explain the printed numbers",
         "What a paper leaves open is varied together, and each such interpretation is scored by "
-        "the joint likelihood of the printed "
-        "numbers among "
+        "the joint likelihood of "
+        "the printed numbers among "
         "what experiments of the paper's size would print, by a search that judges the best ones "
         "by more runs. A number is in range if it "
         "lies in the central 95 % of these; but an interpretation whose runs vary widely refuses "
-        "nothing, so beside the count stands how "
-        "many "
+        "nothing, so beside the "
+        "count stands how many "
         "would be in range if printed numbers were exchanged. Numbers of a quantity that the "
         "paper does not define have no vote. "
         "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` "
@@ -376,9 +380,9 @@ def _most_likely(best: pd.Series, default: pd.Series, tried: int) -> str:
         return f"Under each of {tried} interpretations some printed number is impossible."
     if best["interpretation"] == DEFAULT:
         return (
-            f"The printed numbers are most likely from the experiment of the default "
+            "The printed numbers are most likely from the experiment of the default "
             f"interpretation: none of {tried} interpretations is "
-            f"more likely. It has "
+            "more likely. It has "
             f"{_counted(default)}."
         )
     level = (
@@ -393,7 +397,7 @@ def _most_likely(best: pd.Series, default: pd.Series, tried: int) -> str:
     )
     return (
         f"Of {tried} interpretations, the printed numbers are most likely from an experiment in "
-        f"which these choices differ from ours: "
+        "which these choices differ from ours: "
         f"{best['in_words']} ({best['interpretation']}); {against}. It has "
         f"{_counted(best)}{level}; the default has {_counted(default)}."
     )
@@ -414,8 +418,8 @@ def _ratio(best: pd.Series, default: pd.Series) -> str:
     """How much more likely than under the default interpretation the numbers are."""
     difference = best["score"] - default["score"]
     return (
-        f"log-likelihood ratio against the default {difference:+.1f} ({_times(difference)} as "
-        f"likely)"
+        "log-likelihood ratio against the default "
+        f"{difference:+.1f} ({_times(difference)} as likely)"
     )
 
 
@@ -423,7 +427,7 @@ def _counted(row: pd.Series) -> str:
     """How many numbers are in range under an interpretation."""
     return (
         f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} if "
-        f"those of one kind in one table were exchanged)"
+        "those of one kind in one table were exchanged)"
     )
 
 
@@ -441,7 +445,7 @@ def _beside_a_line(held_out: pd.DataFrame) -> str:
     )
     return (
         f"A straight line in the column {along}, which predicts each number from the others of "
-        f"its row, has a log-likelihood "
+        "its row, has a log-likelihood "
         f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely "
         f"interpretation: {verdict}."
     )
@@ -477,7 +481,7 @@ def _searched(explained: pd.DataFrame) -> str:
     if settings.nunique() == 1:
         return f"Each method was tried under {settings.iloc[0]} different settings of its own."
     return (
-        f"Different settings tried of each method alone: "
+        "Different settings tried of each method alone: "
         f"{', '.join(f'{method} {count}' for method, count in settings.items())}."
     )
 
@@ -491,7 +495,7 @@ def _ruled_out(interpretations: pd.DataFrame) -> str:
         f"{ruled_out} of {len(interpretations)} interpretations "
         f"{'is' if ruled_out == 1 else 'are'} ruled out: under "
         f"{'it' if ruled_out == 1 else 'them'} a printed mean or extreme lies below the exact "
-        f"bound of its map."
+        "bound of its map."
     )
 
 
@@ -500,7 +504,7 @@ def _held_out(held_out: pd.DataFrame) -> str:
     if len(held_out) < 2:
         return ""
     return (
-        f"Chosen for each table on the others alone, interpretations bring "
+        "Chosen for each table on the others alone, interpretations bring "
         f"{held_out['chosen'].sum()} into range, the default "
         f"{held_out['default'].sum()}: {_advice(held_out)}."
     )

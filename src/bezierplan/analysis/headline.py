@@ -32,8 +32,8 @@ LEGEND = (
     "no end on that side, or the paper "
     "does not define the quantity. *typical deviation*: median of |ours - published| / "
     "|published|. *partly*: holds in some of the "
-    "comparisons. The baseline is the exact shortest path with rounded corners, which needs no "
-    "search."
+    "comparisons. The baseline is the exact shortest "
+    "path with rounded corners, which needs no search."
 )
 
 _NUMBERS = {
@@ -150,8 +150,8 @@ def beside_baseline(measured: pd.DataFrame) -> str:
         return f"No method is feasible as often as the baseline, {worth.BASELINE}."
     if not shorter:
         return (
-            f"No method that is feasible as often as the baseline, {worth.BASELINE}, gives a "
-            f"shorter path."
+            "No method that is feasible as often as the baseline, "
+            f"{worth.BASELINE}, gives a shorter path."
         )
     gives = "gives" if shorter == 1 else "give"
     return (
@@ -194,7 +194,7 @@ def _by_our_criterion(claims: pd.DataFrame) -> str:
     count = int(deciding["verdict"].isin(["contradicted", "no effect"]).sum())
     return (
         f" {count} of them {'fails' if count == 1 else 'fail'} by our criterion alone, where the "
-        f"paper gives no number."
+        "paper gives no number."
         if count
         else ""
     )

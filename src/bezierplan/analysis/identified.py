@@ -199,13 +199,13 @@ def of_table(
             words = (
                 f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
             )
-            place = ", ".join(
+            selection = ", ".join(
                 f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
                 for key, wanted in entry.where.items()
             )
             together = {
                 "item": item,
-                "place": place,
+                "place": selection,
                 "rule": f"{entry.because}: all numbers together",
                 "printed": matched,
             }

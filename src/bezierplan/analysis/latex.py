@@ -56,7 +56,8 @@ def environment(captioned: Captioned) -> str:
     """A table with rules as of a book: numbers on the right, and columns whose names begin alike
     below a common head.
 
-    >>> print(environment(Captioned(pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]}), "Lengths in %", "tab:x")))
+    >>> lengths = pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]})
+    >>> print(environment(Captioned(lengths, "Lengths in %", "tab:x")))
     \\begin{table}[htbp]
       \\centering
       \\caption{Lengths in \\%}

@@ -299,15 +299,15 @@ METRICS: dict[str, Metric] = {
     ),
     "max_curvature": Metric(
         "1/u",
-        f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces "
-        f"left out",
+        f"largest absolute curvature over {CURVATURE_SAMPLES} samples, "
+        "corners between pieces left out",
         True,
         partial(measures.of_path, measures.max_curvature),
     ),
     "signed_curvature": Metric(
         "1/u",
         f"largest curvature over {CURVATURE_SAMPLES} samples by its sign, left turns positive; "
-        f"corners between pieces left out",
+        "corners between pieces left out",
         True,
         partial(measures.of_path, measures.signed_curvature),
     ),
@@ -336,7 +336,7 @@ METRICS: dict[str, Metric] = {
     "bending": Metric(
         "rad²/u",
         f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all "
-        f"added: the integral of squared curvature",
+        "added: the integral of squared curvature",
         True,
         partial(measures.of_path, measures.bending),
     ),
@@ -398,8 +398,8 @@ METRICS: dict[str, Metric] = {
     ),
     "cells4": Metric(
         "u",
-        "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an "
-        "occupied cell",
+        "cells that the path touches, 1.5 for a diagonal step; "
+        "none for a path that touches an occupied cell",
         True,
         partial(measures.length_in_cells, "length4"),
         least="octile_bound",
@@ -480,8 +480,8 @@ METRICS: dict[str, Metric] = {
     ),
     "work_deviation": Metric(
         "-",
-        "absolute deviation of the evaluations from the median of their condition and method, "
-        "relative",
+        "absolute deviation of the evaluations from the "
+        "median of their condition and method, relative",
         False,
         measures.work_deviation,
     ),
@@ -505,7 +505,8 @@ METRICS: dict[str, Metric] = {
     ),
     "violation": Metric(
         "-",
-        "mean depth of the samples below the circles, as a share of the radius, summed over circles",
+        "mean depth of the samples below the circles, as a share of the radius, "
+        "summed over circles",
         False,
     ),
     "collisions_a": Metric(
@@ -662,7 +663,8 @@ for _within in running_time.TARGETS:
     _percent = f"{100 * _within:.0f}"
     METRICS[f"within_{_percent}pct"] = Metric(
         "-",
-        f"whether the path is certified and at most {_percent} % longer than the exact shortest one",
+        f"whether the path is certified and at most {_percent} % longer than "
+        "the exact shortest one",
         False,
         partial(running_time.solved, _within),
         step=1.0,

@@ -90,7 +90,7 @@ def by_problem(runs: pd.DataFrame, values: np.ndarray) -> pd.DataFrame:
         method = table.columns[table.isna().any()][0]
         raise ValueError(
             f"{method} has no run under {table.index[table[method].isna()][0]}; compared methods "
-            f"need the same problems"
+            "need the same problems"
         )
     return table
 
@@ -102,10 +102,10 @@ def ratios(table: pd.DataFrame) -> pd.DataFrame:
     best = table.min(axis=1).to_numpy()[:, None]
     values = table.to_numpy(dtype=float)
     # Of equal values, 0 / 0 included, each is the best.
-    found = np.divide(
+    quotients = np.divide(
         values,
         best,
         out=np.where(values <= best, 1.0, np.inf),
         where=np.isfinite(best) & (best > 0),
     )
-    return table.where(~np.isfinite(values), found).where(np.isfinite(values), np.inf)
+    return table.where(~np.isfinite(values), quotients).where(np.isfinite(values), np.inf)

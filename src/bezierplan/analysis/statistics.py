@@ -75,9 +75,8 @@ STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "max": lambda values: np.max(values, axis=-1),
     "quartile1": lambda values: _quantiles(values, 0.25)[0],
     "quartile3": lambda values: _quantiles(values, 0.75)[0],
-    "count": lambda values: np.sum(
-        values, axis=-1
-    ),  # of a boolean metric (1 or 0): the number of runs that have it
+    # Of a boolean metric (1 or 0): the number of runs that have it.
+    "count": lambda values: np.sum(values, axis=-1),
     "share": _mean,  # likewise: the share of runs that have it
     "unstated": _median,  # the paper does not say; the median of ours is printed
 }

@@ -132,7 +132,8 @@ class Pivot(Table):
     experiment: Experiment = Field(description="the name of an experiment")
     where: Where = Field(
         {},
-        description="column of the runs table → value or list of values, which also gives the order",
+        description="column of the runs table → value or list of values, "
+        "which also gives the order",
     )
     index: Columns = Field(
         description="a list of columns of the runs table, `value` or `statistic`: what the rows are"
@@ -193,7 +194,7 @@ class Pivot(Table):
             if label in labels[:number]:
                 raise wrong(
                     f"values: {number}: label: {label}: another entry has this label; expected "
-                    f"one that tells them apart"
+                    "one that tells them apart"
                 )
         if self.reads and self.published is None:
             raise wrong(

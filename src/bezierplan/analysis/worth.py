@@ -3,15 +3,17 @@ rounded corners.
 
 A method is measured under the conditions of some experiments, a condition being a problem with the
 values of the varied settings. Under each, the median of its runs is divided by the median of the
-baseline's runs; the table has the median of these ratios over the conditions.
+baseline's runs; the table has the median of these ratios over the conditions. Columns:
 
-| column | meaning | | --- | --- | | study, method, baseline | what is measured, and against what |
-| conditions | conditions under which both have runs | | feasible, feasible_baseline | share of
-their runs whose path the certified checker accepts | | compared | conditions under which both have
-a feasible run | | length | length over the baseline's, feasible runs only | | bent | those of the
-compared conditions under which the baseline's path bends and has no corners | | curvature | largest
-curvature over the baseline's under these conditions, feasible runs only; infinite for paths with
-corners | | cpu | CPU time over the baseline's, all runs |
+- study, method, baseline: what is measured, and against what
+- conditions: conditions under which both have runs
+- feasible, feasible_baseline: share of their runs whose path the certified checker accepts
+- compared: conditions under which both have a feasible run
+- length: length over the baseline's, feasible runs only
+- bent: those of the compared conditions under which the baseline's path bends and has no corners
+- curvature: largest curvature over the baseline's under these conditions, feasible runs only;
+  infinite for paths with corners
+- cpu: CPU time over the baseline's, all runs
 """
 
 from collections.abc import Mapping
@@ -140,10 +142,10 @@ def sentence(rows: pd.DataFrame) -> str:
     """What follows from the rows of one study."""
     count = len(rows)
     parts = [
-        f"{_counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs "
-        f"(baseline: "
+        f"{_counted(count, 'method')}: "
+        f"feasible in {span(100 * rows['feasible'])} % of the runs (baseline: "
         f"{number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} times the "
-        f"baseline's CPU time."
+        "baseline's CPU time."
     ]
     if rows["length"].notna().any():
         cornered, less = np.isinf(rows["curvature"]).sum(), (rows["curvature"] < 1 - EQUAL).sum()
@@ -163,8 +165,8 @@ def _verdict(own: pd.DataFrame) -> str:
         return "No method is feasible as often as the baseline."
     if better.empty:
         return (
-            f"Of the {len(reliable)} feasible as often as the baseline, none is shorter or "
-            f"curves less."
+            f"Of the {len(reliable)} feasible as often as the baseline, "
+            "none is shorter or curves less."
         )
     best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
     found = "is shorter or curves less" if len(better) == 1 else "are shorter or curve less"
@@ -172,8 +174,8 @@ def _verdict(own: pd.DataFrame) -> str:
         f"Of the {len(reliable)} feasible as often as the baseline, {len(better)} {found}; the "
         f"least curved, {best['method']}, has "
         f"{number(best['curvature'])} times the curvature, {number(best['length'])} times the "
-        f"length and {number(best['cpu'])} times "
-        "the CPU time."
+        f"length and {number(best['cpu'])} "
+        "times the CPU time."
     )
 
 

@@ -8,7 +8,7 @@ from argparse import ArgumentParser
 def add_studies(parser: ArgumentParser) -> None:
     """Let a command use studies other than those in config/config.yaml."""
     text = (
-        "studies instead of those of config/config.yaml: names of folders in config/studies, "
-        "or paths"
+        "studies instead of those of config/config.yaml: "
+        "names of folders in config/studies, or paths"
     )
     parser.add_argument("--studies", nargs="+", metavar="STUDY", help=text)

@@ -19,14 +19,14 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         "planner", help="its name, or the path of its file; with --study the name of a method"
     )
     named(planner, known_planners)
-    given = parser.add_mutually_exclusive_group()
-    given.add_argument(
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument(
         "--settings",
         default="{}",
         metavar="'{NAME: VALUE, ...}'",
         help="a value for each of its settings, as in a study",
     )
-    given.add_argument(
+    source.add_argument(
         "--study",
         metavar="STUDY",
         help="a name in config/studies, or a path: planner and settings are those of its method",

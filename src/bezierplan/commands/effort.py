@@ -49,7 +49,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     except FileNotFoundError:
         raise FileNotFoundError(
             f"{effort.SESSION}: no start of the workflow ended well in this folder; run "
-            f"`snakemake` first"
+            "`snakemake` first"
         ) from None
     print("\n".join(lines(session, *spent(session, Path()))))
 
@@ -101,7 +101,7 @@ def lines(session: Session, parts: Counter[str], jobs: int, waited: float) -> li
     rows = [(name, parts[name]) for name in ROWS if parts[name]] + list(rest.items())
     return [
         f"{jobs} jobs in {clock:.0f} s on {session.cores} cores; jobs waited {waited:.0f} s for "
-        f"kernels that another job compiled",
+        "kernels that another job compiled",
         "",
         "| what | seconds of a core | share |",
         "| --- | --- | --- |",

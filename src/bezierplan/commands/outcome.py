@@ -109,13 +109,13 @@ def table(kept: Path) -> str:
     there.
     """
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
-    found = headline.headline(
+    overview = headline.headline(
         *(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", WORTH)), titles
     )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
     return (
-        f"{headline.markdown(found)}\n\nScale `{scale}`: "
+        f"{headline.markdown(overview)}\n\nScale `{scale}`: "
         f"{SCALES[scale]}{_most_likely(kept, list(titles))}"
     )
 

@@ -53,61 +53,77 @@ _FROM_MAPS = (
 """What messages about a map or a problem may begin with: here these are options."""
 
 MANUAL = f"""
-Plans one path on a map and checks it by exact geometry. Prints its length, how far that lies above the exact shortest path, its largest
-curvature, its clearance from the map's own obstacles and border, whether it is free of obstacles and if not where it enters one, and the
-CPU time of the planner.
+Plans one path on a map and checks it by exact geometry. Prints its length, how far that lies above
+the exact shortest path, its largest curvature, its clearance from the map's own obstacles and
+border, whether it is free of obstacles and if not where it enters one, and the CPU time of the
+planner.
 
 the robot:
-  --robot-radius R  every path keeps the distance R from the obstacles and the border of the map, on maps of all kinds: obstacles grow by R,
-                    round at corners to a ten-thousandth of R, and the shortest path is that of the robot's centre. Cells with more than
+  --robot-radius R  every path keeps the distance R from the obstacles and the border of the map, on
+                    maps of all kinds: obstacles grow by R, round at corners to a ten-thousandth of
+                    R, and the shortest path is that of the robot's centre. Cells with more than
                     {robot.MOST_CORNERS:,} corners grow by whole cells
-  --footprint F     in place of a radius, the corners of a convex polygon, as nav2 writes them: [[x, y], ...], x ahead and y to the left of
-                    the point that follows the path. The path is planned for discs, from the circle within the footprint to that around it,
-                    until the footprint, turned by the path's heading, is free all along; that is certified, not sampled. At a corner of
-                    the path the robot turns on the spot. With --strict a path along which it is not free is refused
-  turning radius    a setting of the default planner. Where rounding has no room for it, a path that keeps it is searched; if none is found,
-                    the radius that is kept is printed beside it. With --strict such a path is refused
+  --footprint F     in place of a radius, the corners of a convex polygon, as nav2 writes them:
+                    [[x, y], ...], x ahead and y to the left of the point that follows the path.
+                    The path is planned for discs, from the circle within the footprint to that
+                    around it, until the footprint, turned by the path's heading, is free all along;
+                    that is certified, not sampled. At a corner of the path the robot turns on the
+                    spot. With --strict a path along which it is not free is refused
+  turning radius    a setting of the default planner. Where rounding has no room for it, a path that
+                    keeps it is searched; if none is found, the radius that is kept is printed
+                    beside it. With --strict such a path is refused
   --smooth continuous
-                    transitions between lines and arcs, along which the curvature rises and falls, wherever there is room for them. The
-                    largest curvature that is printed is certified for every path, and not that of samples
-  headings          --start X,Y,THETA and --target X,Y,THETA: the direction of travel there, in radians, counterclockwise from the x-axis.
-                    The path turns no tighter than the turning radius: the shortest one without obstacles, if it is free (Dubins), or else
-                    one by a search (hybrid A*), pulled tight
-  --via X,Y         way points in their order; the path turns no tighter there than elsewhere, if the search finds one that does not
+                    transitions between lines and arcs, along which the curvature rises and falls,
+                    wherever there is room for them. The largest curvature that is printed is
+                    certified for every path, and not that of samples
+  headings          --start X,Y,THETA and --target X,Y,THETA: the direction of travel there, in
+                    radians, counterclockwise from the x-axis. The path turns no tighter than the
+                    turning radius: the shortest one without obstacles, if it is free (Dubins), or
+                    else one by a search (hybrid A*), pulled tight
+  --via X,Y         way points in their order; the path turns no tighter there than elsewhere, if
+                    the search finds one that does not
 
 maps:
-  .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what has no properties.role is an obstacle;
-             the border is the polygon with the role border, of any shape, or the file's bbox, or --margin around the obstacles;
-             planners that need cells get --cell and --rule
-  .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied, or with --unknown free as free
-  .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner is at 0,0
-  .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the length of a user unit (default: 1)
+  .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what
+             has no properties.role is an obstacle; the border is the polygon with the role border,
+             of any shape, or the file's bbox, or --margin around the obstacles; planners that need
+             cells get --cell and --rule
+  .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as
+             occupied, or with --unknown free as free
+  .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner
+             is at 0,0
+  .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the
+             length of a user unit (default: 1)
   .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
   .txt       cells of . (free) and # (occupied), the top row first, of the side --cell
 
 planners:
-  Without --planner it is the exact shortest path with rounded corners. A planner takes its settings from the first study of this project
-  that has it, or from --like STUDY/METHOD; --settings changes some of them. `python -m bezierplan list` names studies and methods.
+  Without --planner it is the exact shortest path with rounded corners. A planner takes its settings
+  from the first study of this project that has it, or from --like STUDY/METHOD; --settings changes
+  some of them. `python -m bezierplan list` names studies and methods.
 
 files:
   .svg, .png       a picture
-  .csv             distance, x, y, heading and curvature at equal distances along the path, at most --step apart
+  .csv             distance, x, y, heading and curvature at equal distances along the path, at most
+                   --step apart
   .geojson         the same points as a line; .yaml  as a nav_msgs/Path message of ROS
 """
 
 EXAMPLES = """
 examples:
   The exact shortest path through a maze, its corners rounded to a radius of 0.3 m, as a picture:
-    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
-        --settings '{turning_radius: 0.3}' --out path.svg
+    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
+        --start 2,10 --target 18,10 --settings '{turning_radius: 0.3}' --out path.svg
 
   The same way by the genetic algorithm of song2016, on cells of 0.5 m, as points:
-    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
-        --like song2016/smooth --cell 0.5 --out path.csv
+    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
+        --start 2,10 --target 18,10 --like song2016/smooth --cell 0.5 --out path.csv
 
-  The way of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points 0.1 m apart:
-    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
-        --robot-radius 0.4 --settings '{turning_radius: 0.5}' --strict --step 0.1 --out robot.csv
+  The way of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points
+  0.1 m apart:
+    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
+        --start 2,10 --target 18,10 --robot-radius 0.4 --settings '{turning_radius: 0.5}' \\
+        --strict --step 0.1 --out robot.csv
 """
 
 
@@ -364,7 +380,7 @@ def _solution(task: _Task, problem: Problem) -> _Solution:
         x, y = problem.target
         raise Fault(
             f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
-            f"that can be reached"
+            "that can be reached"
         )
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
         if task.planner in legs.TURNING:
@@ -404,7 +420,7 @@ def _judged(
     if judged.feasible and judged.length < shortest_paths.least_length(bound):
         raise Fault(
             f"--planner: {task.planner}: its path is {judged.length:.12g} long and feasible, but "
-            f"no free path is shorter than"
+            "no free path is shorter than"
             f" {bound.length:.12g}: the checker or the bound is wrong"
         )
     return judged
@@ -418,8 +434,8 @@ def _footprint(arguments: Namespace) -> Footprint | None:
         return None
     if arguments.robot_radius is not None:
         raise Fault(
-            "--footprint: given beside --robot-radius, which is a footprint of its own; expected "
-            "one of them"
+            "--footprint: given beside --robot-radius, "
+            "which is a footprint of its own; expected one of them"
         )
     return footprint(checked.parse(arguments.footprint, "--footprint"))
 
@@ -435,7 +451,7 @@ def _check_words(arguments: Namespace) -> None:
     if arguments.scenario and (arguments.start or arguments.target):
         raise Fault(
             f"--scenario: {arguments.scenario}: has a start and a target of its own; expected no "
-            f"--start and no --target beside it"
+            "--start and no --target beside it"
         )
     if arguments.step is not None and not 0 < arguments.step < math.inf:
         raise Fault(f"--step: {arguments.step:g}; expected a number above 0")
@@ -571,7 +587,7 @@ def _told(
             (
                 "feasible",
                 f"no: the footprint enters an obstacle at {x:.6g},{y:.6g}; nor is it free on the "
-                f"paths of larger discs",
+                "paths of larger discs",
             )
         )
     else:
@@ -594,7 +610,7 @@ def _told_curvature(judged: api.Judged, smooth: str) -> str:
     else:
         told = (
             f"at most {_told_number(judged.curvature, 6)} / {unit} at samples, without a bound "
-            f"where the path stands still"
+            "where the path stands still"
         )
     if judged.corners:
         return f"{told}, and corners"
@@ -603,8 +619,8 @@ def _told_curvature(judged: api.Judged, smooth: str) -> str:
         told += (
             ", continuous"
             if continuous
-            else f", jumps by up to {judged.curvature_jump:.3g} / {unit} where transitions have "
-            f"no room"
+            else f", jumps by up to {judged.curvature_jump:.3g} "
+            f"/ {unit} where transitions have no room"
         )
     return told
 
@@ -617,9 +633,7 @@ def _told_number(value: float, digits: int) -> str:
 
 
 def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str, float]]:
-    """Start and target, as far as they are given, and the headings there, by the names of their
-    settings.
-    """
+    """Start and target, as far as given, and the headings there, by the names of their settings."""
     places, headings = {}, {}
     with _as_options():
         for end in () if given.scenario else ("start", "target"):
@@ -637,7 +651,7 @@ def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dic
     if twice := headings.keys() & changed.keys():
         raise Fault(
             f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as "
-            f"well; expected once"
+            "well; expected once"
         )
     if arguments.like:
         planner, preset = _like(arguments.like)
@@ -718,8 +732,8 @@ def _problem(
     met = "polygons" if isinstance(workspace, Polygons) else "grid"
     if served is not None and met not in served:
         raise Fault(
-            f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is "
-            f"{met}"
+            f"--planner: {planner}: "
+            f"serves workspaces of kind {', '.join(served)}, and a map is {met}"
         )
     if arguments.scenario:
         return problems.build(
@@ -728,18 +742,18 @@ def _problem(
     return problems.build("", places, workspace, regions)
 
 
-def _scenario(given: Namespace, described: dict, workspace: Workspace) -> dict:
+def _scenario(options: Namespace, described: dict, workspace: Workspace) -> dict:
     """Start and target of a scenario, as a problem describes them."""
-    file, _, number = given.scenario.rpartition(":")
+    file, _, number = options.scenario.rpartition(":")
     if not (file and is_count(number)):
         raise Fault(
-            f"--scenario: {given.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1"
+            f"--scenario: {options.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1"
         )
     return problems.scenario(
         described | {"scenarios": str(File(file).resolve())},
         int(number),
         workspace,
-        given.map.parent,
+        options.map.parent,
     )
 
 

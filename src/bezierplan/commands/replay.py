@@ -77,8 +77,8 @@ def described(run: pd.Series, problem: Problem, experiment: Experiment) -> list[
         lines.append(
             (
                 "note",
-                f"no table has this repeat: this experiment has {most} at most, from 0 to "
-                f"{most - 1}",
+                "no table has this repeat: "
+                f"this experiment has {most} at most, from 0 to {most - 1}",
             )
         )
     return lines
@@ -97,8 +97,8 @@ def _verdict(run: pd.Series, unit: str) -> str:
         )
     x, y = curves.point_at(results.path_of(run), run["collision_at"])
     return (
-        f"no: enters an obstacle at {x:.4g},{y:.4g}, at most {run['collision_depth']:.4g} "
-        f"{unit} deep"
+        f"no: enters an obstacle at {x:.4g},{y:.4g}, "
+        f"at most {run['collision_depth']:.4g} {unit} deep"
     )
 
 

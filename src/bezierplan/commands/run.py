@@ -12,9 +12,10 @@ from bezierplan.places import TREE
 from bezierplan.schema.checked import Fault
 
 MANUAL = """
-Runs targets of the workflow; results are written below the working folder, into results/. A word that is the folder of a study takes the
-place of the project's studies. Other words go to Snakemake: targets such as song2016_figure4, and options such as --cores 2 or -n. Without
-a target it makes everything at scale full.
+Runs targets of the workflow; results are written below the working folder, into results/. A word
+that is the folder of a study takes the place of the project's studies. Other words go to Snakemake:
+targets such as song2016_figure4, and options such as --cores 2 or -n. Without a target it makes
+everything at scale full.
 
 examples:
     python -m bezierplan run mystudy
@@ -37,10 +38,11 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
             "expected at least one word, such as the folder of a study; bezierplan run --help "
             "shows examples"
         )
+    # Here its absence is told as that of the extra.
     from snakemake.cli import (
         get_argument_parser,
         parse_cores,
-    )  # here its absence is told as that of the extra
+    )
     from snakemake.exceptions import CliException
 
     started = command(words)

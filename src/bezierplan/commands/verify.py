@@ -38,7 +38,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     if verdict.undigested:
         print(
             f"{verdict.undigested} files hold no digest of their rows, so what no path determines "
-            f"is not checked in them"
+            "is not checked in them"
         )
     print(
         f"digest {verdict.digest}; "

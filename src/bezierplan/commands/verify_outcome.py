@@ -80,7 +80,7 @@ def verified(studies: dict[str, Study]) -> pd.DataFrame:
     if numbers["p"].notna().sum() == 0:
         raise Fault(
             f"{RESULTS}: no number of {KEPT.relative_to(TREE)} is here; expected tables of the "
-            f"configured studies"
+            "configured studies"
         )
     return numbers
 
@@ -90,13 +90,13 @@ def lines(found: pd.DataFrame, failed: pd.DataFrame) -> list[str]:
     tested = found[found["p"].notna()]
     equal = int((tested["value_kept"] == tested["value_own"]).sum())
     told = [
-        f"{len(tested)} numbers compared, {equal} equal, {len(failed)} different by more than "
-        f"chance"
+        f"{len(tested)} numbers compared, {equal} equal, "
+        f"{len(failed)} different by more than chance"
     ]
     if failed.empty:
         return [
             *told,
-            f"sound: a sound installation fails with a probability of at most "
+            "sound: a sound installation fails with a probability of at most "
             f"{verification.ERROR_RATE:.0%}",
         ]
     for row in failed.head(SHOWN).itertuples():
@@ -105,6 +105,6 @@ def lines(found: pd.DataFrame, failed: pd.DataFrame) -> list[str]:
         )
     return [
         *told,
-        f"not sound: chance alone does this with a probability of at most "
+        "not sound: chance alone does this with a probability of at most "
         f"{verification.ERROR_RATE:.0%}",
     ]

@@ -186,7 +186,7 @@ def _write_headings(row: np.ndarray, headings: list[_Heading]) -> None:
     """
     lines = max(len(heading.words.splitlines()) for heading in headings)
     top = 3 + 1.25 * style.SMALLEST_TEXT * lines
-    place = {
+    anchor = {
         "xy": (0, 1),
         "xycoords": "axes fraction",
         "xytext": (0, top),
@@ -196,7 +196,7 @@ def _write_headings(row: np.ndarray, headings: list[_Heading]) -> None:
     for axes, heading in zip(row, headings):
         axes.set_title(heading.title, loc="left", pad=top + 3)
         if heading.words:
-            axes.annotate(heading.words, linespacing=1.1, **place)
+            axes.annotate(heading.words, linespacing=1.1, **anchor)
 
 
 def _caption(letters: list[str], told: list[list[str]]) -> str:

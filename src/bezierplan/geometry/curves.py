@@ -71,8 +71,8 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
         raise ValueError(f"unknown curve {curve!r}; known: {', '.join(CURVES)}")
     if points < least_points(curve):
         raise ValueError(
-            f"a curve of kind {curve} needs at least {least_points(curve)} control points, not "
-            f"{points}"
+            f"a curve of kind {curve} needs at least "
+            f"{least_points(curve)} control points, not {points}"
         )
     if curve == "ferguson":
         matrix = _ferguson_pieces(points)
@@ -149,8 +149,8 @@ def bezier_pieces(path: Path) -> np.ndarray:
 
     A quadratic B-spline has a joint in the middle of each inner leg of its control polygon:
 
-    >>> path = Path("piecewise_quadratic", np.array([[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, 0.0]]))
-    >>> bezier_pieces(path).tolist()
+    >>> points = np.array([[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, 0.0]])
+    >>> bezier_pieces(Path("piecewise_quadratic", points)).tolist()
     [[[0.0, 0.0], [1.0, 2.0], [2.0, 2.0]], [[2.0, 2.0], [3.0, 2.0], [4.0, 0.0]]]
     """
     points = np.asarray(path.points, dtype=float)

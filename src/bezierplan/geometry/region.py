@@ -267,9 +267,8 @@ def _runs(boundary: np.ndarray) -> np.ndarray:
     after the last.
     """
     around = np.pad(boundary, ((0, 0), (1, 1)))
-    row, column = np.nonzero(
-        around[:, 1:] != around[:, :-1]
-    )  # where a run begins and ends, in turn
+    # Where a run begins and ends, in turn.
+    row, column = np.nonzero(around[:, 1:] != around[:, :-1])
     return np.column_stack([row[::2], column[::2], column[1::2]]).astype(float)
 
 

@@ -155,9 +155,8 @@ def _turn(part: _Part, angle: float) -> np.ndarray:
     inner, second, third, before = _transition(part.radius, angle)
     foot, end_foot = part.pieces[0, 0], part.pieces[-1, -1]
     into = _unit(part.pieces[0, 1] - foot)
-    out = _unit(
-        part.pieces[-1, 2] - end_foot
-    )  # both point away from the turn's own middle, backwards at its end
+    # Both point away from the turn's own middle, backwards at its end.
+    out = _unit(part.pieces[-1, 2] - end_foot)
     begin, end = foot - before * into, end_foot - before * out
     spoke = (foot - part.centre) / part.radius
     arc = _arc(

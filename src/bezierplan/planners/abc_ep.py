@@ -91,8 +91,8 @@ def check(settings: dict) -> None:
     shares = settings["move_share"] + settings["removal_share"]
     if shares > 1:
         raise ValueError(
-            f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts "
-            f"points"
+            f"move_share: with removal_share {shares:g}; "
+            "expected at most 1, the rest inserts points"
         )
 
 
@@ -114,8 +114,10 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         first_length, the length of the path before evolution, in units; turns, the number of inner
         points of the final path.
 
-    References ---------- elhoseny2017, Tables 2, 3 and 6; tharwat2018, Figure 22; Contreras-Cruz,
-    Ayala-Ramirez and Hernandez-Belmonte (2015).
+    References
+    ----------
+    elhoseny2017, Tables 2, 3 and 6; tharwat2018, Figure 22; Contreras-Cruz, Ayala-Ramirez and
+    Hernandez-Belmonte (2015).
     """
     grid = problem.workspace
     start, target = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
@@ -303,9 +305,8 @@ def _evolve(rng, occupied, path, rules):
     room = len(path) + generations
     points, legs = np.empty((2 * population, room, 2)), np.empty((2 * population, room))
     counts, cost = np.full(2 * population, len(path)), np.empty(2 * population)
-    slots = np.arange(
-        2 * population
-    )  # parents first, starting with the cheapest; the other slots are for children
+    # Parents first, starting with the cheapest; the other slots are for children.
+    slots = np.arange(2 * population)
     for i in range(population):
         for p in range(len(path)):
             points[i, p, 0], points[i, p, 1] = path[p, 0], path[p, 1]
@@ -341,9 +342,8 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, rules):
     """
     kind = rng.random()
     if count == 2 or kind >= rules.move_share + rules.removal_share:
-        changed = integer(
-            rng, 1, count
-        )  # the child's new point; the parent's points after it move up by one
+        # The child's new point; the parent's points after it move up by one.
+        changed = integer(rng, 1, count)
         kept = changed
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])

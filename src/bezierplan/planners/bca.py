@@ -56,7 +56,9 @@ _AT_CORNER = 1e-12
 class Settings(NamedTuple):
     """Settings of the search (ma2020, Sections 3 and 4).
 
-    Notes ----- With the length L, c of n samples in collision, G = L (1 + collision_factor c / n) +
+    Notes
+    -----
+    With the length L, c of n samples in collision, G = L (1 + collision_factor c / n) +
     collision_surcharge [c > 0], the weights w1 = length_weight and w2 = safety_weight, the straight
     distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
 
@@ -84,8 +86,8 @@ class Settings(NamedTuple):
     initial: Annotated[
         Initial,
         About(
-            "genes are free cells drawn uniformly; also sorted by x + y; or redrawn until the "
-            "curve is free"
+            "genes are free cells drawn uniformly; "
+            "also sorted by x + y; or redrawn until the curve is free"
         ),
     ]
     population: Annotated[
@@ -149,13 +151,13 @@ def check(settings: dict) -> None:
     pieces = len(curves.piece_matrix(settings["curve"], settings["control_points"] + 2))
     if settings["samples"] < pieces + 1:
         raise ValueError(
-            f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least "
-            f"{pieces + 1}"
+            f"samples: {settings['samples']}; "
+            f"the {pieces} pieces of this curve need at least {pieces + 1}"
         )
     if settings["length_weight"] == 0:
         raise ValueError(
-            "length_weight: 0; a path without any cost has no fitness, so a number above 0 is "
-            "needed"
+            "length_weight: 0; "
+            "a path without any cost has no fitness, so a number above 0 is needed"
         )
 
 
@@ -320,10 +322,11 @@ def _search(rng, codes, cells, curve, rules):
     population, genes = codes.shape
     bits = int(np.log2(len(cells.legal)) + 0.5)
     cost, parent_cost = np.empty(population), np.empty(population)
+    # The first generation inherits nothing.
     parents, drawn = (
         np.full_like(codes, -1),
         np.zeros(population, dtype=np.int64),
-    )  # the first generation inherits nothing
+    )
     best, best_cost = codes[0].copy(), np.inf
     history = np.empty(rules.generations + 1)
     scratch = np.empty((3, curve.ends.shape[1]))

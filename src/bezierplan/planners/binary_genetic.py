@@ -89,8 +89,8 @@ def check(settings: dict) -> None:
     least = curves.least_points(settings["curve"]) - 2
     if settings["genes"] < least:
         raise ValueError(
-            f"genes: {settings['genes']}; a curve of kind {settings['curve']} needs at least "
-            f"{least}"
+            f"genes: {settings['genes']}; "
+            f"a curve of kind {settings['curve']} needs at least {least}"
         )
     check_pairs(settings["population"])
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
@@ -100,8 +100,8 @@ def check(settings: dict) -> None:
     pieces = len(curves.piece_matrix(settings["curve"], settings["genes"] + 2))
     if settings["samples"] < pieces + 1:
         raise ValueError(
-            f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least "
-            f"{pieces + 1}"
+            f"samples: {settings['samples']}; "
+            f"the {pieces} pieces of this curve need at least {pieces + 1}"
         )
 
 
@@ -217,10 +217,11 @@ def _search(rng, cells, occupied, places, curve, rules):
         np.empty((population, len(stretches)), dtype=np.int64),
     )
     parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
+    # The first generation inherits nothing.
     parents, drawn = (
         np.full_like(cells, -1),
         np.zeros(population, dtype=np.int64),
-    )  # the first generation inherits nothing
+    )
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
     history = np.empty(rules.generations + 1)

@@ -87,7 +87,8 @@ class Settings(NamedTuple):
     curve: Annotated[
         Curve,
         About(
-            "kind of curve; a ferguson curve's control points alternate between tangents and points",
+            "kind of curve; "
+            "a ferguson curve's control points alternate between tangents and points",
             PAPER + ", eqs. 1, 2",
         ),
     ]
@@ -106,8 +107,8 @@ class Settings(NamedTuple):
     penalty: Annotated[
         Penalty,
         About(
-            "fitness of length L and violation V: L (1 + beta V), L + beta V, or (death) beta if "
-            "V > 0",
+            "fitness of length L and violation V: "
+            "L (1 + beta V), L + beta V, or (death) beta if V > 0",
             PAPER + ", eq. 22, which leaves it open",
         ),
     ]
@@ -151,8 +152,8 @@ class Settings(NamedTuple):
     update: Annotated[
         Update,
         About(
-            "the swarm's best path is replaced as soon as a better one is found, or once all have "
-            "moved",
+            "the swarm's best path is replaced as soon as "
+            "a better one is found, or once all have moved",
             PAPER + ", Algorithm 1",
         ),
     ]

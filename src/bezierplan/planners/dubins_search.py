@@ -127,11 +127,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         expanded, the number of places from which the search drove on, 0 if the Dubins path itself
         is free.
 
-    References ---------- L. E. Dubins, On curves of minimal length with a constraint on average
-    curvature, and with prescribed initial and terminal positions and tangents, American Journal of
-    Mathematics 79 (1957); D. Dolgov, S. Thrun, M. Montemerlo, J. Diebel, Practical search
-    techniques in path planning for autonomous driving, AAAI Workshop on Search in AI and Robotics
-    (2008).
+    References
+    ----------
+    L. E. Dubins, On curves of minimal length with a constraint on average curvature, and with
+    prescribed initial and terminal positions and tangents, American Journal of Mathematics 79
+    (1957); D. Dolgov, S. Thrun, M. Montemerlo, J. Diebel, Practical search techniques in path
+    planning for autonomous driving, AAAI Workshop on Search in AI and Robotics (2008).
     """
     blocked = region(problem.workspace)
     return searched(

@@ -387,9 +387,7 @@ def _walk_anew(rng, walker, path, count, last_visit):
 
 @allocation_free
 def _copy(source, first, last, target, place):
-    """Copy the cells first .. last - 1 of one path to a place in another. Returns the place after
-    them.
-    """
+    """Copy cells first .. last - 1 of a path to a place in another. Returns the place behind."""
     for k in range(first, last):
         target[place + k - first] = source[k]
     return place + last - first

@@ -148,7 +148,8 @@ class Settings(NamedTuple):
     fitness_length: Annotated[
         FitnessLength,
         About(
-            "length whose reciprocal is the fitness: sampled, or counted over cells (`cell_length`)",
+            "length whose reciprocal is the fitness: sampled, or counted over cells "
+            "(`cell_length`)",
             PAPER + ", eqs. 8, 9",
         ),
     ]
@@ -206,12 +207,12 @@ def check(settings: dict) -> None:
     if settings["first_points"] > MOST_POINTS:
         raise ValueError(
             f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control "
-            f"points between its ends"
+            "points between its ends"
         )
     if settings["first_population"] == "roadmaps" and settings["gene_lattice"] != "cell":
         raise ValueError(
             f"gene_lattice: {settings['gene_lattice']}; a first population from roadmaps needs "
-            f"cell: their nodes lie anywhere"
+            "cell: their nodes lie anywhere"
         )
 
 

@@ -100,8 +100,8 @@ class Settings(NamedTuple):
     without_obstacle: Annotated[
         WithoutObstacle,
         About(
-            "what `proposed` changes of a path that meets no obstacle: any node as in ref12, or "
-            "none"
+            "what `proposed` changes of a path that meets no obstacle: "
+            "any node as in ref12, or none"
         ),
     ]
     obstacle_node: Annotated[
@@ -121,8 +121,8 @@ class Settings(NamedTuple):
     direction: Annotated[
         Direction,
         About(
-            "steps that ref21 accepts: within a right angle of the line to the target, or with "
-            "its signs"
+            "steps that ref21 accepts: "
+            "within a right angle of the line to the target, or with its signs"
         ),
     ]
     ref21_test: Annotated[

@@ -246,14 +246,14 @@ def _nearest(points, neighbours):
                 if distance > most or (distance == most and j > nearest[i, -1]):
                     continue
                 count = min(count + 1, neighbours)
-                place = count - 1
-                while place > 0 and (
-                    square[place - 1] > distance
-                    or (square[place - 1] == distance and nearest[i, place - 1] > j)
+                slot = count - 1
+                while slot > 0 and (
+                    square[slot - 1] > distance
+                    or (square[slot - 1] == distance and nearest[i, slot - 1] > j)
                 ):
-                    square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
-                    place -= 1
-                square[place], nearest[i, place] = distance, j
+                    square[slot], nearest[i, slot] = square[slot - 1], nearest[i, slot - 1]
+                    slot -= 1
+                square[slot], nearest[i, slot] = distance, j
                 if count == neighbours:
                     most = square[-1]
     return nearest
@@ -266,9 +266,8 @@ def _visible(
     allowed.
     """
     way = targets - starts
-    square = np.maximum(
-        (way**2).sum(axis=1), np.finfo(float).tiny
-    )  # for a single point any share along it is valid
+    # For a single point any share along it is valid.
+    square = np.maximum((way**2).sum(axis=1), np.finfo(float).tiny)
     visible = np.ones(len(way), dtype=bool)
     for centre, radius in zip(centres, radii):
         share = np.clip(((centre - starts) * way).sum(axis=1) / square, 0, 1)
@@ -304,10 +303,11 @@ def _dijkstra(count, starts, targets, lengths):
             first[node + 1] += 1
 
     far, before = np.full(count, np.inf), np.full(count, -1)
+    # Nodes that are reached and not settled: few, so they need no heap.
     waiting, waits = (
         np.empty(count, dtype=np.int64),
         1,
-    )  # nodes that are reached and not settled: few, so they need no heap
+    )
     waiting[0], far[0] = 0, 0.0
     while waits > 0:
         slot = 0

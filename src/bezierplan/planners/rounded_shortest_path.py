@@ -154,13 +154,13 @@ def _searched(
     problem: Problem, bound: shortest_paths.Bound, blocked: Region, radius: float
 ) -> Plan | None:
     """A path that turns no tighter than a radius; None if the search finds none."""
-    found = dubins_search.searched(
+    candidate = dubins_search.searched(
         problem, dubins_search.Settings(radius, math.nan, math.nan), bound, blocked
     )
-    if not found.claimed_feasible:
+    if not candidate.claimed_feasible:
         return None
     turns = len(turns_of(bound.points, problem.workspace).side)
-    return found._replace(extra={"turns": turns, "tight_turns": 0, "least_radius": radius})
+    return candidate._replace(extra={"turns": turns, "tight_turns": 0, "least_radius": radius})
 
 
 def _largest(

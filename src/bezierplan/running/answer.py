@@ -131,8 +131,8 @@ def _path(path: Any) -> Path:
         raise Unfit("path: points: expected an array of floats, (n, 2)")
     if path.curve in curves.CURVES and len(path.points) > _most_points(path.curve):
         raise Unfit(
-            f"path: points: {len(path.points)}; expected at most {_most_points(path.curve)} of a "
-            f"{path.curve}"
+            f"path: points: {len(path.points)}; "
+            f"expected at most {_most_points(path.curve)} of a {path.curve}"
         )
     points = np.array(path.points, dtype=float, order="C")
     if not np.isfinite(points).all():
@@ -182,7 +182,7 @@ def _evaluations(value: Any) -> int:
 def _history(values: Any) -> np.ndarray:
     if not _is_array(values, 1, "fiu") or not 0 < len(values) <= MOST_HISTORY:
         raise Unfit(
-            f"history: expected an array of numbers without nan, (generations + 1,), of at most "
+            "history: expected an array of numbers without nan, (generations + 1,), of at most "
             f"{MOST_HISTORY} values"
         )
     if (
@@ -190,8 +190,8 @@ def _history(values: Any) -> np.ndarray:
         and not -_LARGEST_EXACT <= int(values.min()) <= int(values.max()) <= _LARGEST_EXACT
     ):
         raise Unfit(
-            f"history: expected whole numbers between -{_LARGEST_EXACT} and {_LARGEST_EXACT}, or "
-            f"floats"
+            "history: expected whole numbers between "
+            f"-{_LARGEST_EXACT} and {_LARGEST_EXACT}, or floats"
         )
     history = np.array(values, dtype=float)
     if np.isnan(history).any():
@@ -215,7 +215,7 @@ def _extra(columns: Any, taken: Collection[str]) -> dict[str, float | bool]:
             shown = ascii(name[:20])
             raise Unfit(
                 f"extra: {shown}: expected a name of at most {MOST_NAME} small letters, digits "
-                f"and underscores, and no keyword"
+                "and underscores, and no keyword"
             )
         if name in taken:
             raise Unfit(f"extra: {name}: a column or setting has this name already")

@@ -146,8 +146,8 @@ class DriveOutcome(NamedTuple):
         float,
         Column(
             "first step from which on the robot could know of its first collision, by what its "
-            "policy lets it see; not a number if it "
-            "never could",
+            "policy lets it see; "
+            "not a number if it never could",
             STEPS,
         ),
     ]
@@ -183,8 +183,8 @@ class Bound(NamedTuple):
     octile_bound: Annotated[
         float,
         Column(
-            "on grids: the least of all lengths counted in cells, from cell to cell; otherwise "
-            "not a number",
+            "on grids: the least of all lengths counted in cells, "
+            "from cell to cell; otherwise not a number",
             UNITS,
         ),
     ]

@@ -53,7 +53,8 @@ class Finding(NamedTuple):
     detail: str
 
     def __str__(self) -> str:
-        return f"{'ok' if self.passed else 'FAILED':8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
+        verdict = "ok" if self.passed else "FAILED"
+        return f"{verdict:8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
 
 
 def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
@@ -452,7 +453,7 @@ def _extra_is_free(case: _Case) -> tuple[bool, str]:
             return (
                 False,
                 f"{min(plan.extra.keys() ^ case.columns)}: not in every plan; a table needs the "
-                f"same columns in each row",
+                "same columns in each row",
             )
     return True, ""
 

@@ -123,9 +123,8 @@ def _parsed(source: bytes) -> _Syntax:
             and isinstance(node.func, ast.Name)
             and node.func.id == "About"
         ):
-            node.args = node.args[
-                2:
-            ]  # the words about a planner's setting; what remains is its unit
+            # The words about a planner's setting; what remains is its unit.
+            node.args = node.args[2:]
     return _Syntax(ast.dump(tree), sorted(map(list, imports)))
 
 

@@ -80,10 +80,8 @@ def begin() -> None:
 def line() -> str:
     """What this process notes of its CPU time so far, that of its children included: one line."""
     children = os.times()
-    return (
-        f"{WORD} "
-        f"{json.dumps({'cpu': time.process_time() + children.children_user + children.children_system, **spent})}"
-    )
+    cpu = time.process_time() + children.children_user + children.children_system
+    return f"{WORD} {json.dumps({'cpu': cpu, **spent})}"
 
 
 def of_job(log: Path) -> dict[str, float] | None:

@@ -38,7 +38,7 @@ def check_map(footprint: Footprint | None, workspace: Workspace, robot_radius: f
         radius = grown.radius if grown else robot_radius
         raise ValueError(
             f"footprint: given beside robot_radius, {radius:g}, which is a footprint of its own; "
-            f"expected one of them"
+            "expected one of them"
         )
 
 
@@ -74,6 +74,6 @@ def check_held(footprint: Footprint | None, feasible: bool) -> None:
     """Raise ValueError for a footprint that is not free along its path."""
     if footprint and not feasible:
         raise ValueError(
-            "footprint: no path was found along which it is free; expected one that is, or not "
-            "strict"
+            "footprint: no path was found along which it is free; "
+            "expected one that is, or not strict"
         )

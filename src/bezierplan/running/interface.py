@@ -55,15 +55,15 @@ def _loaded(planner: str) -> tuple[ModuleType | None, str]:
     return module, interface_fault(module) or ""
 
 
-def asked(function: Callable[..., Any], location: str, *given: Any) -> None:
+def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:
     """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises
     Fault, beginning with a location.
     """
     if function.__module__.startswith(f"{planners.__name__}."):
-        said = _complaint(function, *given)
+        said = _complaint(function, *arguments)
     else:
         said = watchdog.verdict(
-            f"{function.__name__} of its planner", partial(_complaint, function, *given), LIMIT
+            f"{function.__name__} of its planner", partial(_complaint, function, *arguments), LIMIT
         )
     if said:
         raise Fault(f"{location}: {said}")
@@ -101,8 +101,8 @@ def interface_fault(module: ModuleType) -> str | None:
     for parameter in parameters:
         if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is not parameter.empty:
             return (
-                f"setting {parameter.name}: has a default value; a study gives a value to "
-                f"every setting"
+                f"setting {parameter.name}: has a default value; "
+                "a study gives a value to every setting"
             )
         if parameter.kind is parameter.KEYWORD_ONLY and parameter.annotation is parameter.empty:
             return f"setting {parameter.name}: has no annotation; {_EXPECTED}"

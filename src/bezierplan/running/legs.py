@@ -59,13 +59,13 @@ def check_planner(
         raise ValueError(f"smooth: {smooth!r}; expected {' or '.join(SMOOTH)}")
     if smooth == "continuous" and name not in TURNING:
         raise ValueError(
-            f"smooth: only for {' and '.join(TURNING)}, whose paths have arcs; the planner is "
-            f"{name}"
+            f"smooth: only for {' and '.join(TURNING)}, "
+            f"whose paths have arcs; the planner is {name}"
         )
     if strict and name not in TURNING:
         raise ValueError(
-            f"strict: only for {' and '.join(TURNING)}, which have a turning radius; the planner "
-            f"is {name}"
+            f"strict: only for {' and '.join(TURNING)}, "
+            f"which have a turning radius; the planner is {name}"
         )
 
 
@@ -258,7 +258,7 @@ def check_continuous(smooth: str, jump: float, curvature: float, unit: str) -> N
     if smooth == "continuous" and not is_continuous(jump, curvature):
         raise ValueError(
             f"smooth: continuous: the curvature jumps by {jump:.3g} / {unit}, no room; expected "
-            f"room, or not strict"
+            "room, or not strict"
         )
 
 
@@ -269,10 +269,10 @@ def check_kept(asked: float, kept: float, unit: str) -> None:
     if math.isnan(kept):
         raise ValueError(
             f"turning_radius: {asked:g} {unit} asked: no path was found; expected one that can be "
-            f"kept, or not strict"
+            "kept, or not strict"
         )
     if kept < asked * (1 - _SAME):
         raise ValueError(
             f"turning_radius: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that "
-            f"can be kept, or not strict"
+            "can be kept, or not strict"
         )

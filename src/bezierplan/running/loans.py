@@ -50,7 +50,7 @@ class Loan(NamedTuple):
 def _told(problem: Problem, place: str) -> str:
     return (
         f"problem: {problem.name}: workspace: {place}: is another after the run; a planner "
-        f"copies what it changes"
+        "copies what it changes"
     )
 
 

@@ -122,7 +122,7 @@ def full_disk(error: Exception, files: Any) -> str:
         return ""
     return (
         f"{Path(files[0]).parent}: no space left on this disk; free some and start again: "
-        f"finished jobs are kept"
+        "finished jobs are kept"
     )
 
 
@@ -146,12 +146,12 @@ def damaged(files: Iterable[str]) -> str:
             except (OSError, pa.ArrowException):
                 return (
                     f"{file}: not a whole Parquet file; delete it and start again: the "
-                    f"workflow reproduces it"
+                    "workflow reproduces it"
                 )
             if "runs" in Path(file).parts[-4:] and RUNS_COLUMN not in columns:
                 return (
-                    f"{file}: not a table of runs; delete it and start again: the workflow "
-                    f"reproduces it"
+                    f"{file}: not a table of runs; "
+                    "delete it and start again: the workflow reproduces it"
                 )
     return ""
 

@@ -159,8 +159,8 @@ def scenario(description: dict, number: int, workspace: Workspace, folder: Path)
     if not abs(length - printed.optimal) <= _SAME_OPTIMUM:
         place = f"{description['scenarios']}: line {number + 1}"
         raise ValueError(
-            f"{place}: optimal length {printed.optimal:g}; on {description['file']} it is "
-            f"{length:.8g}"
+            f"{place}: optimal length {printed.optimal:g}; "
+            f"on {description['file']} it is {length:.8g}"
         )
     return {"start": printed.start, "target": printed.target}
 

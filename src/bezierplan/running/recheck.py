@@ -195,7 +195,7 @@ def write(verdict: Verdict, file: str) -> None:
     if verdict.faults:
         raise ValueError(
             f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the "
-            f"file and start again)"
+            "file and start again)"
         )
     counts = {
         name: getattr(verdict, name) for name in ("files", "runs", "paths", "bounds", "digest")
@@ -222,13 +222,13 @@ def judged(task: Task) -> Verdict:
     faults = [
         fault for chunk in chunks for fault in _chunk_faults(chunk, made, task.problems)
     ] + _twice(chunks)
-    found, paths = (
+    chunk_faults, paths = (
         (_drive_faults(chunks, made, moving), 0) if moving else _path_faults(chunks, made)
     )
     digests = tuple(f"{'/'.join(File(chunk.file).parts[-5:])} {chunk.digest}" for chunk in chunks)
     undigested = sum(chunk.kept is None for chunk in chunks)
     return Verdict(
-        faults + found,
+        faults + chunk_faults,
         len(chunks),
         sum(len(chunk.ids) for chunk in chunks),
         paths,

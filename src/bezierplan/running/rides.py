@@ -174,9 +174,8 @@ def run_chunk(
                 problem, world = problems[condition.problem], worlds[condition.problem]
                 once = partial(run, job, condition, repeat, problem, driven[condition.problem])
                 if not drives:
-                    first, *_ = execution.timed(
-                        once, job, condition, repeat, watch
-                    )  # compiles and loads
+                    # Compiles and loads.
+                    first, *_ = execution.timed(once, job, condition, repeat, watch)
                 ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
                 drive, trace = row(job, condition, repeat, ride, problem, world)
                 if not drives:
@@ -191,7 +190,7 @@ def run_chunk(
             runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
             raise execution.UnfitAnswer(
                 f"run {runs_of}: planner {job['planner']}: problem: {name}: world: is another "
-                f"after the runs"
+                "after the runs"
             )
     runs = rows.table(drives, Planned, Outcome, DriveOutcome)
     return runs, rows.table(times, Times, DriveTimes), pa.Table.from_pylist(traces)

@@ -291,7 +291,7 @@ def how_ended(status: int) -> str:
         return f"its process was ended by signal {name}{cause}"
     return (
         f"its process ended itself with exit status {os.waitstatus_to_exitcode(status)}, "
-        f"before it was done"
+        "before it was done"
     )
 
 

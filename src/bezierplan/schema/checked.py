@@ -138,8 +138,8 @@ def _check_size(text: str, location: str) -> None:
         anchor, size = getattr(event, "anchor", None) or "", 0
         if getattr(event, "tag", None):
             raise Fault(
-                f"{_line(location, event.start_mark)}: {event.tag}: tags are not read; write the "
-                f"plain value"
+                f"{_line(location, event.start_mark)}: {event.tag}: "
+                "tags are not read; write the plain value"
             )
         if isinstance(event, yaml.CollectionStartEvent):
             opened.append((anchor, 1))
@@ -149,7 +149,7 @@ def _check_size(text: str, location: str) -> None:
             if anchor not in sizes:
                 raise Fault(
                     f"{_line(location, event.start_mark)}: *{anchor}: stands for nothing before "
-                    f"it, or for itself"
+                    "it, or for itself"
                 )
             size = sizes[anchor]
         elif isinstance(event, yaml.ScalarEvent):
@@ -161,7 +161,7 @@ def _check_size(text: str, location: str) -> None:
         if opened[-1][1] > MOST_NODES:
             raise Fault(
                 f"{_line(location, event.start_mark)}: more than {MOST_NODES} values, aliases "
-                f"counted as what they stand for"
+                "counted as what they stand for"
             )
 
 

@@ -478,8 +478,8 @@ Arguments = dict[Name, Any]
 annotations.
 """
 ARGUMENTS = (
-    "the function's keyword-only arguments, by name: values that the paper gives, or that "
-    "were chosen"
+    "the function's keyword-only arguments, by name: "
+    "values that the paper gives, or that were chosen"
 )
 
 

@@ -64,8 +64,8 @@ def _joined(part: dict[str, Any], shared: dict[str, Any], location: str) -> dict
     for key in part.keys() & shared.keys():
         if not (isinstance(part[key], dict) and isinstance(shared[key], dict)):
             raise wrong(
-                f"{location}: {key}: is given beside each as well; expected it in one of the two "
-                f"places"
+                f"{location}: {key}: is given beside each as well; "
+                "expected it in one of the two places"
             )
         joined[key] = _joined(part[key], shared[key], f"{location}: {key}")
     return joined

@@ -128,7 +128,7 @@ def _check_experiments(study: Study, location: str) -> None:
             if setting in RESERVED:
                 raise Fault(
                     f"{where}: planner: {method.planner}: its setting {setting} is a column of "
-                    f"results; give it another name"
+                    "results; give it another name"
                 )
         if method.variant_of:
             _known(method.variant_of, study.methods.keys() - {name}, f"{where}: variant_of")
@@ -141,7 +141,7 @@ def _check_experiments(study: Study, location: str) -> None:
             ):
                 raise Fault(
                     f"{where}: policy: {method.policy}: warm, but planner {method.planner} has no "
-                    f"function resume"
+                    "function resume"
                 )
     used = {setting for name in study.methods for setting in study.accepted(name)}
     _check_shared_settings(study, used, location)
@@ -212,7 +212,7 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
     if home.kind == "spheres":
         raise Fault(
             f"{location}: workspace: {problem.workspace}: has three dimensions; a panel of kind "
-            f"spheres plans there, and no experiment"
+            "spheres plans there, and no experiment"
         )
     drawn = [kind for kind, model in kinds().items() if model.drawn]
     if bool(home.drawn) != (problem.layouts is not None):
@@ -225,7 +225,7 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
     if home.drawn and problem.start is None:
         raise Fault(
             f"{location}: start_cell: {problem.start_cell}: cells of drawn workspaces have no "
-            f"numbers; expected start: [x, y]"
+            "numbers; expected start: [x, y]"
         )
     if home.with_side != (problem.side is not None):
         with_side = [kind for kind, model in kinds().items() if model.with_side]
@@ -238,7 +238,7 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
     if home.drawn and hasattr(home, "circles") and max(problem.obstacles) > home.circles:
         raise Fault(
             f"{location}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, "
-            f"the circles of the workspace"
+            "the circles of the workspace"
         )
     try:
         seen = built(name)
@@ -293,7 +293,7 @@ def _check_experiment(
     if study.moves(name) and still:
         raise Fault(
             f"{location}: problems: {still[0]}: its workspace does not move; expected problems "
-            f"that all move, or none"
+            "that all move, or none"
         )
     for method in experiment.methods:
         if study.moves(name) != bool(study.methods[method].policy):
@@ -321,7 +321,7 @@ def _check_worth(study: Study, location: str) -> None:
         if baseline not in study.methods_of(experiment):
             raise Fault(
                 f"{location}: experiments: {experiment}: the baseline {baseline} does not join "
-                f"it; leave it out"
+                "it; leave it out"
             )
 
 
@@ -464,7 +464,7 @@ def _check_shown(design: Design, panel: Panel, location: str) -> None:
     if panel.drives and not study.moves(panel.experiment):
         raise Fault(
             f"{location}: experiment: {panel.experiment}: nothing moves there; expected an "
-            f"experiment of drives"
+            "experiment of drives"
         )
     hue = getattr(panel, "hue", None) if panel.one else None
     rows = design.rows(panel.experiment) if hue else []
@@ -478,7 +478,7 @@ def _check_shown(design: Design, panel: Panel, location: str) -> None:
                 some = ", ".join(sorted(shown[column])[:3])
                 raise Fault(
                     f"{location}: where: selects {len(shown[column])} values of {column} ({some}, "
-                    f"...); expected one, which is shown"
+                    "...); expected one, which is shown"
                 )
     methods = design.shown(panel.experiment, panel.where)["method"]
     if len(methods) < panel.fewest_methods:
@@ -506,8 +506,8 @@ def _check_table(
         published.check(design, table, location)
     elif table.monotone:
         raise Fault(
-            f"{location}: monotone: the table has no published numbers, which it is about; leave "
-            f"it out"
+            f"{location}: monotone: "
+            "the table has no published numbers, which it is about; leave it out"
         )
     keys = published.keys(design.study, table)
     for column in table.primary:
@@ -603,7 +603,7 @@ def _check_values_of_x(design: Design, check: Check, where: dict[str, Any], loca
     if len(values) < 2:
         raise Fault(
             f"{location}: x: {check.x}: has the only value {values[0] if values else 'none'}; a "
-            f"trend needs at least two"
+            "trend needs at least two"
         )
 
 
@@ -642,7 +642,7 @@ def _check_dimensions(study: Study, panel: Panel, location: str) -> None:
     if workspace and of_cells and (workspace.made or workspace.kind) != "grid":
         raise Fault(
             f"{location}: {of_cells[0]}: {panel.workspace}: a workspace of kind {workspace.kind}; "
-            f"only grids have cells"
+            "only grids have cells"
         )
     if not panel.plans:
         return
@@ -679,7 +679,7 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
         if drives:
             raise Fault(
                 f"{location}: claims: {identity}: is about drives ({drives[0]}), which "
-                f"alternatives do not repeat"
+                "alternatives do not repeat"
             )
     for name in assumption.problems:
         _known(name, study.problems, f"{location}: problems")

@@ -149,16 +149,16 @@ def _methods(study: Study, name: str, table: Pivot) -> list[str]:
     printed number unless all are compared.
     """
     methods = one_or_list(table.where.get("method", study.experiments[table.experiment].methods))
-    own = [
+    candidates = [
         method
         for method in methods
         if method not in study.baselines and not study.methods[method].variant_of
     ]
     rows = _published(study, name)
     return (
-        [method for method in own if method in {row["method"] for row in rows}]
+        [method for method in candidates if method in {row["method"] for row in rows}]
         if _apart(table, rows)
-        else own
+        else candidates
     )
 
 
@@ -180,13 +180,13 @@ def search_job(study: Study) -> dict[str, Any]:
     """
     tables = printed_tables(study)
     along = {name: table.monotone[0].along for name, table in tables.items() if table.monotone}
-    found = {
+    search = {
         "study": study.key,
         "most": study.interpretations_tried,
         "parts": _parts(study),
         "along": along,
     }
-    return found | {
+    return search | {
         "screened": interpretations_job(study, SCREENED),
         "confirmed": interpretations_job(study, 1),
         "fresh": interpretations_job(study, fresh=True),

@@ -87,8 +87,8 @@ class Assumption(Model):
 
     not_searched: listed(Setting) = Field(
         [],
-        description="alternatives that `snakemake interpretations` leaves out because they take "
-        "too long",
+        description="alternatives that `snakemake interpretations` "
+        "leaves out because they take too long",
     )
 
     @model_validator(mode="after")
@@ -113,8 +113,8 @@ class Assumption(Model):
             raise wrong("setting: beside workspace or table; expected one of them")
         if self.table and self.default != "all":
             raise wrong(
-                f"default: {shown(self.default)}: expected all, since table: {self.table} is not "
-                f"in force"
+                f"default: {shown(self.default)}: "
+                f"expected all, since table: {self.table} is not in force"
             )
         if self.setting is None and self.problems:
             raise wrong(

@@ -257,7 +257,7 @@ class Design:
         if column == "id" or (column not in planned and kind in ("number", "list")):
             raise Fault(
                 f"{location}: {value}: a {kind} that a run finds out is not selected by its "
-                f"value; expected another column"
+                "value; expected another column"
             )
         if column not in planned:
             if kind == "flag" and not isinstance(value, bool):

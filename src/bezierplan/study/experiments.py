@@ -100,7 +100,8 @@ class Policy(Model):
     )
     every: Count = Field(
         1,
-        description="of every_step: after how many steps, a whole number of at least 1; left out: 1",
+        description="of every_step: after how many steps, "
+        "a whole number of at least 1; left out: 1",
     )
     warm: Flag = Field(
         False,
@@ -109,8 +110,8 @@ class Policy(Model):
     )
     waits: Flag = Field(
         True,
-        description="whether the robot stops in front of what is in its way, true or false; left "
-        "out: true",
+        description="whether the robot stops in front of what is in its way, "
+        "true or false; left out: true",
     )
     sees: Literal["before", "after"] = Field(
         "before",
@@ -124,7 +125,8 @@ class Policy(Model):
     )
     check_margin: NotNegative = Field(
         0.0,
-        description="how far circles must stay away from the rest of its way, in units; left out: 0",
+        description="how far circles must stay away from the "
+        "rest of its way, in units; left out: 0",
     )
     plan_margins: Margins = Field(
         [0.0],
@@ -144,8 +146,8 @@ class Policy(Model):
     )
     spacing: Positive = Field(
         0.5,
-        description="mean length of the chords that it drives along a curve, in units; left out: "
-        "0.5",
+        description="mean length of the chords that it drives "
+        "along a curve, in units; left out: 0.5",
     )
     start: Literal["position", "centre"] = Field(
         "position",
@@ -185,8 +187,8 @@ class Problem(Model):
     )
     layouts: Scales = Field(
         None,
-        description="in a workspace drawn at random: how many are drawn, for each scale; column "
-        "`layout`",
+        description="in a workspace drawn at random: "
+        "how many are drawn, for each scale; column `layout`",
     )
     obstacles: listed(
         Annotated[
@@ -213,7 +215,7 @@ class Problem(Model):
     )
     route: Annotated[str, matching(PART, PART_EXPECTED)] = Field(
         None,
-        description=f"a name for start and target together, a column of the runs table: "
+        description="a name for start and target together, a column of the runs table: "
         f"{PART_EXPECTED}",
     )
 
@@ -223,8 +225,8 @@ class Problem(Model):
         if ends not in ({"start", "target"}, {"start_cell", "target_cell"}, {"scenario"}):
             given = " and ".join(sorted(ends)) or "neither"
             raise wrong(
-                f"{given}: expected either start and target, or start_cell and target_cell, or "
-                f"scenario"
+                f"{given}: expected either start and target, "
+                "or start_cell and target_cell, or scenario"
             )
         if ("layouts" in self.model_fields_set) != ("obstacles" in self.model_fields_set):
             raise wrong("layouts and obstacles go together")
@@ -255,8 +257,8 @@ class Experiment(Model):
         description="runs of each method under each condition, for smoke, full and extended"
     )
     chunk: Scales = Field(
-        description="how many repeats one job runs, for smoke, full and extended, at most all of "
-        "them"
+        description="how many repeats one job runs, for smoke, "
+        "full and extended, at most all of them"
     )
     interpretations: Count = Field(
         None,
@@ -270,7 +272,7 @@ class Experiment(Model):
             if self.chunk[scale] > self.repeats[scale]:
                 most = (
                     f"expected at most {self.repeats[scale]}, the repeats, since a chunk "
-                    f"always runs whole"
+                    "always runs whole"
                 )
                 raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {most}")
             if self.repeats[scale] > self.chunk[scale] * MOST_CHUNKS:
@@ -281,7 +283,7 @@ class Experiment(Model):
         if math.prod(map(len, self.vary.values())) * len(self.problems) > MOST_CONDITIONS:
             raise wrong(
                 f"vary: expected at most {MOST_CONDITIONS} conditions: problems times "
-                f"combinations of values"
+                "combinations of values"
             )
         for setting, values in self.vary.items():
             if odd := [each for each in values if not re.fullmatch(PART, str(each))]:
@@ -302,8 +304,8 @@ class Worth(Model):
 
     baseline: Name = Field(description="a baseline")
     experiments: listed(Name) = Field(
-        description="the experiments in which the methods are compared with it; it must join each "
-        "of them"
+        description="the experiments in which the methods are compared with it; "
+        "it must join each of them"
     )
 
 
@@ -317,8 +319,8 @@ class ExperimentsFile(Model):
     baselines: Annotated[dict[Name, Method], at_most(MOST_ENTRIES)] = Field(
         {},
         description="the same; each joins every experiment whose workspaces its planner serves, "
-        "unless the experiment varies one of "
-        "its settings. "
+        "unless the experiment "
+        "varies one of its settings. "
         "Baselines appear in comparisons, not in the tables laid out like the paper's",
     )
     settings: dict[Name, Annotated[Any, mapping_or(Settings, Setting)]] = Field(

@@ -167,16 +167,16 @@ def _summary(scale: str) -> str:
 
 
 def _made(studies: Studies, scale: str, shown: dict[str, list[str]]) -> list[str]:
-    own = [
+    files = [
         each
         for study, names in shown.items()
         for name in names
         for each in targets.files_of(studies, scale, study, name)
     ]
     return (
-        own
+        files
         if scale == "smoke"
-        else list(dict.fromkeys([*targets.files_of_scale(studies, scale), *own]))
+        else list(dict.fromkeys([*targets.files_of_scale(studies, scale), *files]))
     )
 
 

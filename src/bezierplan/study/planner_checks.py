@@ -20,8 +20,8 @@ def loaded(study: Study, method: str, location: str) -> ModuleType:
         inside(study.folder, name, location)
     elif name not in known_planners():
         raise Fault(
-            f"{location}: unknown{closest(name, known_planners())}; one of your own is a file, "
-            f"{name}.py"
+            f"{location}: unknown{closest(name, known_planners())}; "
+            f"one of your own is a file, {name}.py"
         )
     module = interface.loaded(study.planner(method), location)
     for setting in planner_settings(module):
@@ -30,7 +30,7 @@ def loaded(study: Study, method: str, location: str) -> ModuleType:
         if setting in TAKEN and setting != "generations":
             raise Fault(
                 f"{location}: its setting {setting} is a column of the runs table, or joined to "
-                f"it; give it another name"
+                "it; give it another name"
             )
     return module
 

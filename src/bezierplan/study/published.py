@@ -74,8 +74,8 @@ def read(file: Path) -> Rows:
     (_, header), *rows = lines or [(1, [])]
     if not lines:
         raise Fault(
-            f"{location}: line 1: the file is empty; expected a header of columns, and rows below "
-            f"it"
+            f"{location}: line 1: the file is empty; "
+            "expected a header of columns, and rows below it"
         )
     if len(header) > MOST_COLUMNS:
         raise Fault(f"{location}: line 1: {len(header)} columns; expected at most {MOST_COLUMNS}")
@@ -89,8 +89,8 @@ def read(file: Path) -> Rows:
     for number, row in rows:
         if len(row) != len(header):
             raise Fault(
-                f"{location}: line {number}: {len(row)} values; expected {len(header)} values, "
-                f"one a column"
+                f"{location}: line {number}: {len(row)} values; "
+                f"expected {len(header)} values, one a column"
             )
     tidy = Rows(header, [(number, dict(zip(header, row))) for number, row in rows])
     if set(header) >= TIDY:
@@ -136,7 +136,7 @@ def check(design: Design, table: Pivot, told: str) -> None:
         if rule.along not in by_name:
             raise Fault(
                 f"{location}: line 1: column {rule.along} is missing; the table's key monotone "
-                f"has numbers in order along it"
+                "has numbers in order along it"
             )
     known = {
         "metric": metrics.METRICS,
@@ -180,8 +180,8 @@ def check(design: Design, table: Pivot, told: str) -> None:
         name = (*(row[key] for key in by_name), row["metric"], row["statistic"])
         if name in lines:
             raise Fault(
-                f"{where}: the same keys, metric and statistic as line {lines[name]}; expected "
-                f"each once"
+                f"{where}: the same keys, metric and statistic as line {lines[name]}; "
+                "expected each once"
             )
         lines[name] = number
     printed = {(row["metric"], row["statistic"]) for _, row in rows}
@@ -292,7 +292,7 @@ def check_arithmetic(study: Study, arithmetic: Check, location: str) -> None:
         ):
             raise Fault(
                 f"{location}: {key}: {_told(selector)}: is 0; expected another number, of which "
-                f"the increase is a share"
+                "the increase is a share"
             )
 
 
@@ -304,8 +304,8 @@ def _cells(study: Study, selector: dict[str, Any], location: str) -> list[dict[s
     for table in one_or_list(selector["table"]):
         if table not in known:
             raise Fault(
-                f"{location}: table: {table}: unknown{closest(table, known)}, files of the folder "
-                f"published"
+                f"{location}: table: {table}: "
+                f"unknown{closest(table, known)}, files of the folder published"
             )
         content = read(study.folder / "published" / f"{table}.csv")
         if "value" not in content.header:

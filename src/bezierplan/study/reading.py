@@ -78,7 +78,7 @@ def load(
             if study.key in studies:
                 raise Fault(
                     f"{relative(folder)}: a study of the name {study.key} is there already; "
-                    f"rename the folder"
+                    "rename the folder"
                 )
             if not before:
                 # What checks need takes long to import, and most starts find nothing that has
@@ -118,8 +118,8 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
     for name in experiments.baselines:
         if name in experiments.methods:
             raise Fault(
-                f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this "
-                f"name already"
+                f"{relative(folder / 'experiments.yaml')}: "
+                f"baselines: {name}: a method has this name already"
             )
     return Study(
         key=folder.resolve().name,
@@ -172,18 +172,18 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
         if {"{", "}"} & set(location):
             raise Fault(
                 f"{location}: Snakemake reads braces as a pattern; expected a folder without "
-                f"them; rename it"
+                "them; rename it"
             )
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
             raise Fault(
                 f"{location}: config/studies has a study {key} already, whose results this one "
-                f"would overwrite; rename the folder"
+                "would overwrite; rename the folder"
             )
         for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
             if target in owners:
                 raise Fault(
                     f"{location}: {target}: {owners[target]} has a target of this name already; "
-                    f"rename the folder"
+                    "rename the folder"
                 )
             owners[target] = f"study {key}"
 
@@ -197,11 +197,11 @@ def check_name(key: str, location: str) -> None:
     ):
         wanted = (
             f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the "
-            f"name of a device"
+            "name of a device"
         )
         raise Fault(
-            f"{location}: not a name of a study; expected {wanted}; choose another name for its "
-            f"folder"
+            f"{location}: not a name of a study; "
+            f"expected {wanted}; choose another name for its folder"
         )
 
 
@@ -215,5 +215,5 @@ def check_start(cores: int | None) -> None:
         if location.exists() and not (location.is_dir() and os.access(location, os.W_OK | os.X_OK)):
             raise Fault(
                 f"{location.resolve()}: cannot be written; the workflow writes its results into "
-                f"results/ of the working folder"
+                "results/ of the working folder"
             )

@@ -76,17 +76,13 @@ class _Unpickler(pickle.Unpickler):
             ("pathlib", "WindowsPath"),
         ):
             return super().find_class(module, name)
-        found = (
+        part = (
             super().find_class(module, name)
             if module.split(".")[0] == ROOT and "." not in name
             else None
         )
-        if (
-            isinstance(found, type)
-            and issubclass(found, Model | Study)
-            and found.__module__ == module
-        ):
-            return found
+        if isinstance(part, type) and issubclass(part, Model | Study) and part.__module__ == module:
+            return part
         raise pickle.UnpicklingError(f"{module}.{name}: no part of a study")
 
 

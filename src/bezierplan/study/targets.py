@@ -424,20 +424,20 @@ def alternative_inputs(
     studies: Studies, scale: str, study: str, alternative: str
 ) -> dict[str, Any]:
     """Input files of an alternative: runs of the methods that it does not change."""
-    own = studies[study]
+    primary = studies[study]
     claims, changed = (
-        alternatives.headline_claims(own, alternative),
-        alternatives.methods_changed(own, alternative),
+        alternatives.headline_claims(primary, alternative),
+        alternatives.methods_changed(primary, alternative),
     )
     methods = {
-        name: alternatives.methods_of_claims(own, claims, name)
+        name: alternatives.methods_of_claims(primary, claims, name)
         for name in alternatives.experiments_of_claims(claims)
     }
     files = {
-        name: _files(own, scale, name, [method for method in known if method not in changed])
+        name: _files(primary, scale, name, [method for method in known if method not in changed])
         for name, known in methods.items()
     }
-    return of_experiments(files) | _all_published(own)
+    return of_experiments(files) | _all_published(primary)
 
 
 def alternative_params(studies: Studies, scale: str, study: str, alternative: str) -> dict:
@@ -480,13 +480,14 @@ def _audited_experiments(study: Study) -> list[str]:
 
 def audit_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the audit."""
-    own = studies[study]
-    files = {name: _files(own, scale, name) for name in _audited_experiments(own)}
+    audited = studies[study]
+    files = {name: _files(audited, scale, name) for name in _audited_experiments(audited)}
     bounds = named(BOUNDS, {name: each.bounds for name, each in files.items()})
     problems = named(
-        PROBLEMS, {name: each.problems for name, each in files.items() if _identifies(own, name)}
+        PROBLEMS,
+        {name: each.problems for name, each in files.items() if _identifies(audited, name)},
     )
-    return bounds | problems | _all_published(own)
+    return bounds | problems | _all_published(audited)
 
 
 def _identifies(study: Study, experiment: str) -> bool:

@@ -82,8 +82,8 @@ def _points(corners: Sequence[Sequence[float]]) -> np.ndarray:
         raise ValueError(f"footprint: {str(corners)[:60]}; {_EXPECTED} and at most {MOST_CORNERS}")
     if not np.abs(points).max() <= LARGEST:
         raise ValueError(
-            f"footprint: {str(corners)[:60]}: expected finite numbers of at most {LARGEST:g} in "
-            f"size"
+            f"footprint: {str(corners)[:60]}: "
+            f"expected finite numbers of at most {LARGEST:g} in size"
         )
     return points
 

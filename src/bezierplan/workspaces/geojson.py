@@ -178,7 +178,7 @@ def _polygons(geometry: Any, name: str) -> Iterator[Rings]:
     if kind not in _GEOMETRIES:
         raise ValueError(
             f"{name}: geometry: {str(kind)[:60]}; expected a Polygon, a MultiPolygon, or a "
-            f"GeometryCollection of these"
+            "GeometryCollection of these"
         )
     key = "geometries" if kind == "GeometryCollection" else "coordinates"
     parts = geometry.get(key)
@@ -201,8 +201,8 @@ def _ring(positions: Any, where: str) -> np.ndarray:
     """A ring (n, 2), or (n, 3) with heights, without its last position, which repeats the first."""
     if not isinstance(positions, list) or len(positions) < 4:
         raise ValueError(
-            f"{where}: expected at least four positions, the last one the first again (RFC 7946, "
-            f"3.1.6)"
+            f"{where}: expected at least four positions, "
+            "the last one the first again (RFC 7946, 3.1.6)"
         )
     for position in positions:
         fits = (
@@ -217,8 +217,8 @@ def _ring(positions: Any, where: str) -> np.ndarray:
             )
         ):
             raise ValueError(
-                f"{where}: position {str(position)[:60]}; expected [x, y], or [x, y, height] "
-                f"throughout"
+                f"{where}: position {str(position)[:60]}; "
+                "expected [x, y], or [x, y, height] throughout"
             )
     try:
         ring = np.array(positions, dtype=float)
@@ -227,7 +227,7 @@ def _ring(positions: Any, where: str) -> np.ndarray:
     if positions[0] != positions[-1]:
         raise ValueError(
             f"{where}: is not closed: begins at {positions[0]}, ends at {positions[-1]}; expected "
-            f"the same (RFC 7946, 3.1.6)"
+            "the same (RFC 7946, 3.1.6)"
         )
     return ring[:-1]
 
@@ -280,8 +280,8 @@ def _border(
         return limits, []
     if bbox is None:
         raise ValueError(
-            "no border; expected a polygon with role border, a bbox, or a margin around the "
-            "obstacles"
+            "no border; expected a polygon with role border, "
+            "a bbox, or a margin around the obstacles"
         )
     return _checked_bbox(bbox, largest), []
 

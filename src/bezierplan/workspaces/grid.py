@@ -131,13 +131,13 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
         unknown = line.replace(".", "").replace("#", "")
         if unknown:
             raise ValueError(
-                f"line {number}: unknown character {unknown[0]!r}; a cell is . (free) or # "
-                f"(occupied)"
+                f"line {number}: unknown character {unknown[0]!r}; "
+                "a cell is . (free) or # (occupied)"
             )
         if len(line) != len(lines[0]):
             raise ValueError(
                 f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all "
-                f"lines need the same number"
+                "lines need the same number"
             )
     if len(lines) * len(lines[0]) > MOST_CELLS:
         raise ValueError(
@@ -164,8 +164,8 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
         words = line.split()
         if len(words) != columns:
             raise ValueError(
-                f"line {number} has {len(words)} heights; expected {columns}, as many as the map "
-                f"has cells"
+                f"line {number} has {len(words)} heights; "
+                f"expected {columns}, as many as the map has cells"
             )
         for column, word in enumerate(words):
             try:

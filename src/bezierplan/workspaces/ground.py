@@ -91,10 +91,9 @@ def _ground(
 def _tables(ground):
     cells = ground.occupied.size
     met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
+    # Back and forth an edge meets the same cells, but climbs differently.
     for one in range(cells):
-        for other in range(
-            one + 1
-        ):  # back and forth an edge meets the same cells, but climbs differently
+        for other in range(one + 1):
             met[one, other] = met[other, one] = obstacles_met(ground, one, other)
             energy[one, other] = energy[other, one] = edge_energy(ground, one, other)
             if ground.heights.size:
@@ -103,13 +102,13 @@ def _tables(ground):
 
 
 @inlined
-def obstacles_met(ground: Ground, one: int, other: int) -> int:
+def obstacles_met(ground: Ground, start: int, end: int) -> int:
     """Number of occupied cells that the edge between two cells meets, including the two (meledje,
     eq. 3: beta).
     """
     if ground.met.size:
-        return int(ground.met[one, other])
-    return _passed(ground, one, other)[0]
+        return int(ground.met[start, end])
+    return _passed(ground, start, end)[0]
 
 
 @allocation_free
@@ -124,23 +123,23 @@ def path_met(path: np.ndarray, ground: Ground) -> int:
 
 
 @inlined
-def edge_energy(ground: Ground, one: int, other: int) -> float:
+def edge_energy(ground: Ground, start: int, end: int) -> float:
     """Cost of the edge from one cell to another: its length plus its climb divided by the friction
     (meledje, eq. 2: epsilon).
     """
     if ground.energy.size:
-        return ground.energy[one, other]
-    length = distance(ground, one, other)
+        return ground.energy[start, end]
+    length = distance(ground, start, end)
     return (
-        length + _passed(ground, one, other)[1] / ground.friction if ground.heights.size else length
+        length + _passed(ground, start, end)[1] / ground.friction if ground.heights.size else length
     )
 
 
 @allocation_free
-def distance(ground: Ground, one: int, other: int) -> float:
+def distance(ground: Ground, start: int, end: int) -> float:
     """Length of the edge between two cells."""
     columns = ground.occupied.shape[1]
-    across, up = other % columns - one % columns, other // columns - one // columns
+    across, up = end % columns - start % columns, end // columns - start // columns
     return np.sqrt(float(across * across + up * up))
 
 

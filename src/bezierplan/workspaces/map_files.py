@@ -97,7 +97,7 @@ def described(
         "unit": unit or ("m" if metres else "cell"),
     }
     drawn = kind in ("polygons", "svg") and cells
-    given = {
+    options = {
         "scenario": scenario,
         "cell": cell,
         "rule": rule,
@@ -105,22 +105,22 @@ def described(
         "resolution": resolution,
         "unknown": unknown,
     }
-    given["most_pixels"] = most_pixels
+    options["most_pixels"] = most_pixels
     for name, kinds in _APPLIES.items():
-        if given[name] is not None and kind not in kinds and not (drawn and "raster" in kinds):
+        if options[name] is not None and kind not in kinds and not (drawn and "raster" in kinds):
             wanted = " or ".join(_KIND_NAMES[each] for each in kinds)
             raise ValueError(
                 f"{name}: only for {wanted}; {file} is {_KIND_NAMES['raster' if drawn else kind]}"
             )
     if kind == "image" and resolution is None:
         raise ValueError(
-            f"resolution: missing; expected the length of a pixel's side, or the YAML file of "
+            "resolution: missing; expected the length of a pixel's side, or the YAML file of "
             f"{file} as the map"
         )
     if kind == "grid":
         return description | {"cell": 1.0 if cell is None else cell}
     kept = ("margin", "resolution", "unknown", "most_pixels")
-    description |= {name: given[name] for name in kept if given[name] is not None}
+    description |= {name: options[name] for name in kept if options[name] is not None}
     if not drawn:
         return description
     if cell is None:

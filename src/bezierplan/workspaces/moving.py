@@ -73,7 +73,7 @@ def _drawn_centres(
                 break
         else:
             raise ValueError(
-                f"radius: no circle keeps {least:g} away from start and target in {MOST_DRAWS} "
-                f"draws"
+                f"radius: no circle keeps {least:g} away "
+                f"from start and target in {MOST_DRAWS} draws"
             )
     return centres

@@ -98,7 +98,7 @@ def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
     except (ValueError, IndexError):
         raise ValueError(
             f"{line}: expected bucket, map, width, height, start x, start y, target x, target y, "
-            f"optimal length"
+            "optimal length"
         ) from None
     if Path(home).name != name:
         raise ValueError(f"{line}: map {home}; expected a scenario of {name}")

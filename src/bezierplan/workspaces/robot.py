@@ -73,8 +73,8 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
 def _grow(workspace: Workspace, radius: float) -> Workspace:
     if before := grown_of(workspace):
         raise ValueError(
-            f"robot_radius: {radius:g}: the map has grown by {before.radius:g} before; expected "
-            f"it once"
+            f"robot_radius: {radius:g}: "
+            f"the map has grown by {before.radius:g} before; expected it once"
         )
     if isinstance(workspace, Circles):
         bounds = _shrunk(workspace.bounds, radius)
@@ -127,7 +127,7 @@ def _shrunk(
 def _nothing_free(radius: float) -> ValueError:
     return ValueError(
         f"robot_radius: {radius:g}: no place of the map is that far from its obstacles and its "
-        f"border; expected a smaller one"
+        "border; expected a smaller one"
     )
 
 
@@ -248,9 +248,8 @@ def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
         return None
     row, column = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == 1)
     _, end = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == -1)
-    whole = shapely.simplify(
-        shapely.union_all(shapely.box(column, row, end, row + 1)), 0
-    )  # whole numbers: exact
+    # Whole numbers: exact.
+    whole = shapely.simplify(shapely.union_all(shapely.box(column, row, end, row + 1)), 0)
     return shapely.transform(whole, grid.in_units)
 
 

@@ -143,7 +143,7 @@ def image_of(file: Path, folder: Path, content: dict[str, Any] | None = None) ->
             return image
     raise ValueError(
         f"image: {name}: no such file in {file.parent}; expected the image beside its YAML file, "
-        f"not a link out of there"
+        "not a link out of there"
     )
 
 
@@ -196,8 +196,8 @@ def _content(file: Path) -> dict[str, Any]:
     )
     if str(origin[2]).lower().lstrip("-+.") == "nan":
         logger.warning(
-            "%s: origin: yaw %s counts as 0; map_saver writes it for an orientation that is not "
-            "valid",
+            "%s: origin: yaw %s counts as 0; "
+            "map_saver writes it for an orientation that is not valid",
             file.name,
             origin[2],
         )
@@ -229,8 +229,8 @@ def _occupied(
                 shades = _shades(image) if columns * rows <= most_pixels else None
         except MemoryError:
             raise ValueError(
-                f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a "
-                f"smaller image"
+                f"image: {columns:,} x {rows:,} pixels: "
+                "more than there is memory for; expected a smaller image"
             ) from None
         except Exception as error:  # of a damaged file each format raises another one
             raise ValueError(
@@ -272,7 +272,7 @@ def _too_large(columns: int, rows: int, most_pixels: int) -> ValueError:
     size = f"{columns:,} x {rows:,} pixels"
     return ValueError(
         f"image: {size}; expected at most {most_pixels:,}; most_pixels raises the limit, as far "
-        f"as memory goes"
+        "as memory goes"
     )
 
 

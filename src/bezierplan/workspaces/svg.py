@@ -149,8 +149,8 @@ def _view_box(root: ET.Element) -> list[float]:
         ) from None
     if not (width > 0 and height > 0):
         raise ValueError(
-            f"viewBox: {root.attrib.get('viewBox', '')}: {width:g} x {height:g}; expected numbers "
-            f"above 0"
+            f"viewBox: {root.attrib.get('viewBox', '')}: "
+            f"{width:g} x {height:g}; expected numbers above 0"
         )
     return [left, top, width, height]
 
@@ -176,7 +176,7 @@ def _drawn(
         else:
             raise ValueError(
                 f"{name}: has no outline that is read; expected only {', '.join(_SHAPES)} and "
-                f"groups of these"
+                "groups of these"
             )
 
 
@@ -184,17 +184,17 @@ def _styled(name: str, element: ET.Element, around: _Style) -> _Style:
     pairs = (
         pair.split(":", 1) for pair in element.attrib.get("style", "").split(";") if ":" in pair
     )
-    own = element.attrib | {key.strip(): value.strip() for key, value in pairs}
+    attributes = element.attrib | {key.strip(): value.strip() for key, value in pairs}
     for altering in _ALTERING:
-        if own.get(altering, "none") != "none":
+        if attributes.get(altering, "none") != "none":
             raise ValueError(
                 f"{name}: {altering}: it changes what is seen of a shape; expected none"
             )
-    transform = own.get("transform", "")
-    if "transform" in own:
+    transform = attributes.get("transform", "")
+    if "transform" in attributes:
         _check_transform(name, transform)
     inherited = {
-        key: own.get(key, around.properties.get(key, ""))
+        key: attributes.get(key, around.properties.get(key, ""))
         for key in ("fill", "fill-rule", "display")
     }
     return _Style(inherited, f"{around.transform} {transform}".strip())
@@ -209,8 +209,8 @@ def _check_transform(name: str, words: str) -> None:
             raise ValueError(f"{where}; expected {', '.join(_ARGUMENTS)} with numbers")
         if len(re.findall(_NUMBER, call[2])) not in _ARGUMENTS[call[1]]:
             raise ValueError(
-                f"{where}; expected {' or '.join(map(str, _ARGUMENTS[call[1]]))} numbers for "
-                f"{call[1]}"
+                f"{where}; expected {' or '.join(map(str, _ARGUMENTS[call[1]]))} "
+                f"numbers for {call[1]}"
             )
         at = call.end()
 
@@ -268,8 +268,8 @@ def _path(name: str, element: ET.Element) -> Any:
             return svgelements.Path(words) if words.strip() else None
         except (ValueError, AttributeError, IndexError, TypeError):
             raise ValueError(
-                f"{name}: d: {words[:60]}: cannot be read; expected commands of a path with their "
-                f"numbers"
+                f"{name}: d: {words[:60]}: cannot be read; "
+                "expected commands of a path with their numbers"
             ) from None
     if tag in ("polygon", "polyline"):
         numbers = re.split(r"[\s,]+|(?<=\d)(?=[-+])", element.attrib.get("points", "").strip())
@@ -277,8 +277,8 @@ def _path(name: str, element: ET.Element) -> Any:
             points = np.array([number(word) for word in numbers if word]).reshape(-1, 2)
         except ValueError:
             raise ValueError(
-                f"{name}: points: {element.attrib.get('points', '')[:60]}; expected pairs of "
-                f"numbers"
+                f"{name}: points: {element.attrib.get('points', '')[:60]}; "
+                "expected pairs of numbers"
             ) from None
         closed = tag == "polygon" or len(points) == 0
         lines = " L ".join(f"{x!r},{y!r}" for x, y in points.tolist())
@@ -298,7 +298,7 @@ def _path(name: str, element: ET.Element) -> Any:
     if min(lengths[key] for key in _SHAPES[tag]) < 0:
         raise ValueError(
             f"{name}: {', '.join(f'{key}: {lengths[key]:g}' for key in _SHAPES[tag])}; expected "
-            f"numbers of at least 0"
+            "numbers of at least 0"
         )
     if min(lengths[key] for key in _SHAPES[tag]) == 0:
         return None

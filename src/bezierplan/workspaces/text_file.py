@@ -61,6 +61,6 @@ def read_text(file: Path, largest: int = LARGEST_FILE) -> str:
     if "\0" in text:
         raise ValueError(
             f"has a NUL character in line {text[: text.index(chr(0))].count(chr(10)) + 1}; "
-            f"expected a text file"
+            "expected a text file"
         )
     return text

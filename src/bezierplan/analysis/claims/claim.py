@@ -40,8 +40,8 @@ class Claim(Model):
     artefact: listed(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
         [],
         description="the table or figure that shows it, or a list of them; the groups that `rest` "
-        "and the metric rank range over "
-        "are theirs",
+        "and the metric rank "
+        "range over are theirs",
     )
     finding: Literal[True] = Field(
         None, description="true: our own finding, no sentence of the paper; left out otherwise"

@@ -184,14 +184,14 @@ def margin_of(check: OfRuns, comparison: Comparison) -> float:
     margin = check.least_margin
     if not isinstance(margin, PublishedMargin):
         return margin
-    own = margin.published
+    published_margin = margin.published
     if not check.relative and not comparison.boolean:
-        own *= abs(
+        published_margin *= abs(
             float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference])
         )
     printed = effect(check, comparison.printed, comparison.cells)
     as_claimed = printed * SIDES.get(check.side, np.sign(printed)) > 0
-    return min(own, float(abs(printed))) if as_claimed else own
+    return min(published_margin, float(abs(printed))) if as_claimed else published_margin
 
 
 def point_statistic(check: OfRuns) -> str:
@@ -326,7 +326,7 @@ def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     return finding._replace(
         mark="+" if held >= SURE else "-" if held <= 1 - SURE else "?",
         reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs "
-        f"drawn from ours",
+        "drawn from ours",
     )
 
 

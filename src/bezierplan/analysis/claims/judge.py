@@ -3,9 +3,12 @@
 A claim is a list of checks; config/README.md describes their format, `kinds` the test behind each
 kind. Every check gives one or more comparisons, every comparison a mark:
 
-| mark | meaning | | --- | --- | | + | the sentence holds here: p < 0.05, and the effect points as
-claimed and is as large as the margin | | - | the opposite holds | | 0 | neither, and the interval
-of the effect lies within the margin | | ? | none of these, or too little data to test |
+| mark | meaning |
+| --- | --- |
+| + | the sentence holds here: p < 0.05, and the effect is as claimed and as large as the margin |
+| - | the opposite holds |
+| 0 | neither, and the interval of the effect lies within the margin |
+| ? | none of these, or too little data to test |
 
 Comparisons that a check takes `together` (a superlative: the best of all in a column, or on a map)
 are judged as one, and are shown below it as secondary ones.
@@ -14,12 +17,14 @@ A comparison has one mark on its own and one in the family of all comparisons of
 checks (`verdicts` explains the procedure). If all have to hold, every mark on its own must be + to
 support the claim; everything else follows from the family's marks:
 
-| verdict | all have to hold | any may hold | | --- | --- | --- | | supported | every mark + on its
-own | at least one + | | partly | + in some but not all (`holds` says in how many); if there is no -
-and no 0, in at least three quarters | | | contradicted | no +, and a - | every mark - on its own |
-| no effect | every mark 0 | no + and no ?, not all - | | undecided | otherwise: a ? prevents a
-verdict, or more than half of the marks are ? | a ? prevents a verdict | | untestable | the reason
-is given | likewise |
+| verdict | all have to hold | any may hold |
+| --- | --- | --- |
+| supported | every mark + on its own | at least one + |
+| partly | + in some but not all; if there is no - and no 0, in at least three quarters | |
+| contradicted | no +, and a - | every mark - on its own |
+| no effect | every mark 0 | no + and no ?, not all - |
+| undecided | otherwise: a ? prevents a verdict, or most marks are ? | a ? prevents a verdict |
+| untestable | the reason is given | likewise |
 
 If all have to hold together, as one sentence (`holds: together`): supported if every mark is + on
 its own; contradicted by one - in the family, or by a 0 beside a +; no effect with a 0 and neither;
@@ -31,40 +36,52 @@ between planners of different kinds, whose evaluations are different things.
 
 Columns of claims.csv, one row per claim and variant:
 
-| column | meaning | | --- | --- | | study, id, place, statement | of the claim | | variant | values
-used instead of the primary ones; in the primary row, the primary values | | primary | whether this
-is the primary variant | | finding | whether it is our own finding rather than a sentence of the
-paper | | own_criterion | whether the paper gives no number and the threshold or margin that decides
-is ours | | verdict | as above | | holds | how many comparisons of the primary checks are + | |
-where_it_holds | which of them are + in the family, in words; if none, where the opposite holds;
-empty if all or none do | | published | how many of those that are printed hold in the printed
-numbers, by value alone | | effect ... p_family | of the decisive comparison: the worst -, otherwise
-that with the largest p; columns as below | | units_to_decide | of an undecided claim: about how
-many units would decide every comparison marked ?, were our effects the true ones | |
-replication_probability | share of experiments of the paper's size, drawn from our runs, in which
-the claim holds by values alone (*) | | size | our effect compared with the printed one: alike (the
-printed one lies in our interval), smaller, larger, opposite | | artefact | the tables and figures
-that show it | | timed | judged on CPU times, which differ from machine to machine | | reason | why
-it is untestable or undecided, and other notes for the reader |
+- study, id, place, statement: of the claim
+- variant: values used instead of the primary ones; in the primary row, the primary values
+- primary: whether this is the primary variant
+- finding: whether it is our own finding rather than a sentence of the paper
+- own_criterion: whether the paper gives no number and the threshold or margin that decides is ours
+- verdict: as above
+- holds: how many comparisons of the primary checks are +
+- where_it_holds: which of them are + in the family, in words; if none, where the opposite holds;
+  empty if all or none do
+- published: how many of those that are printed hold in the printed numbers, by value alone
+- effect ... p_family: of the decisive comparison: the worst -, otherwise that with the largest p;
+  columns as below
+- units_to_decide: of an undecided claim: about how many units would decide every comparison marked
+  ?, were our effects the true ones
+- replication_probability: share of experiments of the paper's size, drawn from our runs, in which
+  the claim holds by values alone (*)
+- size: our effect compared with the printed one: alike (the printed one lies in our interval),
+  smaller, larger, opposite
+- artefact: the tables and figures that show it
+- timed: judged on CPU times, which differ from machine to machine
+- reason: why it is untestable or undecided, and other notes for the reader
 
 (*) Where a claim is about one picked run of each condition: the chance that runs drawn at random
 among those that count do in its place.
 
 Columns of claim_checks.csv, one row per comparison:
 
-| column | meaning | | --- | --- | | study, id, variant, timed | as above | | check | number of the
-check within the claim, from 1 | | primary | false for secondary checks, which are only reported | |
-decisive | whether the row of claims.csv repeats it: the worst -, otherwise that with the largest p
-| | test, metric, statistic, unit | of the check; unit of the metric | | condition, comparison |
-where, and what is compared | | mark, mark_family | on its own; in the family, empty for secondary
-checks | | effect, effect_size_name, effect_size | of means, or of the statistic; what is computed
-from both groups (`kinds`) | | low95, high95 | interval of the effect | | p, p_family | two-sided;
-corrected, empty for secondary checks and where no p decides | | n | units: pairs, or those of the
-smallest group | | counted | how many units of each group, out of how many, have a value: means,
-minima and maxima exclude failed runs | | margin, least_detectable | the smallest effect that
-matters; that detected with a power of 0.8, empty if the units do not differ | | rho, r_squared | of
-trends: Spearman's rho and R squared of the conditions' means over x | | effect_published, published
-| the effect in the printed numbers, and whether the sentence holds in them |
+- study, id, variant, timed: as above
+- check: number of the check within the claim, from 1
+- primary: false for secondary checks, which are only reported
+- decisive: whether the row of claims.csv repeats it: the worst -, otherwise that with the largest p
+- test, metric, statistic, unit: of the check; unit of the metric
+- condition, comparison: where, and what is compared
+- mark, mark_family: on its own; in the family, empty for secondary checks
+- effect, effect_size_name, effect_size: of means, or of the statistic; what is computed from both
+  groups (`kinds`)
+- low95, high95: interval of the effect
+- p, p_family: two-sided; corrected, empty for secondary checks and where no p decides
+- n: units: pairs, or those of the smallest group
+- counted: how many units of each group, out of how many, have a value: means, minima and maxima
+  exclude failed runs
+- margin, least_detectable: the smallest effect that matters; that detected with a power of 0.8,
+  empty if the units do not differ
+- rho, r_squared: of trends: Spearman's rho and R squared of the conditions' means over x
+- effect_published, published: the effect in the printed numbers, and whether the sentence holds in
+  them
 """
 
 import math
@@ -400,11 +417,9 @@ def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     elif judged.condition:
         factors["in"] = judged.condition
     if metrics_differ:
-        factors["what"] = (
-            f"{judged.check.statistic_written} {judged.check.measured or judged.check.test}".strip().replace(
-                "_", " "
-            )
-        )
+        check = judged.check
+        what = f"{check.statistic_written} {check.measured or check.test}"
+        factors["what"] = what.strip().replace("_", " ")
     return verdicts.Marked(factors, judged.mark_family)
 
 

@@ -45,10 +45,10 @@ def signed_rank_test(difference: np.ndarray) -> float:
     )
 
 
-def wins(group: np.ndarray, other: np.ndarray) -> float:
+def wins(group: np.ndarray, others: np.ndarray) -> float:
     """Share of all pairs in which the first group's value is higher, ties counted half."""
-    ordered = np.sort(other)
+    ordered = np.sort(others)
     above, at_least = (
         np.searchsorted(ordered, group, side=side).sum() for side in ("left", "right")
     )
-    return float((above + at_least) / 2 / len(group) / len(other))
+    return float((above + at_least) / 2 / len(group) / len(others))

@@ -82,14 +82,15 @@ def q_example(
     difference from a printed value.
     """
     genes, printed = solutions(published), said(published)
-    found = {
+    q_values = {
         f"Q of {one} and {other}": q_of_rows(genes[one], genes[other])
         for one, other in itertools.combinations(genes, 2)
     }
-    mean = float(np.mean(list(found.values())))
-    differences = [abs(q - printed[pair]) for pair, q in found.items()]
+    mean = float(np.mean(list(q_values.values())))
+    differences = [abs(q - printed[pair]) for pair, q in q_values.items()]
     holds = max(differences) < 1e-12 and round(mean, 2) == printed["mean Q"]
-    return "+" if holds else "-", max(*differences, abs(mean - printed["mean Q"])), None, len(found)
+    most = max(*differences, abs(mean - printed["mean Q"]))
+    return "+" if holds else "-", most, None, len(q_values)
 
 
 def printed_over_bound(
@@ -157,13 +158,13 @@ def fitness_leads(
     ]
     marks = ["+" if low > 0.5 else "-" if high < 0.5 else "?" for low, high in ends]
     if len(set(marks)) > 1:
-        each = ", ".join(
+        listed_shares = ", ".join(
             f"{share:.2f} if {word} at a time"
             for word, share in zip(words, table.mean(axis=0), strict=True)
         )
         raise Untestable(
-            f"the share of fitness in the work depends on how many genes are compared at once: "
-            f"{each}"
+            "the share of fitness in the work depends on how many genes are compared at once: "
+            f"{listed_shares}"
         )
     return marks[0], float(table[:, 0].mean()), ends[0], len(table)
 
@@ -185,7 +186,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         for row in cells.itertuples():
             rule = (
                 f"no path between opposite corners counts less than {DIAGONAL:g} cells for "
-                f"each of the side"
+                "each of the side"
             )
             rows.append(
                 _row(
@@ -272,7 +273,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             _row("table5", f"method=GA, obstacles={obstacles}", rule, time, later, time == later)
         )
     genes = solutions(published)
-    for name, found in counts(genes["S1"], genes["S2"]).items():
+    for name, counted in counts(genes["S1"], genes["S2"]).items():
         number = int(printed[f"{name} of S1 and S2"])
         rows.append(
             _row(
@@ -280,8 +281,8 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 f"S1, S2: {name}",
                 "the text counts as it defines",
                 number,
-                found,
-                number == found,
+                counted,
+                number == counted,
             )
         )
     q = q_statistic(
@@ -360,7 +361,7 @@ def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
     share = (expected_length(1, radius, blocked_cells.index.to_numpy()) - DIAGONAL) / (2 - DIAGONAL)
     rule = (
         f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how "
-        f"many of the printed can be such"
+        "many of the printed can be such"
     )
     rows = [_row("table2, table3", "method=mga", rule, whole, len(printed), whole == len(printed))]
     # The radius is fitted to these lengths.
@@ -371,7 +372,7 @@ def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
     )
     rule = (
         f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} "
-        f"degrees of freedom) and its limit at 5 %"
+        "degrees of freedom) and its limit at 5 %"
     )
     return [
         *rows,

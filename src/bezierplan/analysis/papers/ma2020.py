@@ -72,12 +72,12 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
     for drawn, rows in (("before", chromosomes), ("after", children)):
         for height, row in zip((1.3, 0.0), rows):
             # A gene keeps the colour of its original chromosome.
-            for place, gene in enumerate(row):
-                role = "accent" if gene == chromosomes[0, place] else "muted"
+            for position, gene in enumerate(row):
+                role = "accent" if gene == chromosomes[0, position] else "muted"
                 box = {
                     "mark": "cell",
                     "role": role,
-                    "x": place,
+                    "x": position,
                     "y": height,
                     "width": 0.96,
                     "height": 0.8,
@@ -89,7 +89,7 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
                             {
                                 "mark": "text",
                                 "role": "note",
-                                "x": place,
+                                "x": position,
                                 "y": height,
                                 "text": str(gene + 1),
                             },

@@ -319,14 +319,13 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             )
         for sentence in said:
             sign = SIGN[sentence.best]
-            own, *theirs = (
+            proposed, *theirs = (
                 _printed(table, method, sentence.quantity) for method in ("proposed", *others)
             )
             best = sign * max(sign * value for value in theirs)
+            place = f"metric={sentence.quantity}"
             rule = f"the proposed mutation has the {sentence.words} (Section 4)"
-            rows.append(
-                _row(name, f"metric={sentence.quantity}", rule, own, best, sign * (own - best) > 0)
-            )
+            rows.append(_row(name, place, rule, proposed, best, sign * (proposed - best) > 0))
     for sentence in said:
         if sentence.quantity in TESTED:
             rows += _fisher_rows(
@@ -378,8 +377,8 @@ def _fisher_rows(
     return [
         _row(
             *(name, f"metric={metric}, proposed and {other}"),
-            f"the proposed mutation has the {words} beyond chance: p of Fisher's test, corrected "
-            f"by Holm",
+            f"the proposed mutation has the {words} beyond chance: "
+            "p of Fisher's test, corrected by Holm",
             *(value, ALPHA, value < ALPHA and sign * (own - theirs) > 0),
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())

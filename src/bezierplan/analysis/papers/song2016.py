@@ -78,18 +78,20 @@ def identified_paths(
     prints no such number.
     """
     table = published["table1"]
-    own = table[
+    printed = table[
         (table["problem"] == f"{start}_{target}")
         & (table["method"] == method)
         & (table["metric"] == "objective")
     ]
-    if len(own) != 1:
+    if len(printed) != 1:
         raise ValueError(
-            f"identified_paths: {len(own)} printed numbers of {method} from {start} to {target}; "
-            f"expected one"
+            f"identified_paths: {len(printed)} printed numbers of {method} from {start} to "
+            f"{target}; expected one"
         )
     problem = Problem("", workspace, workspace.centre(start), workspace.centre(target))
-    identification = identified.in_problem(problem, float(own["value"].iloc[0]), decimals, edges)
+    identification = identified.in_problem(
+        problem, float(printed["value"].iloc[0]), decimals, edges
+    )
     rows = []
     for number, path in reversed(list(enumerate(identification.paths))):
         role = ("accent", "first", "third")[min(number, 2)]

@@ -40,9 +40,8 @@ RIM = 0.01  # least height of a valley's edge above its lowest node, as a share 
 
 SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # discarded from each of them
-NO_PARAMETERS = chaotic_maps.Parameters(
-    *[math.nan] * len(chaotic_maps.Parameters._fields)
-)  # which that map has
+# That map has none.
+NO_PARAMETERS = chaotic_maps.Parameters(*[math.nan] * len(chaotic_maps.Parameters._fields))
 
 RANKED = ("table3", "table4", "table5", "table6")  # tables whose rows are ranked (Section 5.1)
 WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
@@ -137,7 +136,7 @@ def movement(
                 "text": f"{name} {formula}",
             }
             rows.append(words | {"x": moved + aside * 4.3})
-        for role, place, words in (
+        for role, position, words in (
             ("first", x, "x"),
             ("third", p, "p"),
             ("start", moved, "new x"),
@@ -155,13 +154,13 @@ def movement(
                     "role": role,
                     "group": f"{words} {number}",
                     "label": label,
-                    "x": place,
+                    "x": position,
                     "y": line,
                 }
             )
             if words != "new x":
                 rows.append(
-                    {"mark": "text", "role": "note", "x": place, "y": line - 0.75, "text": words}
+                    {"mark": "text", "role": "note", "x": position, "y": line - 0.75, "text": words}
                 )
     return pd.DataFrame(rows)
 
@@ -387,9 +386,8 @@ def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd
     paths = np.empty((GRID * GRID, len(BEST_KNOWN[workspace]) + 2, 2))
     paths[:] = [problem.start, *BEST_KNOWN[workspace], problem.target]
     paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
-    values = [
-        fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)
-    ]  # in parts, to save memory
+    # In parts, to save memory.
+    values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]
     return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": np.concatenate(values)})
 
 

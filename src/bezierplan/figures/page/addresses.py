@@ -22,8 +22,8 @@ def of_cells(
     A key is left out where it has the value of the primary interpretation, and for a column with
     one value only, unless two cells would then have the same address: these name all their keys.
 
-    >>> of_cells("one/table1", [{"map": "a", "method": "x", "metric": "length", "statistic": "mean"},
-    ...                         {"map": "b", "method": "x", "metric": "length", "statistic": "mean"}], {"map": "a"})
+    >>> mean = {"method": "x", "metric": "length", "statistic": "mean"}
+    >>> of_cells("one/table1", [{"map": "a"} | mean, {"map": "b"} | mean], {"map": "a"})
     ['one/table1/length/mean', 'one/table1/b/length/mean']
     """
     single = {

@@ -39,7 +39,7 @@ def answer(studies: dict[str, Study]) -> list[Sentence]:
             [
                 Part(
                     text=f"A subset that shows how the page works: {runs} runs, too few to judge "
-                    f"numbers or claims."
+                    "numbers or claims."
                 )
             ]
         ]
@@ -62,18 +62,18 @@ def about_scale(scale: str, repeats: dict[str, list[list[int]]]) -> list[str]:
     }
     first = {
         "smoke": f"Scale smoke is a small subset, of {runs[scale]} runs per method and condition, "
-        f"which shows that everything works.",
-        "full": f"Scale full has as many runs as the papers report: {runs[scale]} per method and "
-        f"condition.",
+        "which shows that everything works.",
+        "full": "Scale full has as many runs as the papers report: "
+        f"{runs[scale]} per method and condition.",
         "extended": f"Scale extended has {runs[scale]} runs per method and condition, so its "
-        f"verdicts are about methods.",
+        "verdicts are about methods.",
     }[scale]
     if scale == "extended":
         return [first, "The README's numbers are of this scale."]
     return [
         first,
         f"The README's numbers rest on scale extended ({runs['extended']} runs; make extended), "
-        f"so they can differ from these.",
+        "so they can differ from these.",
     ]
 
 
@@ -89,13 +89,13 @@ def reliable(studies: dict[str, Study]) -> list[tuple[str, Worth]]:
     """Methods that are feasible as often as the baseline, each with the name of its study, the
     shortest paths first.
     """
-    found = [
+    rows = [
         (key, row)
         for key, study in studies.items()
         for row in study.worth
         if row.feasible >= row.feasible_baseline
     ]
-    return sorted(found, key=lambda each: each[1].length or float("inf"))
+    return sorted(rows, key=lambda each: each[1].length or float("inf"))
 
 
 def failing(studies: dict[str, Study]) -> list[tuple[str, Claim]]:

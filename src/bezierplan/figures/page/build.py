@@ -254,7 +254,7 @@ def tip(number: content.Number) -> str:
         parts.append(f"of the paper's number of runs {short(number.scaled, 5)}")
     if number.predicted != (None, None):
         parts.append(
-            f"an experiment of the paper's size: "
+            "an experiment of the paper's size: "
             f"{' to '.join(short(end, 5) for end in number.predicted)}"
         )
     if number.share_feasible is not None:

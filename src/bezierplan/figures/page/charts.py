@@ -108,13 +108,13 @@ def charts(page: content.Page) -> dict[str, Chart]:
         "methods": _methods(page),
     }
     drawn = {}
-    for name, (title, text, own) in ((name, each) for name, each in written.items() if each):
+    for name, (title, text, body) in ((name, each) for name, each in written.items() if each):
         spec = {
             "$schema": f"https://vega.github.io/schema/vega-lite/v{VEGA_LITE}.json",
             "config": _STYLE,
             "width": "container",
         }
-        spec |= {"autosize": {"type": "fit-x", "contains": "padding"}} | own
+        spec |= {"autosize": {"type": "fit-x", "contains": "padding"}} | body
         drawn[name] = Chart(
             title, text, spec, _named(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE), name)
         )
@@ -178,7 +178,7 @@ def _stacked(page: content.Page, verdicts: Iterable[str]) -> dict[str, Any] | No
         before = 0
         for name in ordered:
             if count := study.outcome.get(name, 0):
-                place = {
+                extent = {
                     "from": before / total,
                     "to": (before + count) / total,
                     "middle": (before + count / 2) / total,
@@ -192,7 +192,7 @@ def _stacked(page: content.Page, verdicts: Iterable[str]) -> dict[str, Any] | No
                         "tip": tip,
                         "address": study.address,
                     }
-                    | place
+                    | extent
                 )
                 before += count
     if not rows:
@@ -317,7 +317,7 @@ def _ratios(page: content.Page) -> Written | None:
     }
     text = (
         f"Dots: {len(rows)} published numbers, ours divided by the published one, on a "
-        f"logarithmic axis, one row per table; lines: the "
+        "logarithmic axis, one row per table; lines: the "
         "range (95 %) that an experiment of the paper's size would print. A line that does not "
         "reach 1 is a number that disagrees."
     )
@@ -342,23 +342,23 @@ def _of_table(study: content.Study, table: content.Table) -> list[dict[str, Any]
     ]
     numbers_shown.sort(key=lambda number: number.beside / number.published)
     rows = []
-    for place, number in enumerate(numbers_shown):
+    for position, number in enumerate(numbers_shown):
         low, high = (None if end is None else end / number.published for end in number.predicted)
-        given = {
+        row = {
             "address": number.address,
             "table": f"{study.address} {heading(table.name)}",
             "verdict": number.verdict,
         }
-        given |= {
+        row |= {
             "ratio": _digits(number.beside / number.published),
-            "height": _digits((place + 0.5) / len(numbers_shown)),
+            "height": _digits((position + 0.5) / len(numbers_shown)),
         }
         # A range without an end reaches to the edge.
-        given |= {
+        row |= {
             "low": _digits(max(low or 0, 1 / _MOST_TIMES)),
             "high": _digits(min(high or math.inf, _MOST_TIMES)),
         }
-        rows.append(given)
+        rows.append(row)
     return rows
 
 
@@ -471,9 +471,9 @@ def _methods(page: content.Page) -> Written | None:
     }
     text = (
         f"Dots: {len(rows)} methods by the share of their runs that are feasible, and by the "
-        f"median length of their paths over that of the "
+        "median length of their paths over that of the "
         f"baseline (star), {worth.BASELINE}; the larger a dot, the more CPU time. Best is high up "
-        f"at the left, and small."
+        "at the left, and small."
     )
     return "Methods compared with the baseline", text, spec
 
@@ -485,7 +485,10 @@ _BELOW = {
     "symbolStrokeColor": _SOFT,
 }
 # The outline of a star with five points, in the unit of Vega's marks.
-_STAR = "M0,-1L0.2245,-0.309L0.9511,-0.309L0.3633,0.118L0.5878,0.809L0,0.382L-0.5878,0.809L-0.3633,0.118L-0.9511,-0.309L-0.2245,-0.309Z"
+_STAR = (
+    "M0,-1L0.2245,-0.309L0.9511,-0.309L0.3633,0.118L0.5878,0.809"
+    "L0,0.382L-0.5878,0.809L-0.3633,0.118L-0.9511,-0.309L-0.2245,-0.309Z"
+)
 
 
 def _span(values: list[float]) -> list[float]:

@@ -104,8 +104,8 @@ class Figure(Record):
         "", description="by panel, the run that it shows, and the runs that it counts"
     )
     svg: str = Field(
-        description="its picture, relative to the page; beside it lie others that end in .png and "
-        ".pdf"
+        description="its picture, relative to the page; "
+        "beside it lie others that end in .png and .pdf"
     )
     csv: str = Field(description="exactly the data that it shows, relative to the page")
 
@@ -178,8 +178,8 @@ class Claim(Record):
     published: str = Field(description="how many of those with printed numbers hold in these")
     reason: str
     replication: float | None = Field(
-        description="share of experiments of the paper's size, drawn from our runs, in which it "
-        "holds"
+        description="share of experiments of the paper's size, "
+        "drawn from our runs, in which it holds"
     )
     size: str = Field(description="our effect compared with the printed one")
     shown_in: list[Address] = Field(description="the tables and figures that show it")
@@ -266,8 +266,8 @@ class Explanation(Record):
 
     interpretation: str = Field(description="its choices; `default` without any")
     in_range: int = Field(
-        description="numbers in the central 95 % of what experiments of the paper's size would "
-        "print"
+        description="numbers in the central 95 % of what "
+        "experiments of the paper's size would print"
     )
     numbers: int = Field(description="of how many")
     by_chance: float | None = Field(
@@ -348,8 +348,8 @@ class World(Record):
 
     walls: list[float] = Field(
         [],
-        description="lowest and highest x, lowest and highest y of centres, which are reflected "
-        "there",
+        description="lowest and highest x, lowest and highest y of centres, "
+        "which are reflected there",
     )
     circles: list[list[float]] = Field(
         [],

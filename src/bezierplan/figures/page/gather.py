@@ -157,8 +157,8 @@ def _study(
 
 
 def _figure(study: str, name: str, job: dict, folder: Path) -> content.Figure:
-    place = f"{study}/figures/{name}"
-    told = (folder / f"{place}.txt").read_text(encoding="utf-8").strip()
+    stem = f"{study}/figures/{name}"
+    told = (folder / f"{stem}.txt").read_text(encoding="utf-8").strip()
     named = {
         "address": address(study, name),
         "name": name,
@@ -166,7 +166,7 @@ def _figure(study: str, name: str, job: dict, folder: Path) -> content.Figure:
         "caption": job["caption"],
         "told": told,
     }
-    return content.Figure(**named, svg=f"{place}.svg", csv=f"{place}.csv")
+    return content.Figure(**named, svg=f"{stem}.svg", csv=f"{stem}.csv")
 
 
 def _table(

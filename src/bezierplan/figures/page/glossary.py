@@ -3,8 +3,8 @@
 WORDS = {
     "agrees": "The published number lies in the range (95 %) of what an experiment of the paper's "
     "size would print, judging by our runs, "
-    "and this range excludes most of what the paper prints of other methods. It need not be near "
-    "ours.",
+    "and this range excludes most of what the paper prints of other methods. "
+    "It need not be near ours.",
     "identified": "The published number is to the last digit the length of a path that an "
     "enumeration finds.",
     "disagrees": "The published number lies outside the range (95 %) of what an experiment of the "

@@ -81,14 +81,14 @@ def _headline(tables: list[pd.DataFrame | None], titles: dict[str, str]) -> cont
     """
     if any(table is None for table in tables):
         return None
-    found = headline.headline(*tables, titles)
-    shown = found.table.loc[:, (found.table != "").any()]
+    overview = headline.headline(*tables, titles)
+    shown = overview.table.loc[:, (overview.table != "").any()]
     rows = {
         str(study): list(map(str, row))
         for study, row in zip(shown.index, shown.to_numpy(), strict=True)
     }
     return content.Headline(
-        sentences=found.sentences, columns=[headline.COLUMNS[name] for name in shown], rows=rows
+        sentences=overview.sentences, columns=[headline.COLUMNS[name] for name in shown], rows=rows
     )
 
 

@@ -227,13 +227,16 @@ def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
     import shapely
     from shapely.ops import substring
 
-    line, found = shapely.LineString(path if len(path) > 1 else np.repeat(path, 2, axis=0)), [0.0]
+    line = shapely.LineString(path if len(path) > 1 else np.repeat(path, 2, axis=0))
+    distances = [0.0]
     for place in shapely.points(trace[1:].astype(float)):
-        ahead = substring(line, found[-1], found[-1] + pace)
-        found.append(
-            found[-1] + shapely.line_locate_point(ahead, place) if ahead.length > 0 else found[-1]
+        ahead = substring(line, distances[-1], distances[-1] + pace)
+        distances.append(
+            distances[-1] + shapely.line_locate_point(ahead, place)
+            if ahead.length > 0
+            else distances[-1]
         )
-    return np.array(found)
+    return np.array(distances)
 
 
 def _run(row: pd.Series, bounds: tuple[float, float, float, float], problem: str) -> content.Run:

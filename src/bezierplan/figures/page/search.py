@@ -79,8 +79,8 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
         compared = " ".join(each.name for each in claim.comparisons)
         said = IN_SHORT.get(claim.verdict, "undecided")
         more = (
-            f"{key} claims {said} {said.replace('hold', 'holds').replace('fail', 'fails')} "
-            f"{compared}"
+            f"{key} claims {said} "
+            f"{said.replace('hold', 'holds').replace('fail', 'fails')} {compared}"
         )
         yield Entry(f"claim, {claim.verdict}", claim.address, f"{claim.id} {claim.statement}", more)
     for table in study.tables:
@@ -93,7 +93,7 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
     for row in study.worth:
         text = (
             f"{study.labels.get(row.method, _words(row.method))} compared with the exact "
-            f"shortest path with rounded corners"
+            "shortest path with rounded corners"
         )
         yield Entry("worth", row.address, text, f"{key} {row.method}", True)
     for figure in study.figures:

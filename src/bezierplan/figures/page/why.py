@@ -143,7 +143,7 @@ def _share(row: pd.Series, check: share.Options, name: str) -> str:
         picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
         return (
             f"in {picked}, {happens if row['effect'] else f'it is not so that {happens}'}; the "
-            f"claim needs it there"
+            "claim needs it there"
         )
     needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
     needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
@@ -152,8 +152,8 @@ def _share(row: pd.Series, check: share.Options, name: str) -> str:
         "" if pd.isna(low) or pd.isna(high) else f" (95 % interval {low:.3g} to {high:.3g} %)"
     )
     return (
-        f"{happens} in {100 * row['effect']:.3g} % of the runs{interval}; the claim needs it "
-        f"{needed}"
+        f"{happens} in {100 * row['effect']:.3g} % of the runs{interval}; "
+        f"the claim needs it {needed}"
     )
 
 

@@ -3,10 +3,10 @@
 Every file has `Options`, the keys that a panel of this kind may have, of which a panel is an
 instance, and
 
-| name | means | | --- | --- | | `data(source, options)` | the table of what is drawn, from what
-`source` of the options finds: runs, a workspace, a function's table | | `draw(axes, frame, scene,
-options)` | draws the rows of its panel in that table, and returns a `Note`: what the panel says in
-words |
+- `data(source, options)`: the table of what is drawn, from what `source` of the options finds:
+  runs, a workspace, a function's table
+- `draw(axes, frame, scene, options)`: draws the rows of its panel in that table, and returns a
+  `Note`: what the panel says in words
 
 `draw` labels its artists for the legend, and computes no statistics. A kind whose panels are not
 flat has `PROJECTION`, matplotlib's name for it.
@@ -201,8 +201,8 @@ class Pick(Model):
     repeat: Repeat = Field(None, description="a whole number: the run of that repeat")
     having: Metric = Field(
         None,
-        description="beside one of these, the name of a metric: only runs that have more than 0 "
-        "of it count",
+        description="beside one of these, the name of a metric: "
+        "only runs that have more than 0 of it count",
     )
 
     @model_validator(mode="after")
@@ -210,8 +210,8 @@ class Pick(Model):
         ways = self.model_fields_set - {"having"}
         if len(ways) != 1:
             raise wrong(
-                f"{len(ways)} keys; expected {{lowest: column}}, {{median: column}} or {{repeat: "
-                f"number}}"
+                f"{len(ways)} keys; expected {{lowest: column}}, "
+                f"{{median: column}} or {{repeat: number}}"
             )
         return self
 

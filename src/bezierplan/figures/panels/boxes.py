@@ -77,19 +77,19 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     metric, by = options.metric, options.by
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
-    for group, own in runs.groupby(by):
+    for group, group_runs in runs.groupby(by):
         named = constants(runs) | {
             by: group,
-            "runs": len(own),
-            "feasible_runs": int(own["feasible"].sum()),
+            "runs": len(group_runs),
+            "feasible_runs": int(group_runs["feasible"].sum()),
         }
-        parts = _box(np.sort(own["value"].dropna().to_numpy())) or [("none", np.nan)]
+        parts = _box(np.sort(group_runs["value"].dropna().to_numpy())) or [("none", np.nan)]
         for part, statistic in (
             ("published", "mean"),
             ("published_end", "min"),
             ("published_end", "max"),
         ):
-            parts += [(part, value) for value in published(results, own, metric, statistic)]
+            parts += [(part, value) for value in published(results, group_runs, metric, statistic)]
         rows += [named | {"part": part, "value": value} for part, value in parts]
     if options.limits:
         rows += [
@@ -137,9 +137,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         )
     axes.set_xlabel(axis_label(options.metric, scene))
     medians = frame.loc[frame["part"] == "median", "value"]
-    axes.locator_params(
-        axis="x", nbins=4, steps=[1, 2, 5, 10]
-    )  # labels such as 0.0025 would touch each other
+    # Labels such as 0.0025 would touch each other.
+    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
     if style.is_wide(medians):
         style.fit(axes.xaxis, frame["value"], medians)
         far = set()

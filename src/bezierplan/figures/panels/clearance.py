@@ -43,7 +43,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     if results.runs["problem"].nunique() != 1:
         raise ValueError(
-            f"clearance over time needs runs of one problem, not of "
+            "clearance over time needs runs of one problem, not of "
             f"{results.runs['problem'].nunique()}; see the panel's `where`"
         )
     parts = []

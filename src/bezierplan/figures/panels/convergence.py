@@ -65,13 +65,13 @@ class Options(RunsPanel):
     )
     until: Whole = Field(
         None,
-        description="the generation at which the axis ends; left out: the last one of the longest "
-        "run",
+        description="the generation at which the axis ends; "
+        "left out: the last one of the longest run",
     )
     printed: PrintedTable = Field(
         None,
-        description="with hue, the name of a published table whose means are marked beside the "
-        "last values",
+        description="with hue, the name of a published table "
+        "whose means are marked beside the last values",
     )
 
     @property
@@ -281,9 +281,8 @@ def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: 
     strip.tick_params(labelleft=False, left=False)
     strip.set_xticks([])
     strip.set_xlim(-0.7, len(ends) - 0.3)
-    strip.set_xlabel(
-        f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8
-    )  # level with that of the panel, below its last number
+    # Level with that of the panel, below its last number.
+    strip.set_xlabel(f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8)
     strip.grid(visible=True, axis="y")
     for column, (end, look, value) in enumerate(zip(ends, looks, printed)):
         strip.plot(

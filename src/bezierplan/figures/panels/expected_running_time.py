@@ -203,13 +203,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         return Note(
             "",
             f"median over {first['problems']:g} problems; never: at least half of them are not "
-            f"solved in any run",
+            "solved in any run",
         )
     fewest, most = frame["runs"].min(), frame["runs"].max()
     return Note(
         "",
-        f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; never: no run "
-        f"gets there",
+        f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; "
+        "never: no run gets there",
     )
 
 

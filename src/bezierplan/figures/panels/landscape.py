@@ -58,8 +58,8 @@ class Options(RunsPanel):
     one: ClassVar[tuple[str, ...]] = ("problem",)
 
     data: Function = Field(
-        description="the name of a function of the study's module that returns a table, called "
-        "with the runs"
+        description="the name of a function of the study's module "
+        "that returns a table, called with the runs"
     )
 
     def source(self, sources: Sources) -> tuple[Results, pd.DataFrame]:
@@ -83,8 +83,8 @@ def data(source: tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame
     names = list(results.runs["problem"].unique())
     if len(names) != 1:
         raise ValueError(
-            f"a landscape is one of exactly one problem, not of {len(names)} {names}; see its "
-            f"`where`"
+            "a landscape is one of exactly one problem, "
+            f"not of {len(names)} {names}; see its `where`"
         )
     problem = results.problems[names[0]]
     ends = pd.DataFrame(

@@ -120,7 +120,7 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
     if single.duplicated([*keys, "repeat"]).any():
         raise ValueError(
             f"repeats: several runs of one repeat have equal {' and '.join(keys)}; see the "
-            f"panel's `where`"
+            "panel's `where`"
         )
     values = metrics.values(source.runs, metric, source.problems).loc[single.index]
     thin = single[[*keys, "repeat"]].assign(value=values, part="repeat", **constants(source.runs))

@@ -229,7 +229,8 @@ class Options(RunsPanel):
     )
     cell_optimum: Flag = Field(
         False,
-        description="whether the least path from cell centre to cell centre is drawn, true or false",
+        description="whether the least path from cell centre "
+        "to cell centre is drawn, true or false",
     )
     band: Positive = Field(
         None,

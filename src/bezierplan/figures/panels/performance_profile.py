@@ -43,8 +43,8 @@ class Options(RunsPanel):
 
     cost: Literal["length", "evaluations", "cpu_s"] = Field(
         description="what is compared: length (of the median run), or the expected evaluations or "
-        "cpu_s to a path within a share of the "
-        "exact bound"
+        "cpu_s to a path within a "
+        "share of the exact bound"
     )
     within: Positive = Field(
         None, description="with evaluations and cpu_s, that share, a number above 0, such as 0.05"
@@ -53,10 +53,11 @@ class Options(RunsPanel):
     @model_validator(mode="after")
     def _check_within(self) -> Options:
         if (self.cost == "length") == ("within" in self.model_fields_set):
-            raise wrong(
-                f"within: "
-                f"{'is for evaluations and cpu_s alone' if self.cost == 'length' else f'cost {self.cost} needs it'}"
+            is_length = self.cost == "length"
+            why = (
+                "is for evaluations and cpu_s alone" if is_length else f"cost {self.cost} needs it"
             )
+            raise wrong(f"within: {why}")
         return self
 
 

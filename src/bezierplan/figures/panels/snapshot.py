@@ -61,7 +61,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         if results.runs[column].nunique() != 1:
             raise ValueError(
                 f"a snapshot needs runs of one {column}, not of {results.runs[column].nunique()}; "
-                f"see the panel's `where`"
+                "see the panel's `where`"
             )
     run = picked(results.runs, options.pick.plain())
     if run is None:

@@ -66,8 +66,8 @@ class Options(Panel):
         {}, description="settings that take the place of the method's own, by name"
     )
     runs: Count = Field(
-        description="how many runs are made, a whole number of at least 1; the shortest free path "
-        "is drawn"
+        description="how many runs are made, a whole number of at least 1; "
+        "the shortest free path is drawn"
     )
     plane: Literal["xy", "xz", "yz"] = Field(
         description="the plane on which it is projected: xy, xz or yz"

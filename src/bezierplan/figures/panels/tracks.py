@@ -150,7 +150,7 @@ def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
     if not np.array_equal(track[-1], path_of(run).points):
         raise ValueError(
             f"run {run['id']}: its rerun ends in another path; the runs table comes from another "
-            f"version of the code"
+            "version of the code"
         )
     return [Path(run["path_curve"], points) for points in track]
 
@@ -169,8 +169,8 @@ def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
         drawn = [way.assign(part="way", iteration=range(len(paths)))]
     else:
         raise ValueError(
-            f"point: {point}; expected 0 to {len(paths[0].points) - 1}, a control point of the "
-            f"curve"
+            f"point: {point}; "
+            f"expected 0 to {len(paths[0].points) - 1}, a control point of the curve"
         )
     return pd.concat(drawn, ignore_index=True).assign(run=run["id"], length=run["length"])
 

@@ -80,8 +80,8 @@ class Options(Panel):
     )
     embed: Flag = Field(
         False,
-        description="whether a grid is put into one of a power of two of rows and columns, true "
-        "or false",
+        description="whether a grid is put into one of a power "
+        "of two of rows and columns, true or false",
     )
 
     def source(self, sources: Sources) -> Workspace:
@@ -281,9 +281,10 @@ def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
             ((own["y"] - bottom) // side).astype(int), ((own["x"] - left) // side).astype(int)
         ] = to_rgb(_CELLS[part]["facecolor"])
         if len(own):
+            # For the legend.
             axes.add_collection(
                 PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part]), autolim=False
-            )  # for the legend
+            )
     axes.imshow(
         image, extent=(left, right, bottom, top), origin="lower", aspect="equal", zorder=0.5
     )

@@ -95,9 +95,11 @@ def check(
         For coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above
         32; for a degree above 60; and for an unknown corner-cutting rule.
 
-    Notes ----- A path deeper than 4e-9 is never called free, and one no deeper than 1e-9 never
-    colliding; in between, either verdict is possible. At the tip of a notch between polygons that
-    is sharper than 60 degrees, 4e-9 becomes 2e-9 divided by the sine of half its angle.
+    Notes
+    -----
+    A path deeper than 4e-9 is never called free, and one no deeper than 1e-9 never colliding; in
+    between, either verdict is possible. At the tip of a notch between polygons that is sharper than
+    60 degrees, 4e-9 becomes 2e-9 divided by the sine of half its angle.
 
     Examples
     --------

@@ -304,9 +304,8 @@ def _motion(points, turn, reach):
         speed * pull + drift * sway
     ) / slowest**4
     deviation = 0.125 * (math.hypot(pull, sway) + reach * (rate**2 + change))
-    deviation = min(
-        deviation, 0.125 * sway + reach * rate
-    )  # from the place in which it begins, moved along the chord
+    # From the place in which it begins, moved along the chord.
+    deviation = min(deviation, 0.125 * sway + reach * rate)
     first = math.atan2(points[1, 1] - points[0, 1], points[1, 0] - points[0, 0])
     return (
         first,

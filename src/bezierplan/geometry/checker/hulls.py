@@ -32,9 +32,7 @@ _SHORT_CHORD = 1e-3
 
 @allocation_free
 def copy_points(points: np.ndarray, place: np.ndarray) -> None:
-    """Copy control points one by one. Array assignment does the same, but takes seconds to
-    compile.
-    """
+    """Copy control points one by one. Array assignment does it too, but compiles for seconds."""
     for i in range(len(points)):
         place[i, 0] = points[i, 0]
         place[i, 1] = points[i, 1]

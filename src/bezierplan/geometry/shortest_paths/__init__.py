@@ -49,11 +49,12 @@ def shortest_path(
         For an unknown corner-cutting rule, and for the rule `closed` on a grid with more than
         `grid.MOST_NODES` corners.
 
-    Notes ----- On a grid the visibility of start and target is decided for the nearest points of a
-    lattice: coordinates that are not fractions of a cell with a common denominator of at most 2**20
-    are off by up to 5e-7 cells in that test. Lengths are those of the points themselves. Around
-    circles the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS`
-    longer.
+    Notes
+    -----
+    On a grid the visibility of start and target is decided for the nearest points of a lattice:
+    coordinates that are not fractions of a cell with a common denominator of at most 2**20 are off
+    by up to 5e-7 cells in that test. Lengths are those of the points themselves. Around circles the
+    length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS` longer.
 
     Examples
     --------
@@ -91,9 +92,11 @@ def least_length(bound: Bound) -> float:
     float
         Its length less an allowance, in the problem's unit.
 
-    Notes ----- Such a path may be a few 1e-9 deep and cut its bends by as much; the allowance is a
-    relative 1e-9 plus 1e-8 per radian of turning. Obstacles that are sharper than a right angle and
-    gaps below 1e-7 can allow more.
+    Notes
+    -----
+    Such a path may be a few 1e-9 deep and cut its bends by as much; the allowance is a relative
+    1e-9 plus 1e-8 per radian of turning. Obstacles that are sharper than a right angle and gaps
+    below 1e-7 can allow more.
     """
     step = np.diff(bound.points, axis=0)
     step = step[np.hypot(step[:, 0], step[:, 1]) > TOLERANCE]

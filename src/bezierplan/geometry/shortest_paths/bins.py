@@ -45,9 +45,8 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
         begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
-            for number in range(
-                column * bins.rows + low, column * bins.rows + high + 1
-            ):  # += on a slice takes seconds to compile
+            # += on a slice takes seconds to compile.
+            for number in range(column * bins.rows + low, column * bins.rows + high + 1):
                 first[number + 1] += 1
     first = np.cumsum(first)
     slot = first[:-1].copy()

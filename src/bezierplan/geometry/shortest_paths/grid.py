@@ -113,7 +113,7 @@ def refuse_large(nodes: int) -> None:
     if nodes > MOST_NODES:
         raise ValueError(
             f"the visibility graph has {nodes} nodes, more than {MOST_NODES}; use a coarser or a "
-            f"smaller workspace"
+            "smaller workspace"
         )
 
 

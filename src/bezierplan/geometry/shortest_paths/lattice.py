@@ -27,9 +27,10 @@ def lattice_path(
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> occupied = from_lines(["....", ".##.", "...."], cell=1.0, unit="m").occupied
-    >>> lattice_path(occupied, start=(0, 0), target=(2, 3), diagonal_weight=1.5, corner_rule="free").length
+    >>> ends = {"start": (0, 0), "target": (2, 3)}
+    >>> lattice_path(occupied, **ends, diagonal_weight=1.5, corner_rule="free").length
     4.5
-    >>> lattice_path(occupied, start=(0, 0), target=(2, 3), diagonal_weight=1.5, corner_rule="none").length
+    >>> lattice_path(occupied, **ends, diagonal_weight=1.5, corner_rule="none").length
     5.0
     """
     if corner_rule not in Corners.__members__:

@@ -43,9 +43,8 @@ class Scene(NamedTuple):
 def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
     """The scene of occupied cells with a ring around them and corners as `grid` finds them."""
     around = np.pad(cells, ((0, 0), (1, 1)))
-    row, column = np.nonzero(
-        around[:, 1:] != around[:, :-1]
-    )  # where a run begins and ends, in turn
+    # Where a run begins and ends, in turn.
+    row, column = np.nonzero(around[:, 1:] != around[:, :-1])
     row, runs = row[::2], np.column_stack([column[::2], column[1::2]]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
     first_corner = np.searchsorted(corners[:, 1], np.arange(len(cells)))

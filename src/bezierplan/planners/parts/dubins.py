@@ -104,9 +104,8 @@ def _between_headings(first, alpha, beta, d, radius, words):
         turn = 1.0 - 2.0 * k
         east, north = d + turn * (sa - sb), turn * (cb - ca)
         p = math.hypot(east, north)
-        bearing = (
-            math.atan2(north, east) if p > _NO_PART else alpha
-        )  # one circle: no line, and no bearing of it
+        # One circle: no line, and no bearing of it.
+        bearing = math.atan2(north, east) if p > _NO_PART else alpha
         t, q = _angle(turn * (bearing - alpha)), _angle(turn * (beta - bearing))
         _put(words, k, first, turn, t, 0.0, p, turn, q, radius)
     for k in range(2):  # to different sides: LSR, RSL

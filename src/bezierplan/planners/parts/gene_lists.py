@@ -155,9 +155,7 @@ def distinct(pool: Pool, size: int) -> int:
 
 @allocation_free
 def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
-    """The Q statistic of two lists, each of a chromosome with the given number of genes
-    (`diversity.q_statistic`).
-    """
+    """The Q statistic of the lists of two chromosomes of `genes` genes."""
     both = shared(one, other)
     return q_statistic(
         both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both

@@ -154,9 +154,8 @@ def polygonal_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -
     return Polygonal(
         edges=np.concatenate(edges),
         first=np.concatenate([[0], np.cumsum([len(each) for each in edges])]),
-        boxes=np.array([shape.bounds for shape in shapes]).take(
-            [0, 2, 1, 3], axis=1
-        ),  # in rows, or the kernels are compiled twice
+        # In rows, or the kernels are compiled twice.
+        boxes=np.array([shape.bounds for shape in shapes]).take([0, 2, 1, 3], axis=1),
         deepest=np.array([shapely.maximum_inscribed_circle(shape).length for shape in shapes]),
     )
 

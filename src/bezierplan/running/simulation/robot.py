@@ -167,17 +167,17 @@ def _plan(
     margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
     obstacles = region(world.obstacles(looked))
     for margin in margins:
-        place = tuple(map(float, approach[-1]))
-        seen = Problem(problem.name, world.workspace(looked, margin), place, problem.target)
-        if place == problem.target:
+        position = tuple(map(float, approach[-1]))
+        seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
+        if position == problem.target:
             return (
                 Planned(time, None, 0.0, margin, clock.process_time() - began, 0),
                 way(approach),
                 state,
             )
-        if not (_is_free(world, seen, place) and _is_free(world, seen, problem.target)):
+        if not (_is_free(world, seen, position) and _is_free(world, seen, problem.target)):
             continue
-        plan, found = planner(seen, state)
+        plan, next_state = planner(seen, state)
         evaluations += plan.evaluations
         if plan.path is not None and plan.claimed_feasible:
             along = way(np.concatenate([approach, drivable(plan.path, policy.spacing, obstacles)]))
@@ -186,7 +186,7 @@ def _plan(
                     time, plan.path, along.length, margin, clock.process_time() - began, evaluations
                 ),
                 along,
-                found,
+                next_state,
             )
     return (
         Planned(time, None, math.inf, math.nan, clock.process_time() - began, evaluations),

@@ -1,12 +1,15 @@
 """One file per kind of workspace: `Options`, the keys of its description, and how it is made.
 
-| name | means | | --- | --- | | `Options` | the keys that a description of this kind may have | |
-`load(description, folder)` | the workspace of a description, if it is fixed; files are looked up in
-a folder | | `sources(description, folder)` | the files from which it is read, if they are more than
-those that its keys name | | `draw(description, problem, name)` | the workspace of a problem, if it
-is random; seeded by the name of study and workspace | | `candidates(description, problem, name)` |
-in place of `draw`, workspaces of which the first with a suitable lattice path is taken | |
-`world(description, problem, name, folder, length)` | the world of a problem, if the kind moves |
+- `Options`: the keys that a description of this kind may have
+- `load(description, folder)`: the workspace of a description, if it is fixed; files are looked up
+  in a folder
+- `sources(description, folder)`: the files from which it is read, if they are more than those that
+  its keys name
+- `draw(description, problem, name)`: the workspace of a problem, if it is random; seeded by the
+  name of study and workspace
+- `candidates(description, problem, name)`: in place of `draw`, workspaces of which the first with a
+  suitable lattice path is taken
+- `world(description, problem, name, folder, length)`: the world of a problem, if the kind moves
 
 A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5
 in absolute value. `length` of a map is that of the shortest path from cell to cell between the ends
@@ -63,7 +66,7 @@ def _check_file(value: Any) -> str:
     if _NOT_IN_NAMES & set(value) or not all(map(_fits_everywhere, value.split("/"))):
         wanted = (
             f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and "
-            f"names of devices"
+            "names of devices"
         )
         raise wrong(f"{value!r}: expected {wanted}")
     return value
@@ -138,8 +141,8 @@ class World(Workspace):
     )
     steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = (
         Field(
-            description="when a world ends and with it every drive, in steps, a whole number from "
-            "1 to 10000"
+            description="when a world ends and with it every drive, "
+            "in steps, a whole number from 1 to 10000"
         )
     )
 

@@ -78,7 +78,7 @@ def world(
     if (np.diff(moments) <= 0).any() or (moments <= 0).any():
         raise ValueError(
             f"changes: they are at steps {', '.join(f'{each:g}' for each in moments)}; expected "
-            f"ascending ones above 0"
+            "ascending ones above 0"
         )
     return ChangingCells(maps, moments, pace, description["steps"])
 
@@ -92,6 +92,6 @@ def _moment(change: dict, first: Grid, length: Callable[[Grid], float], pace: fl
     if math.isinf(way):
         raise ValueError(
             f"changes: after: {change['after']:g}: no path leads from start to target on the "
-            f"first map; expected at: a step"
+            "first map; expected at: a step"
         )
     return change["after"] * way / pace

@@ -43,8 +43,8 @@ def load(description: dict, folder: Path) -> Circles:
         check_thickness(radius, f"circles: circle {i}: radius")
         if math.dist((x, y), np.clip((x, y), limits[::2], limits[1::2])) >= radius:
             raise ValueError(
-                f"circles: circle {i}: lies outside the bounds; expected a circle that reaches "
-                f"into them"
+                f"circles: circle {i}: lies outside the bounds; "
+                "expected a circle that reaches into them"
             )
         gaps = np.hypot(*(centres[i + 1 :] - (x, y)).T) - radii[i + 1 :] - radius
         gaps = np.append(

@@ -66,8 +66,8 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     numbers = np.flatnonzero(changeable)
     if problem["obstacles"] > len(numbers):
         raise ValueError(
-            f"obstacles: {problem['obstacles']}; expected at most {len(numbers)}, the cells that "
-            f"can change"
+            f"obstacles: {problem['obstacles']}; "
+            f"expected at most {len(numbers)}, the cells that can change"
         )
     maps = [first]
     for _ in moments:

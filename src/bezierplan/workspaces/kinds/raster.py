@@ -22,8 +22,8 @@ class Options(Workspace):
     margin: NotNegative | None = Field(None, description=MARGIN)
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     rule: Literal["overlap", "centre"] = Field(
-        description="which cells are occupied: those that overlap an obstacle, or whose centre "
-        "lies in one"
+        description="which cells are occupied: "
+        "those that overlap an obstacle, or whose centre lies in one"
     )
 
 

@@ -38,7 +38,7 @@ def load(description: dict, folder: Path) -> Spheres:
     for i, (*centre, radius) in enumerate(table.tolist()):
         if math.dist(centre, np.clip(centre, bounds[::2], bounds[1::2])) >= radius:
             raise ValueError(
-                f"spheres: sphere {i}: lies outside the bounds; expected a sphere that reaches "
-                f"into them"
+                f"spheres: sphere {i}: lies outside the bounds; "
+                "expected a sphere that reaches into them"
             )
     return Spheres(bounds, table[:, :3], table[:, 3], description["unit"])

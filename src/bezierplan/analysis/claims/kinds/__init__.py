@@ -3,10 +3,11 @@
 Every file has `Options`, the keys that a check of this kind may have. A kind that judges runs (its
 `Options` are `OfRuns`) also has
 
-| name | means | | --- | --- | | `EFFECT` | how an effect follows from the point values of the
-cells: an `effects.Effect` | | `cells(check, rows)` | the cells of each comparison, with its name in
-words, among the runs of one place | | `find(check, comparison, name)` | the `effects.Finding` of a
-comparison; all random draws are seeded by the name |
+- `EFFECT`: how an effect follows from the point values of the cells: an `effects.Effect`
+- `cells(check, rows)`: the cells of each comparison, with its name in words, among the runs of one
+  place
+- `find(check, comparison, name)`: the `effects.Finding` of a comparison; all random draws are
+  seeded by the name
 
 and any other kind `findings(check, claim, material)`: condition, name and finding of each
 comparison; it raises `Untestable` if there is nothing to judge. A check is an instance of its
@@ -231,8 +232,8 @@ class OfRuns(Check):
             for column in columns:
                 if column in owners:
                     raise wrong(
-                        f"{key}: {column}: is in {owners[column]} already; expected it in one of "
-                        f"the two"
+                        f"{key}: {column}: is in {owners[column]} already; "
+                        "expected it in one of the two"
                     )
                 owners[column] = key
         return self

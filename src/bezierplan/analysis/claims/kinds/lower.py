@@ -1,11 +1,14 @@
 """Whether groups are lower, or higher, than others.
 
-| statistic | test | effect size | | --- | --- | --- | | `rank` | Wilcoxon's signed ranks, Pratt's
-zeros (paired), Mann-Whitney | A12 in the claimed direction | | `rank` of booleans | McNemar's exact
-test (paired), Fisher's exact test | odds ratio | | `mean` | Student's t of the differences
-(paired), Welch's t | A12 | | any other, or several conditions | bootstrap | A12; for spreads the
-difference | | `min`, `max`, `range` | how often the sentence holds in draws of the paper's number
-of runs, on which they depend | the difference |
+| statistic | test | effect size |
+| --- | --- | --- |
+| `rank` | Wilcoxon's signed ranks, Pratt's zeros (paired), Mann-Whitney | A12 as claimed |
+| `rank` of booleans | McNemar's exact test (paired), Fisher's exact test | odds ratio |
+| `mean` | Student's t of the differences (paired), Welch's t | A12 |
+| any other, or several conditions | bootstrap | A12; for spreads the difference |
+| `min`, `max`, `range` | how often the sentence holds in draws of as many runs | the difference |
+
+Minima, maxima and ranges depend on the number of runs: their draws have as many as the paper.
 
 The effect is the group's value minus the other's: of means, or of the statistic that the check
 names.

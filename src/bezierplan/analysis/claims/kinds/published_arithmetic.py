@@ -51,8 +51,8 @@ class Options(Check):
         for selector in (*self.of, *([self.equals] if isinstance(self.equals, dict) else [])):
             if "table" not in selector:
                 raise wrong(
-                    "of: table: missing key; a file of the folder published, or a list of them, "
-                    "without .csv"
+                    "of: table: missing key; "
+                    "a file of the folder published, or a list of them, without .csv"
                 )
         return self
 

@@ -51,7 +51,7 @@ class Event(Model):
         if len(self.model_fields_set) != 1:
             raise wrong(
                 f"{len(self.model_fields_set)} keys; expected one of below, above, at_most, "
-                f"at_least, equals"
+                "at_least, equals"
             )
         return self
 
@@ -106,7 +106,7 @@ class Options(OfRuns):
         if metric and self.event is None and (metric.unit != "-" or metric.step is None):
             raise wrong(
                 f"event: missing key; {self.metric} is no truth: expected one of below, above, "
-                f"at_most, at_least, equals"
+                "at_most, at_least, equals"
             )
         return self
 
@@ -162,8 +162,8 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         return Finding(mark="?", reason="no run counts")
     if not np.isin(happened, (0.0, 1.0)).all():
         raise ValueError(
-            f"{name}: {check['metric']} has values other than true and false; its check needs an "
-            f"event"
+            f"{name}: {check['metric']} has values other than true and false; "
+            "its check needs an event"
         )
     finding = Finding(k / n, "share", k / n, n=n)
     holds = bool(claimed(check, np.array(k / n), math.nan))
