@@ -9,6 +9,7 @@ from functools import partial
 from pydantic.fields import FieldInfo
 
 from bezierplan.analysis import table_kinds
+from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures import panels
@@ -126,6 +127,15 @@ def columns_of_drives(table: columns.Table) -> str:
     )
 
 
+def columns_of_claims(tables: tuple[type, ...]) -> str:
+    """The table of columns of a table of claims, as Markdown."""
+    lines = [
+        f"| `{name}` | {_PRINTED[kind]} | {about.meaning} |"
+        for name, (kind, about) in columns.declared(*tables).items()
+    ]
+    return "\n".join(["| column | values | meaning |", "| --- | --- | --- |", *lines])
+
+
 def _columns(rows: list[tuple[str, type, str, str]]) -> str:
     """Name, type, unit and meaning of each column."""
     lines = [
@@ -150,7 +160,10 @@ def renewed_columns(text: str) -> str:
     drives = {
         f"{name} of drives": columns_of_drives(table) for name, table in columns.TABLES.items()
     }
-    return _renewed(text, every | drives, "columns")
+    claims_tables = {
+        name: columns_of_claims(tables) for name, tables in claim_columns.TABLES.items()
+    }
+    return _renewed(text, every | drives | claims_tables, "columns")
 
 
 def _renewed(text: str, tables: dict[str, str], what: str) -> str:
