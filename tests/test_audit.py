@@ -15,9 +15,10 @@ from scipy import stats
 
 from bezierplan.analysis import audit, possible
 from bezierplan.analysis.metrics import METRICS
+from bezierplan.analysis.table_kinds import Layout, Monotone
 
 ONE = Fraction(1)
-LAYOUT = {"columns": [], "selected": [], "monotone": []}
+LAYOUT = Layout()
 
 
 def printed(text):
@@ -33,7 +34,7 @@ def table(*rows, n=10):
 
 
 def audited(*rows, n=10, **layout):
-    return audit.of_any_paper({"table1": table(*rows, n=n)}, {"table1": LAYOUT | layout})
+    return audit.of_any_paper({"table1": table(*rows, n=n)}, {"table1": Layout(**layout)})
 
 
 def marks(rows, word):
@@ -276,7 +277,7 @@ def test_ranks_are_added_within_the_columns_of_a_table():
         (name, "rank", "mean", text) for name, text in zip("abab", ("1.2", "1.8", "1.5", "1.5"))
     ]
     numbers = table(*rows).assign(problem=["p", "p", "q", "q"])
-    found = audit.of_any_paper({"table1": numbers}, {"table1": LAYOUT | {"columns": ["problem"]}})
+    found = audit.of_any_paper({"table1": numbers}, {"table1": Layout(columns=["problem"])})
     assert marks(found, "add to") == [True, True]
     assert marks(audit.of_any_paper({"table1": numbers}, {"table1": LAYOUT}), "add to") == [False]
 
@@ -309,15 +310,15 @@ def test_an_order_that_must_be_kept():
         ("a", "length", "max", "1"),
     )
     numbers = numbers.assign(obstacles=[1, 3, 2, 4])
-    rule = {
-        "metric": "length",
-        "statistic": "mean",
-        "along": "obstacles",
-        "direction": "up",
-        "because": "it is said",
-    }
+    rule = Monotone(
+        metric="length",
+        statistic="mean",
+        along="obstacles",
+        direction="up",
+        because="it is said",
+    )
     assert [row["consistent"] for row in audit.of_orders("table1", numbers, rule)] == [True, True]
-    (first, second) = audit.of_orders("table1", numbers, rule | {"direction": "down"})
+    (first, second) = audit.of_orders("table1", numbers, rule.but(direction="down"))
     assert (first["consistent"], second["consistent"]) == (False, False)
     assert (second["place"], second["arithmetic"]) == (
         "method=a, obstacles=3, metric=length, statistic=mean",

@@ -20,10 +20,11 @@ from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims import comparisons, judge, variants
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import OfRuns, kinds
-from bezierplan.analysis.claims.material import Material
+from bezierplan.analysis.claims.material import Material, Shown
 from bezierplan.analysis.papers import elhoseny2017, ma2020, meledje, song2016, tharwat2018
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
+from bezierplan.study import jobs
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
@@ -55,9 +56,10 @@ def published(key):
 
 @cache
 def artefacts(key):
+    job = jobs.claims_job(study(key), study(key).claims, primary_alone=False)
     return {
-        name: artefact.plain()
-        for name, artefact in (study(key).tables | study(key).figures).items()
+        name: [Shown.model_validate(part) for part in parts]
+        for name, parts in job["artefacts"].items()
     }
 
 
@@ -126,8 +128,8 @@ def factors(key, claim, checks, experiment) -> dict[str, list]:
                 found[column] += one_or_list(wanted)
         found[column_of(check)] += groups_of(check)
     if any(check["metric"] == "rank" for check in own):
-        part = artefacts(key)[one_or_list(claim["artefact"])[0]]
-        for column, wanted in part.get("where", {}).items():
+        part = artefacts(key)[one_or_list(claim["artefact"])[0]][0]
+        for column, wanted in part.where.items():
             found[column] += one_or_list(wanted)
     for check in own:
         for column in [*check.get("every", []), *check.get("pool", [])]:

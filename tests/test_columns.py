@@ -6,6 +6,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.planners import PLACE
 from bezierplan.running import columns, execution, problems, rows
 from bezierplan.study import keys
@@ -36,6 +37,7 @@ def test_tables_of_columns_are_those_of_the_declarations():
         f"<!-- columns of {name} -->" in text and f"<!-- columns of {name} of drives -->" in text
         for name in columns.TABLES
     )
+    assert all(f"<!-- columns of {name} -->" in text for name in claim_columns.TABLES)
 
 
 def test_a_row_has_the_declared_columns_and_no_other():
@@ -80,3 +82,5 @@ def test_every_column_says_what_it_means():
         for _, about in columns.declared(*kind.every, kind.drives).values():
             assert about.meaning
             assert about.unit in ("", columns.UNITS, columns.STEPS, columns.SECONDS)
+    for tables in claim_columns.TABLES.values():
+        assert all(about.meaning for _, about in columns.declared(*tables).values())

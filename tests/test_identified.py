@@ -13,6 +13,7 @@ from studies import FOLDER
 from bezierplan.analysis import identified, measures
 from bezierplan.analysis.claims import verdicts
 from bezierplan.analysis.sensitivity import changed
+from bezierplan.analysis.table_kinds import Identify
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -90,12 +91,7 @@ def of_song2016(method):
         name: Problem(name, grid, grid.centre(start), grid.centre(target))
         for name, (start, target) in ends.items()
     }
-    entry = {
-        "metric": "objective",
-        "where": {"method": method},
-        "edges": 7,
-        "because": "polyline",
-    }
+    entry = Identify(metric="objective", where={"method": method}, edges=7, because="polyline")
     *rows, together = identified.of_table("table1", published, [entry], problems)
     return rows, together
 

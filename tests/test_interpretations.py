@@ -11,11 +11,13 @@ import numpy as np
 import pandas as pd
 import planted
 import pytest
+from pivots import pivot_of
 
 from bezierplan.analysis import explained, interpretations, statistics
 from bezierplan.analysis.explained import Evaluated
 from bezierplan.analysis.results import Results
 from bezierplan.analysis.search import Part, confirm, search
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import specification
 from bezierplan.study import choices, reading
 from bezierplan.workspaces.grid import from_lines
@@ -153,14 +155,14 @@ def test_a_choice_wins_over_the_settings_of_a_problem(studies):
 
 def test_only_the_world_of_the_interpretation_is_run(studies):
     table = choices.interpretations_job(studies["tharwat2018"], 1)["tables"]["table3"]
-    chunk = table["jobs"]["cpso1_gauss"]
+    chunk, given = table["jobs"]["cpso1_gauss"], Pivot.model_validate(table["spec"])
     for chosen, world in (
         ({}, ("equal", "default")),
         ({"workspace": "public", "profile": "tuned"}, ("public", "tuned")),
     ):
-        spec, job = interpretations.in_world(table["spec"], chunk, chosen)
+        spec, job = interpretations.in_world(given, chunk, chosen)
         assert (list(job["problems"]), job["vary"]) == ([world[0]], {"profile": [world[1]]})
-        assert (spec["where"]["workspace"], spec["where"]["profile"]) == world
+        assert (spec.where["workspace"], spec.where["profile"]) == world
 
 
 def results(mean: float, spread: float = 1.0, runs: int = 40) -> Results:
@@ -181,11 +183,12 @@ def results(mean: float, spread: float = 1.0, runs: int = 40) -> Results:
     return Results(pd.DataFrame(rows), PROBLEMS, pd.DataFrame())
 
 
-SPEC = {
+TABLE = {
     "where": {"method": ["a", "b"]},
     "index": ["method"],
     "values": [{"metric": "objective", "statistic": "mean"}],
 }
+SPEC = pivot_of(TABLE)
 
 
 def printed(a: float, b: float) -> pd.DataFrame:
@@ -218,7 +221,7 @@ def test_likelihood_is_highest_at_the_truth_and_knows_that_runs_are_common():
 
 
 def test_an_event_that_none_of_our_few_runs_had_may_be_in_print_once_or_twice():
-    spec = SPEC | {"values": [{"metric": "feasible", "statistic": "count", "label": "runs"}]}
+    spec = pivot_of(TABLE | {"values": [{"metric": "feasible", "statistic": "count"}]})
     ours = results(5.0)
     ours = ours._replace(runs=ours.runs.assign(feasible=False))
 
@@ -251,18 +254,16 @@ def test_a_metric_takes_the_place_of_the_printed_word():
     spec, published = interpretations.under_metrics(
         SPEC, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}]
     )
-    assert [value["metric"] for value in spec["values"]] == ["length"]
+    assert [value.metric for value in spec.values] == ["length"]
     assert set(published["metric"]) == {"length"}
     # A table that shows the metric already shows it once.
-    both = SPEC | {"values": [*SPEC["values"], {"metric": "length", "statistic": "mean"}]}
-    assert (
-        len(
-            interpretations.under_metrics(
-                both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}]
-            )[0]["values"]
-        )
-        == 1
+    both = pivot_of(
+        TABLE | {"values": [*TABLE["values"], {"metric": "length", "statistic": "mean"}]}
     )
+    spec, _ = interpretations.under_metrics(
+        both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}]
+    )
+    assert len(spec.values) == 1
 
 
 def test_the_search_leaves_out_what_takes_too_long(studies):

@@ -10,6 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 from panels import options_of
 from PIL import Image, ImageSequence
+from pivots import pivot_of
 
 from bezierplan.analysis import metrics, results, tables
 from bezierplan.commands import replay
@@ -354,9 +355,8 @@ def test_an_entry_of_a_table_pairs_the_methods_that_it_names():
             "where": {"method": ["one", "other"]},
         },
     ]
-    table = tables.pivot(
-        paired_runs(), {"index": ["method"], "columns": ["value"], "values": values}, {}
-    )
+    spec = pivot_of({"index": ["method"], "columns": ["value"], "values": values})
+    table = tables.pivot(paired_runs(), spec, {})
     assert table["delay"].to_dict() == {"blind": "", "one": "0.100", "other": "0.200"}
     assert table["share"].to_dict() == {"blind": "0.00", "one": "1.00", "other": "0.50"}
     assert table["runs counted: delay"].to_dict() == {

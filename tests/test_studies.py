@@ -15,6 +15,7 @@ from studies import study as shared
 from bezierplan.analysis import audit, metrics
 from bezierplan.analysis.papers import song2016, tharwat2018
 from bezierplan.analysis.results import Results
+from bezierplan.analysis.table_kinds import Layout
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
@@ -375,7 +376,8 @@ def test_flow_chart_has_a_box_around_every_step():
 
 def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
-    layouts = targets.audit_params({"tharwat2018": study}, "full", "tharwat2018")["job"]["layouts"]
+    job = targets.audit_params({"tharwat2018": study}, "full", "tharwat2018")["job"]
+    layouts = {name: Layout.model_validate(each) for name, each in job["layouts"].items()}
     tables = published("tharwat2018")
     compared = {name: audit.read_published(study.published_file(name)) for name in layouts}
     rows = audit.table(

@@ -6,8 +6,9 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from pivots import pivot_of
 
-from bezierplan.analysis import comparison, listing, metrics, statistics, tables
+from bezierplan.analysis import comparison, listing, metrics, statistics, table_kinds, tables
 from bezierplan.analysis.results import Results
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -66,8 +67,16 @@ def published(plain: float = 10.0) -> pd.DataFrame:
     return pd.read_csv(io.StringIO(PUBLISHED.format(plain=plain)))
 
 
+def pivot(ours: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
+    return tables.pivot(ours, pivot_of(spec), labels)
+
+
+def beside(ours: Results, spec: dict, printed: pd.DataFrame, **variants: str) -> pd.DataFrame:
+    return comparison.compare(ours, pivot_of(spec), printed, variants, [], "study/table1")
+
+
 def compare(ours: Results, plain: float = 10.0, spec: dict = SPEC) -> pd.DataFrame:
-    return comparison.compare(ours, spec, published(plain), {"faster": "fast"}, [], "study/table1")
+    return beside(ours, spec, published(plain), faster="fast")
 
 
 def row(table: pd.DataFrame, *key: str) -> pd.Series:
@@ -87,7 +96,7 @@ def shuffled(ours: Results) -> Results:
 
 
 def test_table_in_the_order_of_the_configuration():
-    table = tables.pivot(results(), SPEC, LABELS)
+    table = pivot(results(), SPEC, LABELS)
     assert table.index.to_list() == ["the long one", "brief"]
     assert table.columns.to_list() == [
         "number of evaluations: plain method",
@@ -104,7 +113,7 @@ def test_failed_runs_are_never_averaged():
     ours = results()
     feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
     spec = SPEC | {"values": [{"metric": "length", "statistic": "mean", "decimals": 6}]}
-    assert tables.pivot(ours, spec, {}).loc["long", "length: plain"] == f"{feasible.mean():.6f}"
+    assert pivot(ours, spec, {}).loc["long", "length: plain"] == f"{feasible.mean():.6f}"
     found = row(compare(ours), "long", "plain", "length")
     assert (found["n_ours"], found["best"]) == (16, feasible.min())
     assert found["value_ours"] == feasible.median()
@@ -120,7 +129,7 @@ def test_count_stands_beside_what_leaves_failed_runs_out():
     }
     ours = results()
     ours.runs.loc[ours.runs["problem"] == "brief", "feasible"] = True
-    table = tables.pivot(ours, spec, {})
+    table = pivot(ours, spec, {})
     assert table.columns.to_list() == [
         "length: min",
         "length: max",
@@ -130,14 +139,12 @@ def test_count_stands_beside_what_leaves_failed_runs_out():
     ]
     assert table["runs counted: length"].to_dict() == {"long": "16 of 20", "brief": "20 of 20"}
     ours.runs["feasible"] = True
-    assert "runs counted: length" not in tables.pivot(ours, spec, {})
+    assert "runs counted: length" not in pivot(ours, spec, {})
 
 
 def test_count_is_of_the_runs_that_a_value_asks_for():
     late = {"metric": "length", "statistic": "median", "where": {"repeat": [0, 1, 2]}}
-    table = tables.pivot(
-        results(), {"index": ["value"], "columns": ["method"], "values": [late]}, {}
-    )
+    table = pivot(results(), {"index": ["value"], "columns": ["method"], "values": [late]}, {})
     assert table["runs counted: fast to plain"].to_list() == ["4 of 6"]
     found = row(compare(results(), spec=SPEC | {"values": [late]}), "long", "plain", "length")
     assert (found["n_ours"], found["n_asked"]) == (2, 3)
@@ -146,7 +153,7 @@ def test_count_is_of_the_runs_that_a_value_asks_for():
 def test_empty_group_gives_an_empty_cell():
     ours = results()
     ours.runs.loc[ours.runs["method"] == "fast", "feasible"] = False
-    assert tables.pivot(ours, SPEC, {})["length: fast"].to_list() == ["", ""]
+    assert pivot(ours, SPEC, {})["length: fast"].to_list() == ["", ""]
     found = row(compare(ours), "long", "fast", "length")
     assert found["n_ours"] == 0
     assert (
@@ -160,7 +167,7 @@ def test_empty_group_gives_an_empty_cell():
 def test_no_runs_at_all():
     ours = results()
     ours = ours._replace(runs=ours.runs.iloc[:0])
-    assert tables.pivot(ours, SPEC, {}).empty
+    assert pivot(ours, SPEC, {}).empty
     found = compare(ours)
     assert found["value_published"].to_list() == [10.0, 1000.0, 10.0]
     assert (found["n_ours"] == 0).all()
@@ -181,7 +188,7 @@ def test_where_of_a_value_and_several_statistics():
         ],
     }
     ours = results()
-    table = tables.pivot(ours, spec, {})
+    table = pivot(ours, spec, {})
     two = ours.runs.query("problem == 'brief' and method == 'plain' and repeat in [1, 2]")["length"]
     assert table.index.to_list() == ["min", "max"]
     assert table["plain: length"].to_list() == [f"{two.min():.3f}", f"{two.max():.3f}"]
@@ -196,14 +203,14 @@ def test_where_of_a_value_and_several_statistics():
 def test_words_left_out_become_levels_where_needed():
     length = {"metric": "length", "statistic": "mean"}
     one = {"index": ["problem"], "columns": ["method"], "values": [length]}
-    assert tables.pivot(results(), one, {}).columns.to_list() == [
+    assert pivot(results(), one, {}).columns.to_list() == [
         "fast",
         "faster",
         "plain",
         "runs counted: fast to plain",
     ]
     lone = {"index": ["problem", "method"], "values": [length]}
-    assert tables.pivot(results(), lone, {}).columns.to_list() == ["length", "runs counted: length"]
+    assert pivot(results(), lone, {}).columns.to_list() == ["length", "runs counted: length"]
     several = {
         "index": ["problem", "method"],
         "values": [
@@ -211,7 +218,7 @@ def test_words_left_out_become_levels_where_needed():
             {"metric": "evaluations", "statistic": "mean"},
         ],
     }
-    table = tables.pivot(results(), several, {})
+    table = pivot(results(), several, {})
     assert table.columns.to_list() == [
         "length: min",
         "length: max",
@@ -221,18 +228,18 @@ def test_words_left_out_become_levels_where_needed():
     assert table.index.names == ["problem", "method"]
 
 
-def test_decimals_of_some_values_only():
+def test_each_value_has_its_decimals():
     values = [
-        {"metric": "gap", "statistic": "mean"},
+        {"metric": "gap", "statistic": "mean", "decimals": 3},
         {"metric": "evaluations", "statistic": "mean", "decimals": 1},
     ]
     spec = SPEC | {"values": values}
-    assert set(tables.pivot(results(), spec, {})["evaluations: fast"]) == {"1000.0"}
+    assert set(pivot(results(), spec, {})["evaluations: fast"]) == {"1000.0"}
     assert row(compare(results(), spec=spec), "long", "fast", "gap")["n_ours"] == 16
 
 
 def test_numbers_in_the_index_are_sorted_as_numbers():
-    table = tables.pivot(
+    table = pivot(
         results(),
         {"index": ["repeat"], "values": [{"metric": "evaluations", "statistic": "count"}]},
         {},
@@ -242,7 +249,7 @@ def test_numbers_in_the_index_are_sorted_as_numbers():
 
 def test_order_of_the_runs_never_changes_a_byte():
     ours = results()
-    assert tables.pivot(shuffled(ours), SPEC, {}).to_csv() == tables.pivot(ours, SPEC, {}).to_csv()
+    assert pivot(shuffled(ours), SPEC, {}).to_csv() == pivot(ours, SPEC, {}).to_csv()
     assert compare(shuffled(ours)).to_csv() == compare(ours).to_csv()
 
 
@@ -314,9 +321,7 @@ def test_seconds_of_another_machine_are_shown_but_not_judged():
     spec = SPEC | {
         "values": [{"metric": "cpu_s", "statistic": "mean", "label": "time", "decimals": 3}]
     }
-    found = row(
-        comparison.compare(ours, spec, given, {}, [], "study/table1"), "long", "plain", "cpu_s"
-    )
+    found = row(beside(ours, spec, given), "long", "plain", "cpu_s")
     assert (found["value_published"], found["value_ours"]) == (200.0, pytest.approx(0.01))
     assert pd.isna(found["in_range"])
 
@@ -352,7 +357,7 @@ def least(plain, fast=11.0, n=20, other=11.0):
         "unit": "m",
     }
     given = pd.DataFrame(printed | {"value": [plain, fast, other]}).dropna()
-    table = comparison.compare(results(), LEAST, given, {}, [], "study/table1")
+    table = beside(results(), LEAST, given)
     return row(table, "long", "plain", "length")
 
 
@@ -427,9 +432,7 @@ def test_number_that_the_metric_cannot_have_is_not_possible():
         "n": 9,
         "unit": "-",
     }
-    table = comparison.compare(
-        results(), spec, pd.DataFrame(printed | {"value": [-1.0, 1000.0]}), {}, [], "study/table1"
-    )
+    table = beside(results(), spec, pd.DataFrame(printed | {"value": [-1.0, 1000.0]}))
     assert [
         row(table, "long", method, "evaluations")["possible"] for method in ("plain", "fast")
     ] == [False, True]
@@ -454,9 +457,8 @@ def test_lengths_that_count_cells_carry_their_own_bound_and_gap():
     values = [
         {"metric": metric, "statistic": "mean", "label": metric, "decimals": 1} for metric in wanted
     ]
-    cells = tables.cells(
-        ours, SPEC | {"values": values, "where": {"problem": "long"}}, ["problem", "method"]
-    )
+    spec = pivot_of(SPEC | {"values": values, "where": {"problem": "long"}})
+    cells = tables.cells(ours, spec, ["problem", "method"])
     assert cells.groupby("metric")["bound"].unique().map(list).to_dict() == {
         "length": [9.0],
         "cells4": [11.0],
@@ -484,15 +486,13 @@ def test_published_file(tmp_path):
     file.write_text(
         "problem,term,metric,statistic,n,unit,value\nlong,none,length,mean,,m,3\nlong,NA,length,mean,5,m,\n"
     )
-    table = comparison.read_published(str(file), SPEC)
+    table = comparison.read_published(str(file), pivot_of(SPEC))
     assert table["term"].to_list() == ["none", "NA"]
     assert table[["n", "value"]].isna().to_numpy().tolist() == [[True, False], [False, True]]
 
 
 def test_table_without_published_numbers():
-    table = comparison.compare(
-        results(), SPEC, comparison.read_published(None, SPEC), {}, [], "study/extra"
-    )
+    table = beside(results(), SPEC, comparison.read_published(None, pivot_of(SPEC)))
     assert len(table) == 8
     assert (
         table[["n_published", "value_published", "quantile_published", "in_range"]]
@@ -508,10 +508,15 @@ def test_too_few_runs_are_not_judged():
     assert not row(table, "long", "plain", "length")[["quantile_published"]].isna().any()
 
 
+def described(given: dict) -> table_kinds.Table:
+    return table_kinds.table_of({"title": "any"} | given)
+
+
 def test_a_transcribed_table_is_printed_as_it_stands(tmp_path):
     file = tmp_path / "table1.csv"
     file.write_text("part,value\nmemory,4.0 GB\nNA,\n")
-    table = listing.table({"kind": "transcribed"}, {"table1": str(file)}, {}, {})
+    spec = described({"kind": "transcribed", "published": "table1.csv"})
+    table = listing.table(spec, {"table1": str(file)}, {}, {})
     assert table.to_csv(index=False) == file.read_text()
 
 
@@ -519,7 +524,7 @@ def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
     file = tmp_path / "table2.csv"
     file.write_text("method,value\nplain,2.5\n")
     table = listing.table(
-        {"kind": "function", "function": "twice"},
+        described({"kind": "function", "function": "twice"}),
         {"table2": str(file)},
         {"twice": lambda tables: 2 * tables["table2"][["value"]]},
         {},
@@ -558,13 +563,15 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
         table.assign(
             value_ours_scaled=2.5, quantile_published=0.25, in_range=True, verdict="agrees", why=""
         ).to_csv(tmp_path / f"{name}.comparison.csv", index=False)
-    spec = {
-        "kind": "comparison",
-        "of": ["table3", "table6"],
-        "metrics": ["length"],
-        "where": {"workspace": "equal"},
-    }
-    files = {name: str(tmp_path / f"{name}.comparison.csv") for name in spec["of"]}
+    spec = described(
+        {
+            "kind": "comparison",
+            "of": ["table3", "table6"],
+            "metrics": ["length"],
+            "where": {"workspace": "equal"},
+        }
+    )
+    files = {name: str(tmp_path / f"{name}.comparison.csv") for name in spec.of}
     shown = listing.table(spec, files, {}, {"plain": "plain curves", "equal": "equal circles"})
     assert shown["table"].to_list() == ["table3", "table6"]
     assert shown.columns[:4].to_list() == ["table", "method", "workspace", "obstacles"]
@@ -578,10 +585,12 @@ def test_a_printed_length_is_compared_with_the_metric_that_the_table_reads_it_as
     file.write_text(
         "method,metric,statistic,n,unit,value\nplain,length,mean,10,m,3\nplain,cpu_s,mean,10,s,4\n"
     )
-    assert comparison.read_published(str(file), SPEC | {"reads": {"length": "cells4"}})[
-        "metric"
-    ].to_list() == ["cells4", "cpu_s"]
-    assert comparison.read_published(str(file), SPEC)["metric"].to_list() == ["length", "cpu_s"]
+    reading = pivot_of(SPEC | {"published": "table.csv", "reads": {"length": "cells4"}})
+    assert comparison.read_published(str(file), reading)["metric"].to_list() == ["cells4", "cpu_s"]
+    assert comparison.read_published(str(file), pivot_of(SPEC))["metric"].to_list() == [
+        "length",
+        "cpu_s",
+    ]
 
 
 def test_printed_ranks_that_no_runs_have_are_impossible():
@@ -606,7 +615,7 @@ def test_printed_ranks_that_no_runs_have_are_impossible():
     printed = pd.DataFrame(
         rows, columns=["problem", "method", "metric", "statistic", "n", "unit", "value"]
     )
-    table = comparison.compare(ours._replace(runs=runs), spec, printed, {}, [], "study/table1")
+    table = beside(ours._replace(runs=runs), spec, printed)
     assert table.set_index(["problem", "method"])["possible"].to_dict() == {
         ("long", "plain"): False,
         ("long", "fast"): False,

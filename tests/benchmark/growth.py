@@ -32,6 +32,7 @@ from timing import cpu_seconds_of_each
 
 from bezierplan.analysis import comparison, results, tables
 from bezierplan.analysis.claims import job as claims_job
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import sheet, style
 from bezierplan.figures.page import runs as page_runs
 from bezierplan.figures.panels import Sources
@@ -158,11 +159,10 @@ def _runs(given: Studies, repeats: int) -> None:
 def _tables(given: Studies) -> None:
     (study,) = given.values()
     found, job = _read(given), jobs.table_job(study, "lengths", gathering.SCALE)
-    published = comparison.read_published(study.published_file("lengths"), job["spec"])
-    comparison.compare(
-        found, job["spec"], published, job["variants"], job["baselines"], job["name"]
-    )
-    tables.pivot(found, job["spec"], job["labels"])
+    spec = Pivot.model_validate(job["spec"])
+    published = comparison.read_published(study.published_file("lengths"), spec)
+    comparison.compare(found, spec, published, job["variants"], job["baselines"], job["name"])
+    tables.pivot(found, spec, job["labels"])
 
 
 def _figures(given: Studies) -> None:

@@ -3,12 +3,13 @@
 from bezierplan.running import log
 
 with log.job(snakemake) as output:
-    from bezierplan.analysis import comparison, results, tables
+    from bezierplan.analysis import comparison, results, table_kinds, tables
     from bezierplan.running import inputs
 
-    job, spec = snakemake.params.job, snakemake.params.job["spec"]
+    job = snakemake.params.job
+    spec = table_kinds.Pivot.model_validate(job["spec"])
     found = results.read(
-        inputs.experiments(snakemake.input)[spec["experiment"]], job["repeats"], spec["experiment"]
+        inputs.experiments(snakemake.input)[spec.experiment], job["repeats"], spec.experiment
     )
     published = comparison.read_published(
         next(iter(inputs.part(snakemake.input, "published").values()), None), spec

@@ -16,7 +16,7 @@ import itertools
 import math
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -24,6 +24,7 @@ from bezierplan.analysis import identified, possible
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.possible import Printed
 from bezierplan.analysis.results import published_table
+from bezierplan.analysis.table_kinds import Layout, Monotone
 from bezierplan.running import problems
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
@@ -153,7 +154,7 @@ def _row(
     return described | {"consistent": consistent, "arithmetic": arithmetic}
 
 
-def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, dict[str, Any]]) -> list[dict]:
+def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, Layout]) -> list[dict]:
     """All rows of the rules that hold for any paper.
 
     tables: published numbers, by table, as from `read_published`. layouts: of each table,
@@ -163,10 +164,10 @@ def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, dict[str, A
     """
     rows = []
     for name, table in tables.items():
-        for cell in cells(name, table, layouts[name]["selected"]):
+        for cell in cells(name, table, layouts[name].selected):
             rows += of_cells(cell)
-        rows += of_ranks(name, table, layouts[name]["columns"])
-        for rule in layouts[name]["monotone"]:
+        rows += of_ranks(name, table, layouts[name].columns)
+        for rule in layouts[name].monotone:
             rows += of_orders(name, table, rule)
     return rows + of_digits(tables)
 
@@ -510,25 +511,22 @@ def _against_means(
     ]
 
 
-def of_orders(item: str, table: pd.DataFrame, rule: dict[str, str]) -> list[dict]:
+def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> list[dict]:
     """Numbers that must rise or fall along a column: each beside the one before it."""
-    own = table[(table["metric"] == rule["metric"]) & (table["statistic"] == rule["statistic"])]
+    own = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
     keys = _keys(table)
-    others, rows = [key for key in keys if key != rule["along"]], []
-    sign = {"up": "<=", "down": ">="}[rule["direction"]]
+    others, rows = [key for key in keys if key != rule.along], []
+    sign = {"up": "<=", "down": ">="}[rule.direction]
     for _, group in own.groupby(others, dropna=False, sort=False) if others else [((), own)]:
-        ordered = [row for _, row in group.sort_values(rule["along"], kind="stable").iterrows()]
+        ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
             first, second = possible.printed(before["printed"]), possible.printed(row["printed"])
             fits = (
                 possible.in_order(first, second)
-                if rule["direction"] == "up"
+                if rule.direction == "up"
                 else possible.in_order(second, first)
             )
-            words = (
-                f"{rule['metric']} goes {rule['direction']} along {rule['along']}: "
-                f"{rule['because']}"
-            )
+            words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
             told = f"{before['printed']} {sign} {row['printed']}"
             rows.append(
                 _row(
@@ -606,6 +604,7 @@ def audited(
     problem_files and bound_files: by experiment, problems of those alone whose printed lengths are
     identified. files: of published numbers, by table.
     """
+    layouts = {name: Layout.model_validate(each) for name, each in job["layouts"].items()}
     published = {name: read_published(file) for name, file in files.items()}
     bounds = {
         name: pd.read_parquet(file).set_index("problem") for name, file in bound_files.items()
@@ -613,16 +612,12 @@ def audited(
     of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
     compared = {table: published[table] for table in of_tables}
     # Numbers to which a workspace was fitted lie above its bound by construction.
-    independent = {
-        name: table for name, table in compared.items() if not job["layouts"][name]["fitted"]
-    }
-    rows = below_bound(independent, of_tables, job["primary"]) + of_any_paper(
-        compared, job["layouts"]
-    )
+    independent = {name: table for name, table in compared.items() if not layouts[name].fitted}
+    rows = below_bound(independent, of_tables, job["primary"]) + of_any_paper(compared, layouts)
     made = {name: problems.read(file) for name, file in problem_files.items()}
-    for name, layout in job["layouts"].items():
+    for name, layout in layouts.items():
         rows += identified.of_table(
-            name, published[name], layout["identify"], made.get(job["tables"][name], {})
+            name, published[name], layout.identify, made.get(job["tables"][name], {})
         )
     if job["module"]:
         rows += importlib.import_module(job["module"]).audit(published)

@@ -55,6 +55,8 @@ import pandas as pd
 
 from bezierplan.analysis import identified, metrics, possible, statistics, tables
 from bezierplan.analysis.results import Results, published_table
+from bezierplan.analysis.table_kinds import Identify, Pivot
+from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
@@ -113,27 +115,27 @@ _COLUMNS = [
 ]
 
 
-def read_published(file: str | None, spec: dict) -> pd.DataFrame:
+def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
     """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a
     file, empty, with the table's keys.
     """
     if file is None:
         return pd.DataFrame(
-            columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"]
+            columns=[*spec.key_columns, "metric", "statistic", "n", "unit", "value"]
         )
-    return as_read(published_table(file), spec)
+    return as_read(published_table(file), spec.reads)
 
 
-def as_read(published: pd.DataFrame, spec: dict) -> pd.DataFrame:
-    """Published numbers under the metrics that a table assigns to them: `reads` maps the paper's
-    word to the metric, and is optional.
+def as_read(published: pd.DataFrame, reads: dict[str, str]) -> pd.DataFrame:
+    """Published numbers under the metrics that a table assigns to them. reads: the paper's word ->
+    the metric.
     """
-    return published.assign(metric=published["metric"].replace(spec.get("reads", {})))
+    return published.assign(metric=published["metric"].replace(reads))
 
 
 def compare(
     results: Results,
-    spec: dict,
+    spec: Pivot,
     published: pd.DataFrame,
     variant_of: dict[str, str],
     baselines: list[str],
@@ -142,15 +144,17 @@ def compare(
     """The published numbers of a table next to ours, in the order of the table; the columns are
     described above.
 
-    spec: as for `tables.pivot`. published: as from `read_published`. variant_of: method -> the
+    published: as from `read_published`. variant_of: method -> the
     method whose published numbers it is compared with. baselines: methods without a published
     number. Variants of the table's methods and baselines get rows, whether or not the table shows
     them. name: `study/table`, which seeds each row's random draws.
     """
     key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
-    keys = key_columns + [key for key in tables.keys(spec) if key not in key_columns]
-    spec = _with_variants(spec, variant_of, baselines) if "method" in keys else spec
-    both = _side_by_side(tables.cells(results, spec, keys), published, key_columns, variant_of)
+    keys = key_columns + [key for key in spec.key_columns if key not in key_columns]
+    beside = _beside(spec, variant_of, baselines) if "method" in keys else []
+    spec = spec.but(where=spec.where | {"method": _methods(spec) + beside}) if beside else spec
+    ours = tables.cells(results, spec, keys, beside)
+    both = _side_by_side(ours, published, key_columns, variant_of)
     order = (
         tables.in_order(both, spec, list(results.problems))
         .sort_values([*keys, "value", "metric", "statistic"])
@@ -171,10 +175,7 @@ def compare(
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
     identities = pd.Series(
-        [
-            _identified(row, spec.get("identify", []), results.problems)
-            for row in both.to_dict("records")
-        ],
+        [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
     )
     table["identified"], table["verdict"] = (
@@ -184,7 +185,7 @@ def compare(
     undefined = _undefined(both, spec) & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
     table["why"] = table["why"].astype(object).mask(undefined, UNDEFINED)
-    table["primary"] = _is_primary(table, spec.get("primary", {}), variant_of)
+    table["primary"] = _is_primary(table, spec.primary, variant_of)
     whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "can_fail", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
@@ -201,7 +202,7 @@ def _is_primary(
 
 
 def _identified(
-    row: dict[str, Any], entries: list[dict], problems: dict[str, Problem]
+    row: dict[str, Any], entries: list[Identify], problems: dict[str, Problem]
 ) -> str | None:
     """The paths whose length a published number is, in words; None if no enumeration that counts
     finds one, or chance may well have.
@@ -209,12 +210,12 @@ def _identified(
     if pd.isna(row["value_published"]) or row.get("problem") not in problems:
         return None
     for entry in entries:
-        if entry.get("counts", True) and identified.applies(entry, row):
+        if entry.counts and identified.applies(entry, row):
             identification = identified.in_problem(
                 problems[row["problem"]],
                 row["value_published"],
                 int(row["decimals"]),
-                entry["edges"],
+                entry.edges,
             )
             if (
                 identification
@@ -225,14 +226,12 @@ def _identified(
     return None
 
 
-def _undefined(both: pd.DataFrame, spec: dict) -> pd.Series:
+def _undefined(both: pd.DataFrame, spec: Pivot) -> pd.Series:
     """Which rows (n,) hold a quantity that the paper does not define."""
-    return both["metric"].isin(
-        {entry["metric"] for entry in spec["values"] if not entry.get("defined", True)}
-    )
+    return both["metric"].isin({entry.metric for entry in spec.values if not entry.defined})
 
 
-def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: dict) -> np.ndarray:
+def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: Pivot) -> np.ndarray:
     """Which rows (n,) hold published mean ranks that no runs have, for those of all rows of the
     table do not add up.
     """
@@ -247,11 +246,7 @@ def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: dict) -
     if ranks.empty or not ours.any():
         return impossible
     half = Fraction(10) ** -int(both.loc[ours, "decimals"].iloc[0]) / 2
-    within = [
-        column
-        for column in spec.get("columns", [])
-        if column in published and column not in ("value", "statistic")
-    ]
+    within = [column for column in spec.across if column in published]
     for place, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
         if len(own) > 1 and not possible.are_ranks(
             [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
@@ -294,21 +289,22 @@ def _side_by_side(
     )
 
 
-def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str]) -> dict:
-    """The table's description, with the variants of its methods and the baselines appended to the
-    selection.
-    """
-    where = spec.get("where", {})
-    if "method" not in where:
-        return spec
-    methods = where["method"] if isinstance(where["method"], list) else [where["method"]]
+def _methods(spec: Pivot) -> list[str]:
+    """The methods that a table selects; none if it shows all."""
+    return one_or_list(spec.where.get("method", []))
+
+
+def _beside(spec: Pivot, variant_of: dict[str, str], baselines: list[str]) -> list[str]:
+    """Methods that stand beside those that a table selects: their variants, and the baselines."""
+    methods = _methods(spec)
+    if not methods:
+        return []
     variants = [
         variant
         for variant, method in variant_of.items()
         if method in methods and variant not in methods
     ]
-    beside = variants + [baseline for baseline in baselines if baseline not in methods]
-    return spec | {"where": where | {"method": methods + beside}, "beside": beside}
+    return variants + [baseline for baseline in baselines if baseline not in methods]
 
 
 def _rivals(

@@ -18,6 +18,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import possible
+from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
@@ -108,9 +109,9 @@ def identify(
     )
 
 
-def applies(entry: dict, row: dict) -> bool:
+def applies(entry: Identify, row: dict) -> bool:
     """Whether an enumeration is declared for a published number, from the columns of its row."""
-    where = {"metric": entry["metric"]} | entry.get("where", {})
+    where = {"metric": entry.metric} | entry.where
     return all(row.get(column) in one_or_list(wanted) for column, wanted in where.items())
 
 
@@ -156,7 +157,7 @@ def in_words(identification: Identified) -> str:
 
 
 def of_table(
-    item: str, published: pd.DataFrame, entries: list[dict], problems: dict[str, Problem]
+    item: str, published: pd.DataFrame, entries: list[Identify], problems: dict[str, Problem]
 ) -> list[dict]:
     """Rows of the audit: each published number for which an enumeration is declared, and one row a
     declaration with the chance of all.
@@ -171,9 +172,7 @@ def of_table(
             problem = problems.get(row.get("problem", row.get("workspace")))
             if not applies(entry, row) or problem is None:
                 continue
-            path = in_problem(
-                problem, row["value"], possible.decimals(row["printed"]), entry["edges"]
-            )
+            path = in_problem(problem, row["value"], possible.decimals(row["printed"]), entry.edges)
             if path is None:
                 continue
             tried.append(path)
@@ -186,8 +185,8 @@ def of_table(
                 {
                     "item": item,
                     "place": ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"]),
-                    "rule": f"{entry['because']}: the length of a free polyline of at most "
-                    f"{entry['edges']} edges through cell centres",
+                    "rule": f"{entry.because}: the length of a free polyline of at most "
+                    f"{entry.edges} edges through cell centres",
                     "printed": row["value"],
                     "limit": path.length * problem.workspace.cell,
                     "consistent": True if path.paths else None,
@@ -202,12 +201,12 @@ def of_table(
             )
             selection = ", ".join(
                 f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
-                for key, wanted in entry.get("where", {}).items()
+                for key, wanted in entry.where.items()
             )
             together = {
                 "item": item,
                 "place": selection,
-                "rule": f"{entry['because']}: all numbers together",
+                "rule": f"{entry.because}: all numbers together",
                 "printed": matched,
             }
             rows.append(

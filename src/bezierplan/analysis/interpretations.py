@@ -33,6 +33,7 @@ from bezierplan.analysis import comparison, explained, metrics, statistics, tabl
 from bezierplan.analysis.explained import Evaluated, Interpretation, name_of, together
 from bezierplan.analysis.results import Results, joined, select
 from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search, whole
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
 from bezierplan.running import problems as problem_files
@@ -85,15 +86,12 @@ def job_under(job: dict, interpretation: Interpretation, choices: list[dict]) ->
     return job | {"settings": settings, "problems": met}
 
 
-def in_world(spec: dict, job: dict, interpretation: Interpretation) -> tuple[dict, dict]:
+def in_world(spec: Pivot, job: dict, interpretation: Interpretation) -> tuple[Pivot, dict]:
     """A table's description and one of its jobs, restricted to the paper's interpretation of the
     world.
     """
-    world = {
-        column: interpretation.get(column, value)
-        for column, value in spec.get("primary", {}).items()
-    }
-    where = spec["where"] | world
+    world = {column: interpretation.get(column, value) for column, value in spec.primary.items()}
+    where = spec.where | world
 
     def wanted(column: str, value: Any) -> bool:
         given = where.get(column, value)
@@ -109,12 +107,12 @@ def in_world(spec: dict, job: dict, interpretation: Interpretation) -> tuple[dic
         column: [value for value in values if wanted(column, value)]
         for column, values in job["vary"].items()
     }
-    return spec | {"where": where}, job | {"problems": problems, "vary": vary}
+    return spec.but(where=where), job | {"problems": problems, "vary": vary}
 
 
 def under_metrics(
-    spec: dict, published: pd.DataFrame, interpretation: Interpretation, choices: list[dict]
-) -> tuple[dict, pd.DataFrame]:
+    spec: Pivot, published: pd.DataFrame, interpretation: Interpretation, choices: list[dict]
+) -> tuple[Pivot, pd.DataFrame]:
     """A table's description and its published numbers, with the metrics that an interpretation
     assigns to printed words, and the keys that it changes.
 
@@ -125,22 +123,18 @@ def under_metrics(
         for choice in choices
         if "metric" in choice and choice["id"] in interpretation
     }
-    renamed = [
-        entry | {"metric": metric.get(entry["metric"], entry["metric"])} for entry in spec["values"]
-    ]
-    entries = {(entry["metric"], str(entry["statistic"])): entry for entry in renamed}
+    renamed = [entry.but(metric=metric.get(entry.metric, entry.metric)) for entry in spec.values]
+    entries = {(entry.metric, str(entry.statistic)): entry for entry in renamed}
     keys = {
         choice["table"]: interpretation[choice["id"]]
         for choice in choices
         if "table" in choice and choice["id"] in interpretation
     }
-    return spec | keys | {"values": [*entries.values()]}, published.assign(
-        metric=published["metric"].replace(metric)
-    )
+    return spec.but(**keys, values=[*entries.values()]), comparison.as_read(published, metric)
 
 
 def numbers_of(
-    results: Results, spec: dict, published: pd.DataFrame, name: str
+    results: Results, spec: Pivot, published: pd.DataFrame, name: str
 ) -> tuple[pd.DataFrame, float]:
     """The published numbers of a table under an interpretation, and the logarithm of their joint
     likelihood.
@@ -152,7 +146,7 @@ def numbers_of(
     `statistics.LEAST_RUNS` runs no number is in range.
     """
     keys_printed = published.columns[: published.columns.get_loc("metric")].to_list()
-    keys = keys_printed + [key for key in tables.keys(spec) if key not in keys_printed]
+    keys = keys_printed + [key for key in spec.key_columns if key not in keys_printed]
     ours = tables.cells(results, spec, keys).assign(printed=lambda table: table["statistic"])
     ours["statistic"] = ours["statistic"].replace("unstated", "median")
     theirs = published.assign(statistic=published["statistic"].replace("unstated", "median"))
@@ -162,16 +156,16 @@ def numbers_of(
     both = theirs.merge(
         ours.drop(columns="value"), on=[*keys_printed, "metric", "statistic"], how="left"
     )
-    runs = select(results.runs, spec["where"])
+    runs = select(results.runs, spec.where)
     measured = {
         metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()
     }
     # A constant that nothing lies below, such as the first rank, tells no interpretation from
     # another.
     bounded = {
-        entry["metric"]
-        for entry in spec["values"]
-        if isinstance(entry.get("least", metrics.METRICS[entry["metric"]].least), str)
+        entry.metric
+        for entry in spec.values
+        if isinstance(entry.least or metrics.METRICS[entry.metric].least, str)
     }
     rows, draws, least = [], [], []
     for number, row in both.iterrows():
@@ -323,9 +317,11 @@ class Evaluator:
         maps: where map files are looked up.
         """
         self.job, self.maps, self.folder = job, maps, folder
+        self.specs = {
+            name: Pivot.model_validate(table["spec"]) for name, table in job["tables"].items()
+        }
         self.published = {
-            name: comparison.read_published(files[name], table["spec"])
-            for name, table in job["tables"].items()
+            name: comparison.read_published(files[name], spec) for name, spec in self.specs.items()
         }
         self.worlds: dict[str, tuple[dict, pd.DataFrame]] = {}
 
@@ -340,7 +336,7 @@ class Evaluator:
                 continue
             placed = [
                 in_world(
-                    table["spec"],
+                    self.specs[name],
                     job_under(job, interpretation, self.job["choices"]),
                     interpretation,
                 )
@@ -365,8 +361,9 @@ class Evaluator:
                 self.job["choices"],
             )
             if len(jobs) < len(table["jobs"]):
-                spec = spec | {"where": spec["where"] | {"method": [job["method"] for job in jobs]}}
-                published = published[published["method"].isin(spec["where"]["method"])]
+                own = [job["method"] for job in jobs]
+                spec = spec.but(where=spec.where | {"method": own})
+                published = published[published["method"].isin(own)]
             numbers, likelihood = numbers_of(
                 joined(runs, problems, bounds), spec, published, f"{self.job['study']}/{name}"
             )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 import pandas as pd
 
 from bezierplan.analysis.results import published_table, select
+from bezierplan.analysis.table_kinds import Comparison, FunctionTable, Transcribed
 
 # What a table of kind `comparison` shows next to the keys: columns of `comparison.compare`, and
 # their headings.
@@ -29,40 +30,40 @@ _DECIMALS = 3
 
 
 def table(
-    spec: dict,
+    spec: Transcribed | FunctionTable | Comparison,
     files: Mapping[str, str],
     functions: Mapping[str, Callable[..., pd.DataFrame]],
     labels: Mapping[str, str],
 ) -> pd.DataFrame:
-    """A table of kind `transcribed` (every cell as written), `function` (called with all published
-    tables by file name, and with its arguments), or `comparison` (`beside`).
+    """A transcribed table (every cell as written), that of a function (called with all published
+    tables by file name, and with its arguments), or a comparison (`beside`).
 
     files: of published numbers, by table; for a transcribed table its only file; for a comparison
     those of its tables.
     """
-    if spec["kind"] == "transcribed":
+    if isinstance(spec, Transcribed):
         (file,) = files.values()
         return pd.read_csv(file, dtype=str, keep_default_na=False)
-    if spec["kind"] == "comparison":
+    if isinstance(spec, Comparison):
         return beside(spec, {name: pd.read_csv(file) for name, file in files.items()}, labels)
     published = {name: published_table(file) for name, file in files.items()}
-    return functions[spec["function"]](published, **spec.get("arguments", {}))
+    return functions[spec.function](published, **spec.arguments)
 
 
 def beside(
-    spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]
+    spec: Comparison, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]
 ) -> pd.DataFrame:
     """Published numbers of several tables next to ours, with prediction intervals for experiments
     of the paper's size.
 
-    spec: `metrics`, the metrics shown; `where`: column -> value or list, for tables that have the
-    column. comparisons: as from `comparison.compare`, by table. labels: how names are printed.
+    comparisons: as from `comparison.compare`, by table; the `where` of the spec holds for those
+    that have the column. labels: how names are printed.
     """
     shown = []
     for name, rows in comparisons.items():
         keys = rows.columns[: rows.columns.get_loc("metric")].to_list()
-        where = {key: value for key, value in spec.get("where", {}).items() if key in keys}
-        rows = select(rows[rows["value_published"].notna()], where | {"metric": spec["metrics"]})
+        where = {key: value for key, value in spec.where.items() if key in keys}
+        rows = select(rows[rows["value_published"].notna()], where | {"metric": spec.metrics})
         shown.append(rows[[*keys, *_SHOWN]].assign(table=name))
     table = pd.concat(shown, ignore_index=True)
     keys = [column for column in table.columns if column not in (*_SHOWN, "table")]

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import explained, headline, worth
-from bezierplan.analysis.claims.judge import CLAIM_COLUMNS
+from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
 

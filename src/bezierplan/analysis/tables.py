@@ -1,16 +1,8 @@
-"""Result tables laid out as in the papers, from pivot keys in the configuration.
+"""Result tables laid out as in the papers, each described by its keys in the configuration
+(`table_kinds.Pivot`).
 
-A table's description (`spec`) has the keys
-
-    index, columns   columns of the runs table, and the words `value` (which entry of `values`) and
-                     `statistic`; a word that is needed to distinguish numbers but not named becomes
-                     a level of the columns. `columns` is optional
-    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a
-                     list of names, the last three are optional
-    where            which runs: column -> value or list of values; a list also gives the order.
-                     Optional
-    within           the column that all runs of one experiment of the paper share, such as layout.
-                     Optional
+Rows and columns are values of columns of the runs table, entries of `values`, and statistics: what
+is needed to distinguish numbers but not named as index or column becomes a level of the columns.
 """
 
 from collections.abc import Sequence
@@ -20,16 +12,10 @@ import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.results import Results, select
-
-_WORDS = ("value", "statistic")
-
-
-def keys(spec: dict) -> list[str]:
-    """The columns of the runs table that distinguish the rows and columns of a table."""
-    return [word for word in [*spec["index"], *spec.get("columns", [])] if word not in _WORDS]
+from bezierplan.analysis.table_kinds import Pivot
 
 
-def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.DataFrame:
+def in_order(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
     """The table with its key columns as ordered categories, so that sorting follows the
     configuration.
 
@@ -38,12 +24,10 @@ def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.Dat
     """
     orders = {
         "problem": list(problems),
-        **{
-            key: wanted for key, wanted in spec.get("where", {}).items() if isinstance(wanted, list)
-        },
+        **{key: wanted for key, wanted in spec.where.items() if isinstance(wanted, list)},
     }
     ordered = {}
-    for key in table.columns.intersection([*keys(spec), *orders]):
+    for key in table.columns.intersection([*spec.key_columns, *orders]):
         first = orders.get(key, [])
         present = table[key].dropna().unique().tolist()
         present = [value for value in first if value in present] + sorted(set(present) - set(first))
@@ -51,9 +35,14 @@ def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.Dat
     return table.assign(**ordered)
 
 
-def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
+def cells(
+    results: Results, spec: Pivot, keys: list[str], beside: Sequence[str] = ()
+) -> pd.DataFrame:
     """The numbers behind a table: one row for each group of runs with equal keys, entry of
     `values`, and statistic.
+
+    beside: methods outside the table among those of its `where`, which metrics that compare methods
+    leave out.
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted
     (n,): the metric of the runs that count, which satisfy the entry's `where` and have one; asked:
@@ -64,23 +53,23 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     of the metric's kind of length.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
-    runs = select(results.runs, spec.get("where", {})).sort_values("id", ignore_index=True)
-    entries = spec["values"]
-    described = [metrics.METRICS[entry["metric"]] for entry in entries]
+    runs = select(results.runs, spec.where).sort_values("id", ignore_index=True)
+    entries = spec.values
+    described = [metrics.METRICS[entry.metric] for entry in entries]
     wanted = {metric.gap for metric in described} | {
-        entry["metric"] for entry, metric in zip(entries, described) if not metric.among_rows
+        entry.metric for entry, metric in zip(entries, described) if not metric.among_rows
     }
-    measured = {name: _measured(runs, name, results, spec).to_numpy() for name in sorted(wanted)}
+    measured = {name: _measured(runs, name, results, beside).to_numpy() for name in sorted(wanted)}
     # What compares methods compares those that the entry's `where` leaves.
     taken = [
-        _measured(select(runs, entry.get("where", {})), entry["metric"], results, spec)
+        _measured(select(runs, entry.where), entry.metric, results, beside)
         .reindex(runs.index)
         .to_numpy()
         if metric.among_rows
-        else measured[entry["metric"]]
+        else measured[entry.metric]
         for entry, metric in zip(entries, described)
     ]
-    leasts = [entry.get("least", metric.least) for entry, metric in zip(entries, described)]
+    leasts = [entry.least or metric.least for entry, metric in zip(entries, described)]
     named = {
         name
         for metric, least in zip(described, leasts)
@@ -89,8 +78,8 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     }
     bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
     feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
-    asked = [runs.index.isin(select(runs, entry.get("where", {})).index) for entry in entries]
-    units = runs[spec["within"]].to_numpy() if "within" in spec else None
+    asked = [runs.index.isin(select(runs, entry.where).index) for entry in entries]
+    units = runs[spec.within].to_numpy() if spec.within else None
     rows = []
     for key, group in runs[keys].groupby(keys, dropna=False):
         positions = group.index.to_numpy()
@@ -111,8 +100,8 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
             chosen = positions[asked[value][positions]]
             cell = {
                 "value": value,
-                "metric": entry["metric"],
-                "decimals": entry.get("decimals"),
+                "metric": entry.metric,
+                "decimals": entry.decimals,
                 "asked": len(chosen),
             }
             chosen = chosen[~np.isnan(taken[value][chosen])]  # a run without a value counts nowhere
@@ -125,7 +114,7 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
                     np.sort(numbers[units[chosen] == unit]) for unit in np.unique(units[chosen])
                 )
             )
-            for statistic in _statistics(entry):
+            for statistic in entry.statistics:
                 rows.append(
                     same
                     | of_group
@@ -144,7 +133,7 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
         "numbers",
         "groups",
     ]
-    # Of type object, so that integers stay integers next to entries without decimals.
+    # Of type object, so that integers stay integers next to published numbers without runs.
     return pd.DataFrame(rows, columns=columns).assign(
         decimals=pd.Series([row["decimals"] for row in rows], dtype=object)
     )
@@ -155,17 +144,19 @@ def _median(values: np.ndarray) -> float:
     return statistics.statistic("median", values[~np.isnan(values)])
 
 
-def _measured(runs: pd.DataFrame, metric: str, results: Results, spec: dict) -> pd.Series:
+def _measured(
+    runs: pd.DataFrame, metric: str, results: Results, beside: Sequence[str]
+) -> pd.Series:
     """A metric of each run; if it compares a table's methods, NaN for runs of methods outside the
     table (`beside`).
     """
     counted = runs
     if metrics.METRICS[metric].among_rows:
-        counted = runs[~runs["method"].isin(spec.get("beside", []))]
+        counted = runs[~runs["method"].isin(beside)]
     return metrics.values(counted, metric, results.problems).reindex(runs.index)
 
 
-def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
+def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame:
     """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
     labels: how names are printed. Column levels are joined into one name, such as `objective value:
@@ -173,9 +164,9 @@ def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
     beside the values says how many have one (`_with_counts`).
     """
     index, columns = _levels(spec)
-    table = in_order(cells(results, spec, keys(spec)), spec, list(results.problems))
+    table = in_order(cells(results, spec, spec.key_columns), spec, list(results.problems))
     statistic_order = list(
-        dict.fromkeys(statistic for entry in spec["values"] for statistic in _statistics(entry))
+        dict.fromkeys(statistic for entry in spec.values for statistic in entry.statistics)
     )
     table["statistic"] = pd.Categorical(
         table["statistic"], categories=statistic_order, ordered=True
@@ -196,7 +187,7 @@ def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
         for name in ("text", "counted", "asked")
     )
     wide = wide.fillna("")
-    titles = [entry.get("label", entry["metric"]) for entry in spec["values"]]
+    titles = [entry.label for entry in spec.values]
     rows, heads = (
         levels.apply(_labelled, labels=labels, titles=titles) for levels in (rows, heads)
     )
@@ -244,19 +235,14 @@ def _with_counts(
     return pd.concat(columns, axis=1) if columns else wide
 
 
-def _statistics(entry: dict) -> list[str]:
-    """The statistics of an entry of `values`, which may name one or a list."""
-    return [entry["statistic"]] if isinstance(entry["statistic"], str) else entry["statistic"]
-
-
-def _levels(spec: dict) -> tuple[list[str], list[str]]:
+def _levels(spec: Pivot) -> tuple[list[str], list[str]]:
     """Levels of the index and of the columns, including necessary words that were left out."""
-    index, columns = list(spec["index"]), list(spec.get("columns", []))
+    index, columns = list(spec.index), list(spec.columns)
     if "statistic" not in index + columns and any(
-        len(_statistics(entry)) > 1 for entry in spec["values"]
+        len(entry.statistics) > 1 for entry in spec.values
     ):
         columns.append("statistic")
-    if "value" not in index + columns and (len(spec["values"]) > 1 or not columns):
+    if "value" not in index + columns and (len(spec.values) > 1 or not columns):
         columns.insert(0, "value")
     return index, columns
 
@@ -276,10 +262,6 @@ def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd
     return pd.Series(names, index=level.index, dtype=object)
 
 
-def _printed(number: float, decimals: int | None) -> str:
-    """A number with the given decimals, or with six significant digits if none are given; empty for
-    NaN.
-    """
-    if np.isnan(number):
-        return ""
-    return f"{number:.6g}" if decimals is None else f"{number:.{decimals}f}"
+def _printed(number: float, decimals: int) -> str:
+    """A number with the given decimals; empty for NaN."""
+    return "" if np.isnan(number) else f"{number:.{decimals}f}"

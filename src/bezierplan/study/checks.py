@@ -15,6 +15,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from bezierplan.analysis import measures, metrics, statistics
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import Check, PublishedMargin
+from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import PLACE, planner_module
 from bezierplan.running import columns, interface, problems, worlds
@@ -24,7 +25,6 @@ from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list, parsed
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
-from bezierplan.study.artefacts import Comparison, Pivot, Table
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, fits, in_first_variant

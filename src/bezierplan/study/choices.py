@@ -19,10 +19,10 @@ from typing import Any
 
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.running.digest import content_digest
 from bezierplan.schema.model import one_or_list
 from bezierplan.study import alternatives, jobs
-from bezierplan.study.artefacts import Pivot
 from bezierplan.study.definition import Study, relative
 from bezierplan.workspaces.kinds import file_keys
 

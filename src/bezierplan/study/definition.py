@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.planners import planner_module, planner_settings
-from bezierplan.study.artefacts import Figure, Pivot, Table
+from bezierplan.study.artefacts import Figure
 from bezierplan.study.claims import Assumption
 from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Worth
 from bezierplan.workspaces import files

@@ -8,12 +8,14 @@ from collections import Counter
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.material import Shown
+from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
-from bezierplan.schema.model import one_or_list
+from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study.alternatives import experiments_of_claims
-from bezierplan.study.artefacts import Comparison
+from bezierplan.study.artefacts import Figure
 from bezierplan.study.definition import Study
 
 
@@ -202,7 +204,9 @@ def claims_job(study: Study, claims: list[Claim], primary_alone: bool) -> dict:
         "claims": [claim.plain() for claim in claims],
         "primary_alone": primary_alone,
         "artefacts": {
-            name: artefact.plain() for name, artefact in (study.tables | study.figures).items()
+            name: [part.plain() for part in parts]
+            for name, artefact in (study.tables | study.figures).items()
+            if (parts := _shown(artefact))
         },
         "variant_of": study.variants(),
         "paired": {name: experiment.paired for name, experiment in experiments.items()},
@@ -211,6 +215,19 @@ def claims_job(study: Study, claims: list[Claim], primary_alone: bool) -> dict:
         },
         "labels": study.labels,
     }
+
+
+def _shown(artefact: Table | Figure) -> list[Shown]:
+    """What a table or figure shows of runs."""
+    if isinstance(artefact, Pivot):
+        given = {name: each for name, each in artefact.plain().items() if name in keys(Shown)}
+        return [Shown.model_validate(given)]
+    panels = artefact.panels if isinstance(artefact, Figure) else []
+    return [
+        Shown(experiment=panel.experiment, where=panel.where)
+        for panel in panels
+        if getattr(panel, "experiment", None)
+    ]
 
 
 def kind_of(study: Study, artefact: str) -> str:

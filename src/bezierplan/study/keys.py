@@ -8,6 +8,8 @@ from functools import partial
 
 from pydantic.fields import FieldInfo
 
+from bezierplan.analysis import table_kinds
+from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures import panels
@@ -34,9 +36,9 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     ],
     "artefacts": [
         ("The file", artefacts.ArtefactsFile),
-        ("A **table** has `kind`, and by kind", artefacts.TABLES),
-        ("An entry of a table's `values`", artefacts.TableValue),
-        ("An entry of a table's `monotone`", artefacts.Monotone),
+        ("A **table** has `kind`, and by kind", table_kinds.TABLES),
+        ("An entry of a table's `values`", table_kinds.TableValue),
+        ("An entry of a table's `monotone`", table_kinds.Monotone),
         ("A **figure**", artefacts.Figure),
         ("A panel has `kind`, and by kind", panels.kinds()),
     ],
@@ -125,6 +127,15 @@ def columns_of_drives(table: columns.Table) -> str:
     )
 
 
+def columns_of_claims(tables: tuple[type, ...]) -> str:
+    """The table of columns of a table of claims, as Markdown."""
+    lines = [
+        f"| `{name}` | {_PRINTED[kind]} | {about.meaning} |"
+        for name, (kind, about) in columns.declared(*tables).items()
+    ]
+    return "\n".join(["| column | values | meaning |", "| --- | --- | --- |", *lines])
+
+
 def _columns(rows: list[tuple[str, type, str, str]]) -> str:
     """Name, type, unit and meaning of each column."""
     lines = [
@@ -149,7 +160,10 @@ def renewed_columns(text: str) -> str:
     drives = {
         f"{name} of drives": columns_of_drives(table) for name, table in columns.TABLES.items()
     }
-    return _renewed(text, every | drives, "columns")
+    claims_tables = {
+        name: columns_of_claims(tables) for name, tables in claim_columns.TABLES.items()
+    }
+    return _renewed(text, every | drives | claims_tables, "columns")
 
 
 def _renewed(text: str, tables: dict[str, str], what: str) -> str:

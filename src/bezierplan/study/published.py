@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.kinds import Check
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.schema.checked import Fault, closest, text_of
 from bezierplan.schema.model import is_number, one_or_list
-from bezierplan.study.artefacts import Pivot
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.design import Design
 from bezierplan.study.files import inside

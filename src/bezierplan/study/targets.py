@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.table_kinds import Comparison, Layout, Pivot
 from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.running.inputs import BOUNDS, PROBLEMS, Files, named, of_experiments, part
 from bezierplan.study import alternatives, choices, definition, design, jobs
-from bezierplan.study.artefacts import Comparison, Pivot
 from bezierplan.study.definition import Study
 
 Studies = dict[str, Study]
@@ -326,11 +326,10 @@ def escaped(text: str) -> str:
 
 
 def _shown(study: Study, artefact: str, job: dict) -> dict:
-    """The job of a table or figure with the words that it prints: without its title, which is in
-    the caption, and without labels of items that it does not show.
+    """The job of a table or figure with the words that it prints: with its name for a title, which
+    is in the caption alone, and without labels of items that it does not show.
     """
-    spec = {key: value for key, value in job["spec"].items() if key != "title"}
-    shown = job | {"spec": spec, "labels": _labels(study, artefact)}
+    shown = job | {"spec": job["spec"] | {"title": artefact}, "labels": _labels(study, artefact)}
     if "looks" in job:
         methods = _shown_methods(study, artefact)
         shown["looks"] = {name: look for name, look in job["looks"].items() if name in methods}
@@ -416,12 +415,7 @@ def _kinds(claims: list[Claim]) -> list[str]:
 
 def _claims_job(study: Study, scale: str, claims: list[Claim], primary_alone: bool) -> dict:
     job = jobs.claims_job(study, claims, primary_alone)
-    artefacts = {
-        name: {key: value for key, value in spec.items() if key != "title"}
-        for name, spec in job["artefacts"].items()
-    }
     return job | {
-        "artefacts": artefacts,
         "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]},
     }
 
@@ -480,19 +474,6 @@ def _audited(study: Study) -> dict[str, Pivot]:
     }
 
 
-def _layout(table: Pivot) -> dict:
-    """What the audit needs to know of a table: columns within whose values rows are ranked, metrics
-    of only some runs, required orders, and whether its workspaces were fitted to it.
-    """
-    return {
-        "columns": [name for name in table.columns if name not in ("value", "statistic")],
-        "selected": sorted({entry.metric for entry in table.values if entry.where}),
-        "monotone": [rule.plain() for rule in table.monotone],
-        "fitted": table.fitted,
-        "identify": [entry.plain() for entry in table.identify],
-    }
-
-
 def _audited_experiments(study: Study) -> list[str]:
     return sorted({table.experiment for table in _audited(study).values()})
 
@@ -525,7 +506,9 @@ def audit_params(studies: Studies, scale: str, study: str) -> dict:
             "module": content.module(),
             "tables": {name: table.experiment for name, table in _audited(content).items()},
             "primary": {name: table.primary for name, table in _audited(content).items()},
-            "layouts": {name: _layout(table) for name, table in _audited(content).items()},
+            "layouts": {
+                name: Layout.of(table).plain() for name, table in _audited(content).items()
+            },
         },
         "published": content_digest(*content.published_files()),
         "code": _code("audit", content.module()),

@@ -15,7 +15,7 @@ from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Comparison
 from bezierplan.analysis.claims.kinds import GROUP_KEYS, Check, OfRuns, kind_of
-from bezierplan.analysis.claims.material import Material, Untestable
+from bezierplan.analysis.claims.material import Material, Shown, Untestable
 from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
 from bezierplan.analysis.results import pick, select
 from bezierplan.schema.checked import Fault
@@ -58,19 +58,16 @@ def _filled(groups: list, rest: list) -> list:
     return list(itertools.chain.from_iterable(parts))
 
 
-def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[dict]:
+def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[Shown]:
     """The tables and figure panels among a claim's artefacts that show runs of the check's
     experiments.
     """
-    parts = []
-    for name in claim.artefacts:
-        artefact = material.artefacts.get(name, {})
-        parts += [
-            part
-            for part in artefact.get("panels", [artefact])
-            if part.get("experiment") in check.experiments
-        ]
-    return parts
+    return [
+        part
+        for name in claim.artefacts
+        for part in material.artefacts.get(name, [])
+        if part.experiment in check.experiments
+    ]
 
 
 def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list:
@@ -79,9 +76,9 @@ def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list
     """
     across = check.cells
     groups = []
-    for part in _parts_of_artefact(check, claim, material) or [{}]:
-        if across in part.get("where", {}):
-            groups += one_or_list(part["where"][across])
+    for where in [part.where for part in _parts_of_artefact(check, claim, material)] or [{}]:
+        if across in where:
+            groups += one_or_list(where[across])
         else:
             runs = [
                 material.results[name].runs
@@ -194,7 +191,7 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         if check.metric == "rank":
             # Ranks are taken among all rows of the artefact, whichever of them the check compares.
             for part in _parts_of_artefact(check, claim, material)[:1]:
-                runs = select(runs, part.get("where", {}))
+                runs = select(runs, part.where)
         else:
             runs = select(runs, conditions)
         if metrics.METRICS[check.metric].compute is None and check.metric not in runs:
@@ -325,8 +322,8 @@ def _published_tables(
     own = claim.artefacts
     tables = []
     for name in [*own, *(name for name in material.artefacts if name not in own)]:
-        artefact = material.artefacts.get(name, {})
-        if "published" in artefact and artefact.get("experiment") in check.experiments:
-            published = material.published[PurePath(artefact["published"]).stem]
-            tables.append((artefact["experiment"], comparison.as_read(published, artefact)))
+        for part in material.artefacts.get(name, []):
+            if part.published and part.experiment in check.experiments:
+                published = material.published[PurePath(part.published).stem]
+                tables.append((part.experiment, comparison.as_read(published, part.reads)))
     return tables

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from bezierplan.analysis import results
 from bezierplan.analysis.claims import judge
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.material import Shown
 from bezierplan.running.inputs import Files
 from bezierplan.schema.model import parsed
 
@@ -32,11 +33,15 @@ def run(
         "repeats": job["paper_repeats"],
         "labels": job["labels"],
     }
+    artefacts = {
+        name: [Shown.model_validate(part) for part in parts]
+        for name, parts in job["artefacts"].items()
+    }
     claims = [parsed(Claim, each, "claims") for each in job["claims"]]
     if job["primary_alone"]:
         claims = [claim.in_primary_variant() for claim in claims]
     judged, checks = judge.judge(
-        claims, experiments, published, job["artefacts"], job["study"], functions, **material
+        claims, experiments, published, artefacts, job["study"], functions, **material
     )
     for table, file in ((judged, claims_file), (checks, checks_file)):
         table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")

@@ -34,54 +34,8 @@ A sentence about seconds is judged on counted work if its check names one (`work
 reported next to it, and the reason says where they disagree. Without one, the seconds decide:
 between planners of different kinds, whose evaluations are different things.
 
-Columns of claims.csv, one row per claim and variant:
-
-- study, id, place, statement: of the claim
-- variant: values used instead of the primary ones; in the primary row, the primary values
-- primary: whether this is the primary variant
-- finding: whether it is our own finding rather than a sentence of the paper
-- own_criterion: whether the paper gives no number and the threshold or margin that decides is ours
-- verdict: as above
-- holds: how many comparisons of the primary checks are +
-- where_it_holds: which of them are + in the family, in words; if none, where the opposite holds;
-  empty if all or none do
-- published: how many of those that are printed hold in the printed numbers, by value alone
-- effect ... p_family: of the decisive comparison: the worst -, otherwise that with the largest p;
-  columns as below
-- units_to_decide: of an undecided claim: about how many units would decide every comparison marked
-  ?, were our effects the true ones
-- replication_probability: share of experiments of the paper's size, drawn from our runs, in which
-  the claim holds by values alone (*)
-- size: our effect compared with the printed one: alike (the printed one lies in our interval),
-  smaller, larger, opposite
-- artefact: the tables and figures that show it
-- timed: judged on CPU times, which differ from machine to machine
-- reason: why it is untestable or undecided, and other notes for the reader
-
-(*) Where a claim is about one picked run of each condition: the chance that runs drawn at random
-among those that count do in its place.
-
-Columns of claim_checks.csv, one row per comparison:
-
-- study, id, variant, timed: as above
-- check: number of the check within the claim, from 1
-- primary: false for secondary checks, which are only reported
-- decisive: whether the row of claims.csv repeats it: the worst -, otherwise that with the largest p
-- test, metric, statistic, unit: of the check; unit of the metric
-- condition, comparison: where, and what is compared
-- mark, mark_family: on its own; in the family, empty for secondary checks
-- effect, effect_size_name, effect_size: of means, or of the statistic; what is computed from both
-  groups (`kinds`)
-- low95, high95: interval of the effect
-- p, p_family: two-sided; corrected, empty for secondary checks and where no p decides
-- n: units: pairs, or those of the smallest group
-- counted: how many units of each group, out of how many, have a value: means, minima and maxima
-  exclude failed runs
-- margin, least_detectable: the smallest effect that matters; that detected with a power of 0.8,
-  empty if the units do not differ
-- rho, r_squared: of trends: Spearman's rho and R squared of the conditions' means over x
-- effect_published, published: the effect in the printed numbers, and whether the sentence holds in
-  them
+`columns` describes the columns of the two tables: claims.csv, one row per claim and variant, and
+claim_checks.csv, one row per comparison.
 """
 
 import math
@@ -94,72 +48,13 @@ import pandas as pd
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, verdicts
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.effects import ALPHA, Comparison, Finding
+from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
+from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.claims.kinds import Check, OfRuns, kind_of
-from bezierplan.analysis.claims.material import Material, Untestable
+from bezierplan.analysis.claims.material import Material, Shown, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
-
-CLAIM_COLUMNS = [
-    *(
-        "study",
-        "id",
-        "variant",
-        "primary",
-        "finding",
-        "own_criterion",
-        "place",
-        "statement",
-        "verdict",
-        "holds",
-        "where_it_holds",
-        "published",
-    ),
-    *(
-        "effect",
-        "effect_size_name",
-        "effect_size",
-        "low95",
-        "high95",
-        "n",
-        "counted",
-        "p",
-        "p_family",
-    ),
-    *("units_to_decide", "replication_probability", "size", "artefact", "timed", "reason"),
-]
-CHECK_COLUMNS = [
-    *(
-        "study",
-        "id",
-        "variant",
-        "check",
-        "primary",
-        "decisive",
-        "test",
-        "metric",
-        "statistic",
-        "unit",
-        "condition",
-        "comparison",
-    ),
-    *(
-        "mark",
-        "mark_family",
-        "effect",
-        "effect_size_name",
-        "effect_size",
-        "low95",
-        "high95",
-        "n",
-        "counted",
-        "p",
-        "p_family",
-    ),
-    *("margin", "least_detectable"),
-    *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
-]
 
 # No experiment has more units; an effect that needs more lies at the margin.
 MOST_UNITS = 10**9
@@ -184,12 +79,17 @@ class _Judged(NamedTuple):
     p_family: float = math.nan
     parts: tuple[Comparison, ...] = ()
 
+    @property
+    def units_needed(self) -> float:
+        """`verdicts.units_needed`, of its mark in the family."""
+        return verdicts.units_needed(self.finding, self.mark_family, self.p_family)
+
 
 def judge(
     claims: Sequence[Claim],
     results: dict[str, Results],
     published: dict[str, pd.DataFrame],
-    artefacts: dict[str, dict],
+    artefacts: dict[str, list[Shown]],
     study: str,
     functions: dict[str, Any],
     *,
@@ -198,7 +98,7 @@ def judge(
     repeats: dict[str, int],
     labels: dict[str, str] | None = None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`, described above.
+    """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`.
 
     study: its name; all random draws are seeded by names. functions: by name, of the study's file
     in `papers/`. The others as in `Material`. Nothing depends on the order of the runs. Raises
@@ -216,7 +116,7 @@ def judge(
             check_rows += details
     return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype(
         {"n": "Int64", "units_to_decide": "Int64"}
-    ), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
+    ), pd.DataFrame(check_rows, columns=CHECK_COLUMNS).astype({"units_needed": "Int64"})
 
 
 # From comparisons to a verdict.
@@ -544,30 +444,20 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
 
 
 def _units_to_decide(deciding: list[_Judged]) -> int | Any:
-    """Units with which every comparison marked ? would be decided if our effects were the true
-    ones; missing beyond `MOST_UNITS`.
-
-    Errors shrink with the square root of the number of units. An effect as large as the margin
-    needs a p below `ALPHA` in the family; a smaller one needs an interval within the margin.
+    """Units with which every comparison marked ? would be decided, if that can be known: more than
+    there are.
     """
-    from scipy.special import ndtri
+    needed = [
+        np.maximum(judged.units_needed, judged.finding.n + 1)
+        for judged in deciding
+        if judged.mark_family == "?"
+    ]
+    return _whole(np.max(needed)) if needed else pd.NA
 
-    needed = [0.0]
-    for judged in deciding:
-        f = judged.finding
-        if judged.mark_family != "?":
-            continue
-        with np.errstate(divide="ignore", invalid="ignore"):
-            if f.toward:
-                ratio = np.divide(ndtri(1 - ALPHA / 2), ndtri(1 - judged.p_family / 2))
-            else:
-                ratio = np.divide(
-                    max(f.high - f.effect, f.effect - f.low), f.margin - abs(f.effect)
-                )
-            needed.append(max(f.n * ratio**2, f.n + 1))
-    return (
-        math.ceil(max(needed)) if max(needed) < MOST_UNITS and not np.isnan(needed).any() else pd.NA
-    )
+
+def _whole(units: float) -> int | Any:
+    """Units as a whole number; missing if they cannot be known, and beyond `MOST_UNITS`."""
+    return math.ceil(units) if units < MOST_UNITS else pd.NA
 
 
 def _size(each: _Judged) -> str:
@@ -617,6 +507,7 @@ def _check_row(judged: _Judged, material: Material) -> dict:
         "check": judged.number,
         "primary": judged.primary,
         "test": check.test,
+        "experiments": ", ".join(check.experiments),
         "metric": check.measured,
         "statistic": check.statistic_shown,
         "unit": _unit(check, material),
@@ -629,6 +520,7 @@ def _check_row(judged: _Judged, material: Material) -> dict:
         "low95": finding.low,
         "high95": finding.high,
         "p_family": judged.p_family,
+        "units_needed": _whole(judged.units_needed),
         "effect_published": effect_published,
         "published": {True: "holds", False: "fails", None: "not printed"}[held],
         "timed": _is_timed(check),

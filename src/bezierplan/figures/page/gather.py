@@ -10,6 +10,7 @@ import pandas as pd
 
 from bezierplan.analysis import headline, sensitivity
 from bezierplan.analysis.claims.kinds import Check, check_of
+from bezierplan.analysis.table_kinds import Pivot, table_of
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other, why
 from bezierplan.figures.page.addresses import address, of_cells
@@ -185,8 +186,9 @@ def _table(
         "caption": job["caption"],
         "csv": file,
     }
-    if job["spec"].get("published") and job["spec"]["kind"] == "pivot":
-        cells = _numbers(named["address"], read(compared), job["spec"], numbers, labels)
+    spec = table_of(job["spec"])
+    if isinstance(spec, Pivot) and spec.published:
+        cells = _numbers(named["address"], read(compared), spec, numbers, labels)
         return content.Table(
             **named | {"csv": f"{study}/tables/{name}.comparison.csv"}, numbers=cells
         )
@@ -198,7 +200,7 @@ def _table(
 def _numbers(
     table: str,
     compared: pd.DataFrame,
-    spec: dict,
+    spec: Pivot,
     numbers: pd.DataFrame | None,
     labels: dict[str, str],
 ) -> list[content.Number]:
@@ -216,7 +218,7 @@ def _numbers(
     printed = compared.loc[published, ["metric", "statistic"]].drop_duplicates()
     shown = compared.merge(printed, on=["metric", "statistic"])
     places = shown[[*keys, "metric", "statistic"]].to_dict("records")
-    addresses = of_cells(table, places, spec.get("primary", {}))
+    addresses = of_cells(table, places, spec.primary)
     cells = []
     for place, name, (_, row) in zip(places, addresses, shown.iterrows(), strict=True):
         cells.append(
@@ -258,12 +260,11 @@ def printed_key(column: str, value: content.Cell, labels: dict[str, str]) -> str
     )
 
 
-def _heading(metric: str, statistic: str, spec: dict, labels: dict[str, str]) -> str:
+def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
     """Metric and statistic as the table prints them."""
-    for value in spec.get("values", []):
-        statistics = one_or_list(value["statistic"])
-        if value["metric"] == metric and statistic in statistics:
-            return value["label"] + (f": {statistic}" if len(statistics) > 1 else "")
+    for value in spec.values:
+        if value.metric == metric and statistic in value.statistics:
+            return value.label + (f": {statistic}" if len(value.statistics) > 1 else "")
     return f"{style.column_name(metric, labels)}: {statistic}"
 
 
