@@ -83,6 +83,8 @@ maps:
              the border is the polygon with the role border, of any shape, or the file's bbox, or --margin around the obstacles;
              planners that need cells get --cell and --rule
   .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied, or with --unknown free as free
+             a map that is turned, by the yaw of its origin, becomes polygons where its obstacles really are, if its cells have at most
+             {robot.MOST_CORNERS:,} corners
   .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner is at 0,0
   .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the length of a user unit (default: 1)
   .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target

@@ -1,4 +1,4 @@
-"""Tours: the order of way points in which the exact shortest path through all of them is shortest."""
+"""Tours: the order of way points in which the exact shortest path through all is shortest."""
 
 import math
 from collections.abc import Sequence
@@ -74,8 +74,10 @@ def shortest_order(lengths: np.ndarray) -> list[int]:
             if rest == 0:
                 least[visited, last] = lengths[0, 1 + last]
                 continue
-            ways = least[rest] + between[:, last]
-            before[visited, last] = ways.argmin()
+            # Only places of the rest: where none can be reached, all ways are equally endless.
+            members = [place for place in range(count) if rest >> place & 1]
+            ways = least[rest, members] + between[members, last]
+            before[visited, last] = members[ways.argmin()]
             least[visited, last] = ways.min()
     visited = (1 << count) - 1
     last = int((least[visited] + lengths[1:-1, -1]).argmin())

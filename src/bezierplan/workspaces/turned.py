@@ -2,9 +2,8 @@
 really are.
 """
 
-import numpy as np
-
 from bezierplan.workspaces import robot
+from bezierplan.workspaces.geojson import rings_of
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 
@@ -25,14 +24,15 @@ def polygons(grid: Grid, yaw: float) -> Polygons:
             f"{robot.MOST_CORNERS:,} corners; expected fewer, or a yaw of 0"
         )
     x_low, x_high, y_low, y_high = grid.bounds
-    shape, border = (
+    border = shapely.box(x_low, y_low, x_high, y_high)
+    around = border.buffer(x_high - x_low + y_high - y_low, join_style="mitre")
+    # One shape before it is turned: rounding would leave slits between cells and what is outside.
+    blocked = shapely.union_all([cells, around.difference(border)])
+    blocked, border = (
         affinity.rotate(each, yaw, origin=grid.origin, use_radians=True)
-        for each in (cells, shapely.box(x_low, y_low, x_high, y_high))
+        for each in (blocked, border)
     )
     left, bottom, right, top = border.bounds
-    outside = shapely.box(left, bottom, right, top).difference(border)
-    rings = tuple(
-        tuple(np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors))
-        for part in (*shapely.get_parts(shape), *shapely.get_parts(outside))
-    )
+    inside = blocked.intersection(shapely.box(left, bottom, right, top))
+    rings = tuple(rings_of(part) for part in shapely.get_parts(inside) if part.area > 0)
     return Polygons((left, right, bottom, top), rings, grid.unit)
