@@ -197,14 +197,14 @@ class Judged:
                 f"lateral_acceleration: {lateral_acceleration:g}: the path has corners, which no "
                 f"speed keeps it at; expected a turning radius that is kept"
             )
-        found = self.sample(step=step or self.length / 1000)
+        points = self.sample(step=step or self.length / 1000)
         more = {}
         if speed is not None:
             allowed = samples.speeds(
-                found, speed, lateral_acceleration or math.inf, acceleration or math.inf
+                points, speed, lateral_acceleration or math.inf, acceleration or math.inf
             )
-            more = {"speed": allowed, "time": samples.times(found, allowed)}
-        path_files.write_csv(File(file), found, more)
+            more = {"speed": allowed, "time": samples.times(points, allowed)}
+        path_files.write_csv(File(file), points, more)
 
     def to_geojson(self, file: str | File, *, step: float | None = None) -> None:
         """Write the path as a GeoJSON feature of kind LineString, with the verdict among its
