@@ -155,13 +155,56 @@ class Judged:
 
         drawn_path.save(File(file), self.plot)
 
-    def to_csv(self, file: str | File, *, step: float | None = None) -> None:
-        """Write distance, x, y, heading and curvature along the path; `step` as in `sample`, by
-        default a thousandth of the length.
-        """
-        from bezierplan.geometry import path_files
+    def to_csv(
+        self,
+        file: str | File,
+        *,
+        step: float | None = None,
+        speed: float | None = None,
+        lateral_acceleration: float | None = None,
+        acceleration: float | None = None,
+    ) -> None:
+        """Write distance, x, y, heading and curvature along the path, and with a speed also speed
+        and time.
 
-        path_files.write_csv(File(file), self.sample(step=step or self.length / 1000))
+        Parameters
+        ----------
+        file : str or Path
+            A .csv file.
+        step : float, optional
+            As in `sample`, by default a thousandth of the length.
+        speed : float, optional
+            The largest speed, in the map's unit a second.
+        lateral_acceleration : float, optional
+            The largest acceleration across the path, in units a second squared: speed is at most
+            the root of this over the curvature.
+        acceleration : float, optional
+            The largest acceleration along the path, in units a second squared; with one, the path
+            begins and ends at rest.
+
+        Raises
+        ------
+        ValueError
+            If there is no path, for a number that is not above 0, for an acceleration without a
+            speed, and for a lateral one on a path with corners, where none is small enough.
+        """
+        from bezierplan.geometry import path_files, samples
+
+        limits = {"lateral_acceleration": lateral_acceleration, "acceleration": acceleration}
+        samples.check_limits(speed, limits)
+        if lateral_acceleration is not None and self.corners:
+            raise ValueError(
+                f"lateral_acceleration: {lateral_acceleration:g}: the path has corners, which no "
+                f"speed keeps it at; expected a turning radius that is kept"
+            )
+        points = self.sample(step=step or self.length / 1000)
+        more = {}
+        if speed is not None:
+            allowed = samples.speeds(
+                points, speed, lateral_acceleration or math.inf, acceleration or math.inf
+            )
+            more = {"speed": allowed, "time": samples.times(points, allowed)}
+        path_files.write_csv(File(file), points, more)
 
     def to_geojson(self, file: str | File, *, step: float | None = None) -> None:
         """Write the path as a GeoJSON feature of kind LineString, with the verdict among its
@@ -468,6 +511,7 @@ def plan(
     robot_radius: float = 0.0,
     footprint: Corners | None = None,
     via: Via = (),
+    via_order: str = "given",
     smooth: str = "arcs",
     strict: bool = False,
     **settings: Any,
@@ -494,6 +538,9 @@ def plan(
     via : sequence of tuple of float
         Way points (x, y), in their order: the path joins paths from one to the next. For the
         planners without a method, `dubins_search` and `shortest_path`.
+    via_order : {"given", "shortest"}
+        Whether the path passes the way points as they are given, or in the order in which the exact
+        shortest path through all of them is shortest; of at most 12.
     smooth : {"arcs", "continuous"}
         Whether the path turns along arcs, or with a curvature that rises and falls along
         transitions, wherever there is room for these. For the planners without a method and
@@ -533,24 +580,19 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    from bezierplan.running import footprints, legs, problems
+    from bezierplan.running import footprints, legs, problems, tours
 
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
     named, regions = _method(method, problem, settings), problems.remembered()
     legs.check_planner(_planner_name(*named[:2]), via, strict, smooth)
+    tours.check_order(via_order, via)
     served = getattr(named[1], "workspaces", None)
     if footprint is None:
-        planned = _planned(
-            _placed(_grown(problem, robot_radius), regions, served),
-            named,
-            seed,
-            via,
-            smooth,
-            settings,
-            regions,
-        )
+        placed = _placed(_grown(problem, robot_radius), regions, served)
+        via = tours.ordered(via_order, placed, via, regions)
+        planned = _planned(placed, named, seed, via, smooth, settings, regions)
     else:
         outline = outline_of(footprint)
         footprints.check_map(outline, problem.workspace, robot_radius)
@@ -558,12 +600,15 @@ def plan(
         def attempt(radius: float, first: Answer | None) -> Answer | None:
             try:
                 placed = _placed(_grown(problem, radius), regions, served)
-                legs.legs(placed, via, regions)
+                # Larger discs keep the order of the smallest one, by whose shortest path all are
+                # judged.
+                order = first.via if first else tours.ordered(via_order, placed, via, regions)
+                legs.legs(placed, order, regions)
             except ValueError:  # no room for a disc that large
                 if first is None:
                     raise
                 return None
-            answer = _planned(placed, named, seed, via, smooth, settings, regions, outline, first)
+            answer = _planned(placed, named, seed, order, smooth, settings, regions, outline, first)
             return None if first and answer.path is None else answer
 
         planned = footprints.first_that_holds(outline, attempt, lambda answer: answer.feasible)

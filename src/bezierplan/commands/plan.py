@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan import api
-from bezierplan.geometry import checker, shortest_paths
+from bezierplan.geometry import checker, samples, shortest_paths
 from bezierplan.places import TREE
 from bezierplan.planners import Plan, known_planners, planner_module
-from bezierplan.running import answer, footprints, interface, legs, problems, watchdog
+from bezierplan.running import answer, footprints, interface, legs, problems, tours, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
 from bezierplan.running.problems import Regions
@@ -34,6 +34,7 @@ from bezierplan.workspaces.text_file import is_count
 
 PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
+LIMITS = ("speed", "lateral_acceleration", "acceleration")
 
 _FROM_MAPS = (
     *(
@@ -48,7 +49,8 @@ _FROM_MAPS = (
         "most_pixels",
         "scenario",
     ),
-    *("robot_radius", "footprint", "smooth", "strict", "turning_radius"),
+    *("robot_radius", "footprint", "smooth", "strict", "turning_radius", "via_order"),
+    *("speed", "lateral_acceleration", "acceleration", "step"),
 )
 """What messages about a map or a problem may begin with: here these are options."""
 
@@ -80,8 +82,9 @@ the robot:
                     radians, counterclockwise from the x-axis. The path turns no tighter than the
                     turning radius: the shortest one without obstacles, if it is free (Dubins), or
                     else one by a search (hybrid A*), pulled tight
-  --via X,Y         way points in their order; the path turns no tighter there than elsewhere, if
-                    the search finds one that does not
+  --via X,Y         way points in their order, or with --via-order shortest in that of the exact
+                    shortest path through all of them, at most {tours.MOST_POINTS}; the path turns
+                    no tighter there than elsewhere, if the search finds one that does not
 
 maps:
   .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what
@@ -89,7 +92,9 @@ maps:
              of any shape, or the file's bbox, or --margin around the obstacles; planners that need
              cells get --cell and --rule
   .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as
-             occupied, or with --unknown free as free
+             occupied, or with --unknown free as free. A map that is turned, by the yaw of its
+             origin, becomes polygons where its obstacles are, if its cells have at most
+             {robot.MOST_CORNERS:,} corners
   .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner
              is at 0,0
   .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the
@@ -105,7 +110,9 @@ planners:
 files:
   .svg, .png       a picture
   .csv             distance, x, y, heading and curvature at equal distances along the path, at most
-                   --step apart
+                   --step apart; with --speed also speed and time. Speed is at most V and, with
+                   --lateral-acceleration A, the root of A over the curvature; with --acceleration
+                   the path begins and ends at rest
   .geojson         the same points as a line; .yaml  as a nav_msgs/Path message of ROS
 """
 
@@ -180,6 +187,12 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         default=[],
         metavar="X,Y",
         help="a place to pass on the way; may be given several times, in their order",
+    )
+    parser.add_argument(
+        "--via-order",
+        choices=tours.ORDERS,
+        default=tours.ORDERS[0],
+        help="pass these places as given, or in the order of the shortest path through all",
     )
     parser.add_argument(
         "--scenario",
@@ -275,6 +288,21 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         metavar="D",
         help="largest distance between points in the file (default: the length / 1000)",
     )
+    parser.add_argument(
+        "--speed", type=float, metavar="V", help="largest speed: adds speed and time to a .csv"
+    )
+    parser.add_argument(
+        "--lateral-acceleration",
+        type=float,
+        metavar="A",
+        help="largest acceleration across the path, which limits the speed in turns",
+    )
+    parser.add_argument(
+        "--acceleration",
+        type=float,
+        metavar="A",
+        help="largest acceleration along the path, which then begins and ends at rest",
+    )
     _plan(parser.parse_args(_joined(words)))
 
 
@@ -286,12 +314,15 @@ def _plan(arguments: Namespace) -> None:
     with _as_options():
         legs.check_planner(planner, arguments.via, arguments.strict, arguments.smooth)
         via = [map_files.point("via", text) for text in arguments.via]
+        tours.check_order(arguments.via_order, via)
         outline = _footprint(arguments)
         described, home = _map(arguments, planner)
         if outline:
             home = robot.grow(home, footprints.radii(outline)[0])
         problem = _problem(arguments, described, planner, places, home, regions)
         legs.legs(problem, via, regions)
+        via = tours.ordered(arguments.via_order, problem, via, regions)
+        legs.legs(problem, via, regions)  # two places that are the same may be neighbours only now
     if planner in legs.TURNING:
         settings = legs.preset(planner, problem.workspace) | settings
     interface.check_settings(module, settings, "--settings")
@@ -339,7 +370,8 @@ def _plan(arguments: Namespace) -> None:
         raise Fault(f"--out: {arguments.out}: not written, {planner} found no path")
     if arguments.out:
         try:
-            _write(arguments.out, judged, arguments.step)
+            with _as_options():
+                _write(arguments, judged)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(arguments.out, error) from None
 
@@ -462,6 +494,13 @@ def _check_words(arguments: Namespace) -> None:
             f"--step: {arguments.step:g}: only for --out with a file that ends in "
             f"{', '.join(OUT[len(PICTURES) :])}"
         )
+    limits = {name: getattr(arguments, name) for name in LIMITS}
+    with _as_options():
+        samples.check_limits(limits.pop("speed"), limits)
+    if arguments.speed is not None and (
+        arguments.out is None or arguments.out.suffix.lower() != ".csv"
+    ):
+        raise Fault(f"--speed: {arguments.speed:g}: only for --out with a file that ends in .csv")
 
 
 @contextmanager
@@ -557,6 +596,9 @@ def _told(
         )
         lines.append(("robot radius", f"{judged.robot_radius:g} {unit}{whole}"))
     lines.append(("shortest path", f"{judged.shortest:.6g} {unit}"))
+    if len(judged.via) > 1:
+        order = " ".join(f"{x:.12g},{y:.12g}" for x, y in judged.via)
+        lines.append(("way points", order))
     if judged.path is None:
         return [*lines, ("path", f"none ({solution.plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
     gap = _told_number(100 * abs(judged.gap), 3)
@@ -757,15 +799,16 @@ def _scenario(options: Namespace, described: dict, workspace: Workspace) -> dict
     )
 
 
-def _write(out: File, judged: api.Judged, step: float | None) -> None:
+def _write(arguments: Namespace, judged: api.Judged) -> None:
     """The path as a picture, as points with heading and curvature, as a GeoJSON line, or as a
     message of ROS.
     """
+    out, step = arguments.out, arguments.step
     suffix = out.suffix.lower()
     if suffix in PICTURES:
         judged.to_picture(out)
     elif suffix == ".csv":
-        judged.to_csv(out, step=step)
+        judged.to_csv(out, step=step, **{name: getattr(arguments, name) for name in LIMITS})
     elif suffix == ".geojson":
         judged.to_geojson(out, step=step)
     else:

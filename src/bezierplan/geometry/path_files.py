@@ -11,19 +11,19 @@ import numpy as np
 from bezierplan.geometry.samples import Samples
 
 
-def write_csv(file: Path, samples: Samples) -> None:
+def write_csv(file: Path, samples: Samples, more: Mapping[str, np.ndarray]) -> None:
     """A heading row, then distance, x, y, heading and curvature of each sample, with nine digits;
-    large coordinates with more.
+    large coordinates with more. more: further columns (n,), by name.
     """
     largest = max(np.abs(samples.x).max(), np.abs(samples.y).max(), 1.0)
     place = f"%.{9 + int(math.log10(largest))}g"
-    formats = ["%.9g", place, place, "%.9g", "%.9g"]
+    formats = ["%.9g", place, place, "%.9g", "%.9g", *["%.9g"] * len(more)]
     np.savetxt(
         file,
-        np.column_stack(samples),
+        np.column_stack([*samples, *more.values()]),
         fmt=formats,
         delimiter=",",
-        header=",".join(Samples._fields),
+        header=",".join([*Samples._fields, *more]),
         comments="",
     )
 

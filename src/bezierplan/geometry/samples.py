@@ -3,6 +3,7 @@ that limits allow.
 """
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -96,19 +97,64 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     )
 
 
-def speeds(samples: Samples, limit: float, lateral: float = math.inf) -> np.ndarray:
-    """The speed (n,) at each sample, in units a second, under a limit of speed and one of lateral
-    acceleration in units a second squared.
+def speeds(
+    samples: Samples,
+    limit: float,
+    lateral: float = math.inf,
+    acceleration: float = math.inf,
+) -> np.ndarray:
+    """The speed (n,) at each sample, in units a second, under a limit of speed and of lateral
+    acceleration, in units a second squared.
 
-    Raises ValueError for limits that are not above 0.
+    acceleration: limit of the change of speed, in units a second squared; with one, the path begins
+    and ends at rest. Raises ValueError for limits that are not above 0.
     """
-    for name, value in (("limit", limit), ("lateral", lateral)):
+    for name, value in (("limit", limit), ("lateral", lateral), ("acceleration", acceleration)):
         if not value > 0:
             raise ValueError(f"{name}: {value}; expected a number above 0")
     bend = np.abs(samples.curvature)
-    return np.minimum(
+    fast = np.minimum(
         limit, np.sqrt(np.divide(lateral, bend, out=np.full(len(bend), math.inf), where=bend > 0))
     )
+    if math.isinf(acceleration):
+        return fast
+    gains = 2 * acceleration * np.diff(samples.distance)
+    ahead = _reached(fast, gains)
+    return _reached(ahead[::-1], gains[::-1])[::-1]
+
+
+def _reached(fast: np.ndarray, gains: np.ndarray) -> np.ndarray:
+    """Speeds (n,), from rest, at most those that are given, whose squares grow by at most gains
+    (n - 1,).
+    """
+    reached = np.zeros(len(fast))
+    for k, gain in enumerate(gains):
+        reached[k + 1] = min(fast[k + 1], math.sqrt(reached[k] ** 2 + gain))
+    return reached
+
+
+def check_limits(speed: float | None, accelerations: Mapping[str, float | None]) -> None:
+    """Raise ValueError unless all limits that are given are above 0, and accelerations, by name, go
+    with a speed.
+    """
+    for name, value in {"speed": speed, **accelerations}.items():
+        if value is not None and not 0 < value < math.inf:
+            raise ValueError(f"{name}: {value:g}; expected a number above 0")
+        if value is not None and speed is None:
+            raise ValueError(f"{name}: {value:g}: without a speed; expected one beside it")
+
+
+def times(samples: Samples, speed: np.ndarray) -> np.ndarray:
+    """When each sample is passed (n,), in seconds from the first, at speeds (n,) that change evenly
+    in time between two samples.
+
+    Raises ValueError if the robot stands at two in a row.
+    """
+    apart, both = np.diff(samples.distance), speed[1:] + speed[:-1]
+    if ((both == 0) & (apart > 0)).any():
+        raise ValueError("step: the robot rests at two samples in a row; expected a smaller one")
+    taken = np.divide(2 * apart, both, out=np.zeros(len(apart)), where=both > 0)
+    return np.concatenate([[0.0], np.cumsum(taken)])
 
 
 def _lengths(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.schema.checked import Fault
-from bezierplan.workspaces import files, raster, robot, ros, shifted
+from bezierplan.workspaces import files, raster, robot, ros, shifted, turned
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.limits import FARTHEST, check_thickness
@@ -174,7 +174,9 @@ def _anywhere(file: Path, description: dict[str, Any]) -> Workspace:
     if kind == "image":
         return ros.read_image(file, description["resolution"], unit, **options)
     if kind == "ros_map":
-        return ros.read(file, file.parent, unit, largest=FARTHEST, **options)
+        grid = ros.read(file, file.parent, unit, largest=FARTHEST, turned=True, **options)
+        yaw = ros.yaw_of(file)
+        return turned.polygons(grid, yaw) if yaw else grid
     return files.load(description, file.parent)
 
 

@@ -87,7 +87,7 @@ def _grow(workspace: Workspace, radius: float) -> Workspace:
             workspace, _union_of_polygons(workspace.drawn), workspace.drawn.bounds, radius
         )
         return raster.from_polygons(polygons, workspace.cell, "overlap")
-    shape = _union_of_cells(workspace)
+    shape = union_of_cells(workspace)
     if shape is None:
         return by_cells(workspace, radius)
     polygons = _polygons(workspace, shape, workspace.bounds, radius)
@@ -237,7 +237,7 @@ def _union_of_polygons(polygons: Polygons) -> "shapely.Geometry":
     )
 
 
-def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
+def union_of_cells(grid: Grid) -> "shapely.Geometry | None":
     """The occupied cells as one shape; None if it has more than `MOST_CORNERS` corners."""
     import shapely
 

@@ -77,8 +77,11 @@ def read(
     most_pixels: int = MOST_PIXELS,
     unknown: Unknown = "occupied",
     largest: float = LARGEST,
+    turned: bool = False,
 ) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
+
+    turned: whether its yaw may be other than 0; the grid is the map before it is turned.
 
     folder: where the image must lie, also through links. robot_radius: in units; cells that come
     closer than that to an occupied cell or to the border also count as occupied. largest: size of a
@@ -87,6 +90,8 @@ def read(
     Raises ValueError, naming the key and what is expected.
     """
     content = _content(file)
+    yaw = content["origin"][2]
+    _expect(turned or yaw == 0, "origin", f"yaw {yaw}", "a yaw of 0: a map that is not turned")
     grid = _grid(image_of(file, folder, content), content, unit, most_pixels, unknown)
     check_numbers(np.array(grid.bounds), "origin, resolution: the border", largest)
     robot.check_radius(robot_radius)
@@ -202,9 +207,19 @@ def _content(file: Path) -> dict[str, Any]:
             origin[2],
         )
         origin = [*origin[:2], 0.0]
-    turned = not _is_number(origin[2]) or abs(math.remainder(origin[2], math.tau)) > SMALLEST_YAW
-    _expect(not turned, "origin", f"yaw {origin[2]}", "a yaw of 0: a map that is not turned")
-    return content | {"negate": negate, "origin": origin}
+    _expect(_is_number(origin[2]), "origin", f"yaw {origin[2]}", "radians")
+    yaw = math.remainder(origin[2], math.tau)
+    return content | {
+        "negate": negate,
+        "origin": [*origin[:2], yaw if abs(yaw) > SMALLEST_YAW else 0.0],
+    }
+
+
+def yaw_of(file: Path) -> float:
+    """By how much a map_server YAML file turns its map about its origin, in radians, from -pi to
+    pi. Raises ValueError as `read` does.
+    """
+    return _content(file)["origin"][2]
 
 
 def _is_number(value: Any) -> bool:
