@@ -75,8 +75,8 @@ def table(studies: dict[str, Study], results: Path) -> pd.DataFrame:
     for (key, name), asked in pd.DataFrame(wishes, columns=Wish._fields).groupby(
         ["study", "experiment"], sort=False
     ):
-        given, paper = (runs(studies[key], name, scale) for scale in ("extended", "full"))
-        asked = asked.assign(needed=np.ceil(asked["factor"] * given))
+        made, paper = (runs(studies[key], name, scale) for scale in ("extended", "full"))
+        asked = asked.assign(needed=np.ceil(asked["factor"] * made))
         beyond = asked["undecided"] & ~(asked["needed"] <= REACH)
         most = asked[~beyond & asked["needed"].notna()].nlargest(1, "needed")
         least = int(most["needed"].iloc[0]) if len(most) else 0
@@ -85,8 +85,8 @@ def table(studies: dict[str, Study], results: Path) -> pd.DataFrame:
                 "study": key,
                 "experiment": name,
                 "paper": paper,
-                "given": given,
-                "needed": max(least, min(paper, given)),
+                "given": made,
+                "needed": max(least, min(paper, made)),
                 "asked_by": most["name"].iloc[0] if least > paper else "",
                 "out_of_reach": ", ".join(dict.fromkeys(asked.loc[beyond, "name"])),
             }
