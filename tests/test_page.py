@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import HOSTILE, claim, comparison, number, page
+from studies import study
 
 from bezierplan.figures.page import (
     HERE,
@@ -678,3 +679,11 @@ def test_what_was_judged_again_stands_on_the_page():
     assert "All 1,234 runs shown here, 567 different paths, were judged again" in told
     assert "and 89 bounds computed again, without a difference" in told
     assert "digest 0123abcd, with numba 1.2, numpy 3.4." in told
+
+
+def test_a_number_whose_statistic_is_not_stated_has_the_name_of_the_column_beside_it():
+    table = study("song2016").tables["table1"]
+    headings = [
+        gather._heading(metric, "unstated", table, {}) for metric in ("objective", "length")
+    ]
+    assert headings == ["objective value", "length: unstated"]

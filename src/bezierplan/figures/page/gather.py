@@ -261,9 +261,12 @@ def printed_key(column: str, value: content.Cell, labels: dict[str, str]) -> str
 
 
 def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
-    """Metric and statistic as the table prints them."""
+    """Metric and statistic as the table prints them; one that the paper does not state stands
+    beside our median.
+    """
+    beside = {statistic, "median"} if statistic == "unstated" else {statistic}
     for value in spec.values:
-        if value.metric == metric and statistic in value.statistics:
+        if value.metric == metric and beside & set(value.statistics):
             return value.label + (f": {statistic}" if len(value.statistics) > 1 else "")
     return f"{style.column_name(metric, labels)}: {statistic}"
 
