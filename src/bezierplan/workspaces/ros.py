@@ -207,7 +207,7 @@ def _content(file: Path) -> dict[str, Any]:
             origin[2],
         )
         origin = [*origin[:2], 0.0]
-    _expect(_is_number(origin[2]), "origin", f"yaw {origin[2]}", "radians")
+    _expect(_is_number(origin[2]), "origin", f"yaw {origin[2]}", "a number of radians")
     yaw = math.remainder(origin[2], math.tau)
     return content | {
         "negate": negate,
