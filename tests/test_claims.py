@@ -602,7 +602,15 @@ def test_units_needed_are_known_or_not(finding, mark, p, units):
     assert math.isnan(found) if units is None else found == pytest.approx(units)
 
 
-def test_an_effect_without_errors_needs_no_number_of_units():
+def test_units_needed_of_a_p_that_is_nearly_zero():
+    """1 - p / 2 is 1: no units at all were said to be needed."""
+    finding = Finding(effect=1, n=100, toward=1, margin=0.5, p=1e-30)
+    needed = 100 * ((Z(0.975) + Z(0.8)) / stats.norm.isf(5e-31)) ** 2
+    assert verdicts.units_needed(finding, "+", 1e-30) == pytest.approx(needed)
+    assert needed > 5
+
+
+def test_no_number_of_units_is_known_for_a_p_of_1_and_none_for_a_secondary_check():
     finding = Finding(effect=1, low=0, high=2, n=10, toward=1, margin=0.5, p=1.0)
     assert verdicts.units_needed(finding, "?", 1.0) == math.inf
     (row,) = (

@@ -79,7 +79,7 @@ def units_needed(finding: Finding, mark: str, p: float) -> float:
     by_p = mark in ("+", "-") or (mark == "?" and finding.toward)
     # A p of 0 lies below what draws can tell.
     if by_p and p > 0:
-        errors = ndtri(1 - p / 2)
+        errors = -ndtri(p / 2)  # of the upper tail, 1 - p / 2 is 1 for a small p
         return float(finding.n * ((certain + mostly) / errors) ** 2) if errors else math.inf
     room = finding.margin - abs(finding.effect)
     half = max(finding.high - finding.effect, finding.effect - finding.low)
