@@ -186,7 +186,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         action="append",
         default=[],
         metavar="X,Y",
-        help="a place to pass on the way; may be given several times, in their order",
+        help="a place to pass on the way; may be given several times",
     )
     parser.add_argument(
         "--via-order",
