@@ -36,10 +36,14 @@ def write(folder: Path) -> None:
     from bezierplan.study import reading
 
     studies = reading.load(reading.read_config({}))
-    claims, worth = pd.read_csv(OUTCOME / "claims.csv"), pd.read_csv(OUTCOME / "worth.csv")
+    claims, baseline_comparison = (
+        pd.read_csv(OUTCOME / "claims.csv"),
+        pd.read_csv(OUTCOME / "baseline_comparison.csv"),
+    )
     numbers = pd.read_csv(OUTCOME / "numbers.csv")
     pages = {
-        f"methods/{name}.md": method_page(name, studies, claims, worth) for name in known_planners()
+        f"methods/{name}.md": method_page(name, studies, claims, baseline_comparison)
+        for name in known_planners()
     }
     pages["methods/index.md"] = methods_index(studies)
     pages |= {
@@ -111,7 +115,9 @@ def prose(docstring: str | None) -> str:
 # Methods
 
 
-def method_page(name: str, studies: dict, claims: pd.DataFrame, worth: pd.DataFrame) -> str:
+def method_page(
+    name: str, studies: dict, claims: pd.DataFrame, baseline_comparison: pd.DataFrame
+) -> str:
     """The page of a planner: what it is, its settings, what it leaves open, what it achieves, and
     which claims rest on it.
     """
@@ -135,7 +141,7 @@ def method_page(name: str, studies: dict, claims: pd.DataFrame, worth: pd.DataFr
     parts += ["## Settings\n", settings_table(name, module, users, studies)]
     parts += [
         left_open(name, users, studies),
-        achieved(users, studies, worth),
+        achieved(users, studies, baseline_comparison),
         resting(users, studies, claims),
     ]
     parts += [
@@ -222,9 +228,11 @@ def left_open(name: str, users: dict[str, list[str]], studies: dict) -> str:
     return "## What the paper leaves open\n\n" + table(heads, rows)
 
 
-def achieved(users: dict[str, list[str]], studies: dict, worth: pd.DataFrame) -> str:
+def achieved(users: dict[str, list[str]], studies: dict, baseline_comparison: pd.DataFrame) -> str:
     """How the methods of a planner compare with the rounded shortest path."""
-    mine = worth[[row.method in users.get(row.study, []) for row in worth.itertuples()]]
+    mine = baseline_comparison[
+        [row.method in users.get(row.study, []) for row in baseline_comparison.itertuples()]
+    ]
     if mine.empty:
         return ""
     rows = [

@@ -167,8 +167,8 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
             content.Shown(problem="p", best="one/first/p/a/0", worst="one/first/p/a/1", **shown),
             *drives(),
         ],
-        worth=[worth("a", 1.25), worth("c", None)],
-        worth_in_words=HOSTILE,
+        baseline_comparison=[baseline_comparison("a", 1.25), baseline_comparison("c", None)],
+        baseline_comparison_in_words=HOSTILE,
         explanations=[explanation("O1=8", 3), explanation("default", 1)],
         interpretations_in_words="The printed numbers are most likely from O1=8.",
         explained=[content.Explained(table="table1", numbers=3, default=1, best=3, never=0)],
@@ -176,7 +176,7 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
     )
 
 
-def worth(method: str, curvature: float | None) -> content.Worth:
+def baseline_comparison(method: str, curvature: float | None) -> content.BaselineComparison:
     given = {
         "baseline": "rounded",
         "conditions": 3,
@@ -185,8 +185,8 @@ def worth(method: str, curvature: float | None) -> content.Worth:
         "length": 1.1,
         "cpu": 20.0,
     }
-    return content.Worth(
-        address=f"one/worth/{method}",
+    return content.BaselineComparison(
+        address=f"one/baseline_comparison/{method}",
         method=method,
         curvature=curvature,
         cornered=curvature is None,

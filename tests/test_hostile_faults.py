@@ -515,24 +515,26 @@ WORDS = {
         "methods: [shortest_path,",
         "methods: shortest_path: a baseline; it joins by itself",
     ),
-    "worth beside a method": (
+    "a comparison with a method that is no baseline": (
         E,
-        "worth: {baseline: rounded",
-        "worth: {baseline: smooth",
-        "worth: baseline: smooth: unknown",
+        "baseline_comparison: {baseline: rounded",
+        "baseline_comparison: {baseline: smooth",
+        "baseline_comparison: baseline: smooth: unknown",
     ),
-    "worth in an unknown experiment": (
+    "a comparison with the baseline in an unknown experiment": (
         E,
         "rounded, experiments: [routes]",
         "rounded, experiments: [route]",
-        "worth: experiments: route: unknown; did you mean routes?",
+        "baseline_comparison: experiments: route: unknown; did you mean routes?",
     ),
-    "worth beside a baseline that stays out": (
+    "a comparison with a baseline that stays out": (
         E,
-        "worth: {baseline: rounded, experiments: [routes]}\n\nexperiments:\n  routes:\n",
-        "worth: {baseline: random_search, experiments: [routes]}\n\nexperiments:\n  routes:\n    "
-        "vary: {population: [10]}\n",
-        "worth: experiments: routes: the baseline random_search does not join it; leave it out",
+        "baseline_comparison: {baseline: rounded, experiments: [routes]}\n\n"
+        "experiments:\n  routes:\n",
+        "baseline_comparison: {baseline: random_search, experiments: [routes]}\n\n"
+        "experiments:\n  routes:\n    vary: {population: [10]}\n",
+        "baseline_comparison: experiments: routes: the baseline random_search does not join it; "
+        "leave it out",
     ),
     "no methods": (
         E,

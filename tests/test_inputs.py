@@ -27,19 +27,19 @@ def test_names_of_files_lead_back_to_their_experiments():
 @pytest.mark.parametrize("scale", ["smoke", "full"])
 def test_jobs_of_all_studies_know_the_files_of_each(scale):
     given = studies()
-    files = inputs.experiments(targets.worth_inputs(given, scale))
+    files = inputs.experiments(targets.baseline_comparison_inputs(given, scale))
     wanted = [
         f"{key}/{name}"
         for key, study in given.items()
-        if study.worth
-        for name in study.worth.experiments
+        if study.baseline_comparison
+        for name in study.baseline_comparison.experiments
     ]
     assert list(files) == wanted
     for name, each in files.items():
         study, experiment = name.split("/")
         assert set(each.runs) == {
             *given[study].experiments[experiment].methods,
-            given[study].worth.baseline,
+            given[study].baseline_comparison.baseline,
         }
         assert all(f"/{study}/" in file for file in (*each.chunks, each.problems, each.bounds))
 

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import audit, worth
+from bezierplan.analysis import audit, baseline_comparison
 from bezierplan.analysis.claims import job as claims_job
 from bezierplan.figures import job as figures_job
 from bezierplan.running import inputs
@@ -53,10 +53,10 @@ def moved(study, tmp_path):
 
 
 def test_methods_are_measured_against_the_baseline(study, moved):
-    rows = worth.of_studies(
-        targets.worth_params({"many": study}, "full")["job"], {"many/all": moved}
+    rows = baseline_comparison.of_studies(
+        targets.baseline_comparison_params({"many": study}, "full")["job"], {"many/all": moved}
     )
-    assert list(rows.columns) == list(worth.COLUMNS)
+    assert list(rows.columns) == list(baseline_comparison.COLUMNS)
     assert set(rows["method"]) == {"pso", "cpso1_singer", "cpso2_singer", "ferguson"}
     assert set(rows["study"]) == {"many"}
     assert (rows["length"].dropna() >= 1 - 1e-9).all(), "none is shorter than the shortest path"

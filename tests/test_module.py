@@ -23,7 +23,7 @@ experiments:
     methods: [line, around]
     repeats: {smoke: 2, full: 2, extended: 2}
     chunk: {smoke: 2, full: 2, extended: 2}
-worth: {baseline: best, experiments: [first]}
+baseline_comparison: {baseline: best, experiments: [first]}
 """
 ARTEFACTS = f"""
 labels: {{line: "{HOSTILE}", around: "a < b & c"}}
@@ -83,7 +83,7 @@ def test_a_module_with_a_prefix_makes_everything(folder):
         assert (folder / "far/away/results" / scale / "index.html").stat().st_size > 10_000
     made = folder / "far/away/results/full"
     for name in (
-        "worth.csv",
+        "baseline_comparison.csv",
         "summary.md",
         "walk/claims.csv",
         "walk/figures/ways.svg",

@@ -1,4 +1,4 @@
-"""The planted faults of tests/mutants: each can still be planted, and the test that must catch it
+"""The mutants of tests/mutants: each can still be planted, and the test that must catch it
 exists. `make mutants` runs them.
 """
 

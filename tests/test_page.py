@@ -469,12 +469,12 @@ def test_method_with_corners_has_no_number_of_curvature():
     measured = pd.DataFrame(
         [row | {"compared": 2, "length": 1.5, "bent": 2, "curvature": math.inf, "cpu": 3.0}]
     )
-    found = other.of_worth("one", measured)
-    assert [(each.cornered, each.curvature, each.length) for each in found["worth"]] == [
-        (True, None, 1.5)
-    ]
-    assert found["worth_in_words"].startswith("1 method: feasible in 50 %")
-    assert other.of_worth("two", measured) == {}
+    found = other.of_baseline_comparison("one", measured)
+    assert [
+        (each.cornered, each.curvature, each.length) for each in found["baseline_comparison"]
+    ] == [(True, None, 1.5)]
+    assert found["baseline_comparison_in_words"].startswith("1 method: feasible in 50 %")
+    assert other.of_baseline_comparison("two", measured) == {}
 
 
 def test_search_finds_every_published_number_and_every_run_shown_by_its_words():
@@ -484,7 +484,7 @@ def test_search_finds_every_published_number_and_every_run_shown_by_its_words():
         == "a: objective, mean: 10.51 → 10.71 inconclusive"
     )
     assert found["one/circles/p/a/0"].text.startswith("best feasible run of ")
-    assert found["one/worth/a"].more == "one a"
+    assert found["one/baseline_comparison/a"].more == "one a"
     assert "one/table1/c/length/mean" not in found
 
 

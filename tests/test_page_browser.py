@@ -263,7 +263,7 @@ def test_methods_in_the_chart_can_be_chosen(visit, small):
     dots = charted(tab, "methods")
     expect(dots).to_have_count(2)
     tab.locator(".toggles summary").click()
-    tab.locator(".toggles [value='one/worth/c']").click()
+    tab.locator(".toggles [value='one/baseline_comparison/c']").click()
     expect(dots).to_have_count(1)
     tab.locator(".toggles [data-all]").click()
     expect(dots).to_have_count(0)

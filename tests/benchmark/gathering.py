@@ -85,7 +85,7 @@ def write_study(folder: Path, repeats: int, chunk: int) -> Path:
             name: {"workspace": name, "start": [0, 0], "target": [4, 6]} for name in PLACES
         },
         "experiments": {"all": {"problems": list(PLACES), "methods": list(METHODS), **sizes}},
-        "worth": {"baseline": "shortest_path", "experiments": ["all"]},
+        "baseline_comparison": {"baseline": "shortest_path", "experiments": ["all"]},
     }
     (folder / "published").mkdir(parents=True)
     (folder / "experiments.yaml").write_text(yaml.safe_dump(described, sort_keys=False))
@@ -151,10 +151,10 @@ def gathering(given: Studies) -> Iterator[Job]:
     for key in given:
         yield from _gathering_one(given, key)
     yield Job(
-        "worth",
-        targets.worth_inputs(given, SCALE),
-        {"worth": f"results/{SCALE}/worth.csv"},
-        targets.worth_params(given, SCALE),
+        "baseline_comparison",
+        targets.baseline_comparison_inputs(given, SCALE),
+        {"baseline_comparison": f"results/{SCALE}/baseline_comparison.csv"},
+        targets.baseline_comparison_params(given, SCALE),
     )
     output = {
         name: f"results/{SCALE}/{name}.{ending}"

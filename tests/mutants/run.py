@@ -47,7 +47,7 @@ LEFT_OUT = shutil.ignore_patterns(".git", ".venv", ".snakemake", "results", "__p
 
 
 class Mutant(NamedTuple):
-    """A planted fault: its description, the file, the text that it replaces and the new text, and
+    """A mutant: its description, the file, the text that it replaces and the new text, and
     the test that must catch it.
     """
 
@@ -175,7 +175,7 @@ def main() -> int:
 
         with ThreadPoolExecutor(max(1, arguments.jobs)) as pool:
             found = list(pool.map(timed, wanted))
-    print(f"{found.count('caught')} of {len(found)} planted faults caught")
+    print(f"{found.count('caught')} of {len(found)} mutants caught")
     return int(found.count("caught") < len(found))
 
 

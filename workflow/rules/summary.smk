@@ -1,25 +1,25 @@
 # All studies together: the summary, and the page that shows everything.
 
 
-rule worth:
+rule baseline_comparison:
     input:
-        inputs(targets.worth_inputs),
+        inputs(targets.baseline_comparison_inputs),
     output:
         report(
-            "results/{scale}/worth.csv",
+            "results/{scale}/baseline_comparison.csv",
             category="summary",
             labels={
-                "item": "worth",
+                "item": "baseline_comparison",
                 "shows": "each method beside the exact shortest path with rounded corners",
             },
             caption="../report/summary.rst",
         ),
     log:
-        "results/{scale}/worth.log",
+        "results/{scale}/baseline_comparison.log",
     params:
-        **params(targets.worth_params, "job", "code"),
+        **params(targets.baseline_comparison_params, "job", "code"),
     script:
-        "../scripts/worth.py"
+        "../scripts/baseline_comparison.py"
 
 
 rule summary:

@@ -11,7 +11,11 @@ with log.job(snakemake) as output:
     comparisons, claims = (inputs.part(snakemake.input, name) for name in ("comparisons", "claims"))
     scale = snakemake.wildcards.scale
     found = summary.gathered(
-        snakemake.params.job, comparisons, list(claims.values()), snakemake.input.worth, scale
+        snakemake.params.job,
+        comparisons,
+        list(claims.values()),
+        snakemake.input.baseline_comparison,
+        scale,
     )
     found.numbers.to_csv(output.numbers, index=False, float_format="%.10g", lineterminator="\n")
     found.claims.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")

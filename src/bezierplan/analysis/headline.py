@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import comparison, worth
+from bezierplan.analysis import baseline_comparison, comparison
 from bezierplan.analysis.claims.verdicts import VERDICTS
 from bezierplan.analysis.markdown import table_text
 
@@ -90,7 +90,7 @@ def headline(
     """The headline of some studies.
 
     numbers: as from `summary.numbers`. claims: as from `claims.judge`. measured: as from
-    `worth.measured`, of all studies. titles: of the studies, by name.
+    `baseline_comparison.measured`, of all studies. titles: of the studies, by name.
     """
     counts = outcome(numbers, claims)
     sentences = [
@@ -145,18 +145,18 @@ def beside_baseline(measured: pd.DataFrame) -> str:
     if measured.empty:
         return ""
     reliable = measured[measured["feasible"] >= measured["feasible_baseline"]]
-    shorter = int((reliable["length"] < 1 - worth.EQUAL).sum())
+    shorter = int((reliable["length"] < 1 - baseline_comparison.EQUAL).sum())
     if reliable.empty:
-        return f"No method is feasible as often as the baseline, {worth.BASELINE}."
+        return f"No method is feasible as often as the baseline, {baseline_comparison.BASELINE}."
     if not shorter:
         return (
             "No method that is feasible as often as the baseline, "
-            f"{worth.BASELINE}, gives a shorter path."
+            f"{baseline_comparison.BASELINE}, gives a shorter path."
         )
     gives = "gives" if shorter == 1 else "give"
     return (
-        f"Of {len(reliable)} methods feasible as often as the baseline, {worth.BASELINE}, "
-        f"{shorter} {gives} a shorter path."
+        f"Of {len(reliable)} methods feasible as often as the baseline, "
+        f"{baseline_comparison.BASELINE}, {shorter} {gives} a shorter path."
     )
 
 
@@ -217,7 +217,7 @@ def _of(counts: list[int]) -> str:
 
 
 def _percent(share: float) -> str:
-    return "" if np.isnan(share) else f"{worth.number(100 * share, 2)} %"
+    return "" if np.isnan(share) else f"{baseline_comparison.number(100 * share, 2)} %"
 
 
 def _measured(rows: pd.DataFrame) -> dict[str, str]:
@@ -227,12 +227,12 @@ def _measured(rows: pd.DataFrame) -> dict[str, str]:
     if rows.empty:
         return dict.fromkeys(("feasible", "length", "cpu"), "")
     feasible, baseline = (
-        worth.span(100 * rows["feasible"], 2),
-        worth.span(100 * rows["feasible_baseline"], 3),
+        baseline_comparison.span(100 * rows["feasible"], 2),
+        baseline_comparison.span(100 * rows["feasible_baseline"], 3),
     )
-    length = worth.span(rows["length"], 3) if rows["length"].notna().any() else ""
+    length = baseline_comparison.span(rows["length"], 3) if rows["length"].notna().any() else ""
     return {
         "feasible": f"{feasible} % ({baseline} %)",
         "length": length,
-        "cpu": worth.span(rows["cpu"], 2),
+        "cpu": baseline_comparison.span(rows["cpu"], 2),
     }

@@ -531,9 +531,7 @@ METRICS: dict[str, Metric] = {
     # Of drives in worlds that move.
     "arrival": Metric("steps", "when the robot arrives", True, least=0.0),
     "steps": Metric("steps", "how long the robot drives and waits", False, least=0.0),
-    "travelled": Metric(
-        "u", "length of the way driven, whether or not it is free", False, least=0.0
-    ),
+    "travelled": Metric("u", "distance travelled, whether or not it is free", False, least=0.0),
     "first_plan": Metric("u", "length of the first plan", False, least=0.0),
     "last_plan": Metric("u", "length of the last plan", False, least=0.0),
     "last_optimum": Metric(

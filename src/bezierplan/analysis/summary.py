@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import explained, headline, worth
+from bezierplan.analysis import baseline_comparison, explained, headline
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
@@ -28,7 +28,7 @@ def gathered(
     job: dict,
     comparison_files: Mapping[str, str],
     claims_files: list[str],
-    worth_file: str,
+    baseline_comparison_file: str,
     scale: str,
 ) -> Summary:
     """The summary of a job (`study.targets.summary_params`). comparison_files: each by
@@ -44,7 +44,7 @@ def gathered(
     return Summary(
         everything,
         claims,
-        report(everything, claims, pd.read_csv(worth_file), job["titles"], scale),
+        report(everything, claims, pd.read_csv(baseline_comparison_file), job["titles"], scale),
     )
 
 
@@ -164,8 +164,8 @@ def report(
     """The summary of a scale as markdown: the headline, the methods beside the baseline, then the
     claims of each study with their verdicts.
 
-    measured: rows with the columns `worth.COLUMNS`. interpretations: the tables of `explained`, if
-    the search for interpretations has been made.
+    measured: rows with the columns `baseline_comparison.COLUMNS`. interpretations: the tables of
+    `explained`, if the search for interpretations has been made.
     """
     parts = [
         f"{HEADING}{scale}",
@@ -179,7 +179,7 @@ def report(
         "made; `replication_probability`: how often an experiment of that size shows what the "
         "claim says. Interpretations that do not "
         "decide are left out here; `numbers.csv` and `claims.csv` have them.",
-        *worth.section(measured, titles),
+        *baseline_comparison.section(measured, titles),
         *(explained.section(*interpretations, titles) if interpretations else []),
     ]
     for study, title in titles.items():

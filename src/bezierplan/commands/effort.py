@@ -24,7 +24,7 @@ WORK = {
     "latex": "tables, claims, statistics",
     "claims": "tables, claims, statistics",
     "audit": "tables, claims, statistics",
-    "worth": "tables, claims, statistics",
+    "baseline_comparison": "tables, claims, statistics",
     "summary": "tables, claims, statistics",
     "sensitivity": "tables, claims, statistics",
     "alternative": "alternatives: their runs and claims",

@@ -36,7 +36,7 @@ LIKELY = (
     "interpretation explains. *by exchange*: how "
     "many would be in range if printed numbers of one kind were exchanged with each other."
 )
-WORTH = "worth.csv"
+BASELINE_COMPARISON = "baseline_comparison.csv"
 NUMBERS_FULL = "numbers_papers_size.csv"
 SCALES = {
     "full": "the papers' own numbers of runs.",
@@ -80,7 +80,7 @@ def write() -> None:
         )
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     numbers = pd.read_csv(RESULTS / "numbers.csv")
-    measured = pd.read_csv(RESULTS / WORTH)
+    measured = pd.read_csv(RESULTS / BASELINE_COMPARISON)
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
@@ -94,7 +94,7 @@ def write() -> None:
             kept.unlink(missing_ok=True)  # what was not made again is of another state
             if key in (varied if name == SENSITIVITY else searched):
                 shutil.copyfile(FULL / key / name, kept)
-    shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
+    shutil.copyfile(RESULTS / BASELINE_COMPARISON, KEPT / BASELINE_COMPARISON)
     needed.table(studies, RESULTS).to_csv(KEPT / needed.KEPT, index=False)
     forecast.keep(studies, Path())
     for picture in PICTURES:
@@ -111,7 +111,8 @@ def table(kept: Path) -> str:
     """
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
     overview = headline.headline(
-        *(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", WORTH)), titles
+        *(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", BASELINE_COMPARISON)),
+        titles,
     )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)

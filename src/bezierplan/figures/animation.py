@@ -27,8 +27,8 @@ _SIDE, _DOTS, _COLOURS = 3.6, 100, 32
 
 
 def save(world: World, problem: Problem, ride: Ride, verdict: Verdict, file: Path) -> None:
-    """Save a drive as an animated gif: obstacles, way driven, current plan, and dropped plans in
-    grey.
+    """Save a drive as an animated gif: obstacles, path travelled, current plan, and dropped plans
+    in grey.
     """
     from PIL import Image
 

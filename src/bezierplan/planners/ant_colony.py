@@ -1,5 +1,5 @@
-"""Ant colony optimisation over the cells of a grid (ACO), a rival in ma2020 (Section 4.1; its
-reference 28, no parameters given).
+"""Ant colony optimisation over the cells of a grid (ACO), a competing method in ma2020
+(Section 4.1; its reference 28, no parameters given).
 
 Ants walk from cell to cell, attracted by the trails of earlier ants and by the closeness of the
 target. With the trail update `ant_system` all ants of an iteration lay trails (Dorigo, Maniezzo and

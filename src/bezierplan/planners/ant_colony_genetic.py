@@ -1,5 +1,5 @@
 """Ant colony optimisation followed by a genetic algorithm over the cells of a grid (ACO-GA), one of
-ma2020's rivals (Section 4.1).
+ma2020's competing methods (Section 4.1).
 
 Its reference 30 (SmartPATH) gives the scheme: ants find the first paths, and a genetic algorithm
 with its own crossover improves them. If two parents share a cell, the first child gets the shorter

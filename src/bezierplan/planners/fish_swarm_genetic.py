@@ -1,5 +1,5 @@
 """Artificial fish swarm followed by a genetic algorithm over the cells of a grid (ASFA-GA), one of
-ma2020's rivals (Section 4.1).
+ma2020's competing methods (Section 4.1).
 
 Of its reference 31 only the title is known. Fish forage from cell to cell and occasionally follow
 one that is closer to the target; the paths of those that arrive form the first population of a

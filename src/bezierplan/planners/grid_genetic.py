@@ -1,5 +1,5 @@
 """Genetic algorithm over paths of cells: a chromosome is a path of neighbouring free cells (the
-rival GA of elhoseny2017).
+competing GA of elhoseny2017).
 
 The baseline called GA in Tables 2, 3 and 6 of elhoseny2017 (Alajlan et al., 2013), which gives no
 parameters or operators; these are common ones. First paths are greedy walks through random cells. A

@@ -1,5 +1,5 @@
-"""Genetic algorithm for paths over the cells of a grid (GA), a rival in ma2020 (Section 4.1; its
-reference 29, no parameters given).
+"""Genetic algorithm for paths over the cells of a grid (GA), a competing method in
+ma2020 (Section 4.1; its reference 29, no parameters given).
 
 With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted
 midpoints: the algorithm of BCA without the Bezier curve. With `rows` a chromosome is itself a path,

@@ -63,7 +63,7 @@ class Outcome(NamedTuple):
         Column(
             "exact arc length of the path; not a number without one",
             UNITS,
-            "length of the way driven, in units",
+            "distance travelled, in units",
         ),
     ]
     claimed_feasible: Annotated[
@@ -106,7 +106,7 @@ class Outcome(NamedTuple):
         list[float],
         Column(
             "best objective after generation 0, 1, ...",
-            drive="the way driven until each plan plus the length of that plan, in units",
+            drive="the distance travelled until each plan plus the length of that plan, in units",
         ),
     ]
     path_curve: Annotated[str, Column("the kind of the path's curve; empty without a path")]
@@ -115,7 +115,7 @@ class Outcome(NamedTuple):
         Column(
             "its control points as x0, y0, x1, y1, ...; empty without a path",
             UNITS,
-            "the way driven, a polyline, in units",
+            "the path travelled, a polyline, in units",
         ),
     ]
 
@@ -125,9 +125,7 @@ class DriveOutcome(NamedTuple):
 
     arrival: Annotated[float, Column("time of arrival; not a number if it did not arrive", STEPS)]
     steps: Annotated[float, Column("time until the end of the drive", STEPS)]
-    travelled: Annotated[
-        float, Column("length of the way driven, whether or not it is free", UNITS)
-    ]
+    travelled: Annotated[float, Column("distance travelled, whether or not it is free", UNITS)]
     first_plan: Annotated[float, Column("length of the first plan", UNITS)]
     last_plan: Annotated[float, Column("length of the last plan", UNITS)]
     last_optimum: Annotated[

@@ -5,7 +5,7 @@ Nothing here calls a planner: a path is read from its row, and judged on the wor
 of problems, in a process that no planner was in. What no path determines, such as a planner's
 objective, is covered by the digest of each file (`rows`).
 
-Of drives, rows keep the way driven without its times, and traces keep places at whole steps, in
+Of drives, rows keep the path travelled without its times, and traces keep places at whole steps, in
 single precision. So their lengths and the agreement of their columns are checked, and that no place
 at a whole step lies in an obstacle of a drive that is said to be free.
 """

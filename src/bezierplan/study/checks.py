@@ -162,8 +162,8 @@ def _check_experiments(study: Study, location: str) -> None:
         _check_problem(study, built, name, f"{location}: problems: {name}")
     for name in study.experiments:
         _check_experiment(study, built, name, f"{location}: experiments: {name}")
-    if study.worth:
-        _check_worth(study, f"{location}: worth")
+    if study.baseline_comparison:
+        _check_baseline_comparison(study, f"{location}: baseline_comparison")
 
 
 def _check_shared_settings(study: Study, used: set[str], location: str) -> None:
@@ -312,11 +312,11 @@ def _check_experiment(
         _check_method_in(study, built, name, method, location)
 
 
-def _check_worth(study: Study, location: str) -> None:
+def _check_baseline_comparison(study: Study, location: str) -> None:
     """The methods of each experiment have the baseline beside them."""
-    baseline = study.worth.baseline
+    baseline = study.baseline_comparison.baseline
     _known(baseline, study.baselines, f"{location}: baseline")
-    for experiment in study.worth.experiments:
+    for experiment in study.baseline_comparison.experiments:
         _known(experiment, study.experiments, f"{location}: experiments")
         if baseline not in study.methods_of(experiment):
             raise Fault(

@@ -13,7 +13,7 @@ from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.study.artefacts import Figure
 from bezierplan.study.claims import Assumption
-from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Worth
+from bezierplan.study.experiments import BaselineComparison, Experiment, Method, Policy, Problem
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace, file_keys
 
@@ -40,7 +40,7 @@ class Study:
     workspaces: dict[str, Workspace]
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
-    worth: Worth | None
+    baseline_comparison: BaselineComparison | None
     interpretations_tried: int
     labels: dict[str, str]
     looks: dict[str, str]

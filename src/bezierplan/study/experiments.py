@@ -299,7 +299,7 @@ class Experiment(Model):
         return self.seeds != "own"
 
 
-class Worth(Model):
+class BaselineComparison(Model):
     """What the summary measures the study's methods against."""
 
     baseline: Name = Field(description="a baseline")
@@ -348,10 +348,10 @@ class ExperimentsFile(Model):
     experiments: Annotated[dict[Name, Experiment], at_most(MOST_ENTRIES)] = Field(
         description="name → problems × varied settings × methods × repeats", min_length=1
     )
-    worth: Worth = Field(
+    baseline_comparison: BaselineComparison = Field(
         None,
-        description="what the summary measures the study's methods against: a row of `worth.csv` "
-        "for each method",
+        description="what the summary measures the study's methods against: a row of "
+        "`baseline_comparison.csv` for each method",
     )
     interpretations_tried: Count = Field(
         60, description="how many interpretations `snakemake interpretations` tries at most"

@@ -32,7 +32,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A change of `changing_cells`", changing_cells.Change),
         ("A problem", experiments.Problem),
         ("An experiment", experiments.Experiment),
-        ("`worth`", experiments.Worth),
+        ("`baseline_comparison`", experiments.BaselineComparison),
     ],
     "artefacts": [
         ("The file", artefacts.ArtefactsFile),

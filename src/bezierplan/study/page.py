@@ -38,7 +38,7 @@ def inputs(studies: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
     made = _made(studies, scale, _artefacts(studies, scale))
     tables = (
-        [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")]
+        [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "baseline_comparison")]
         if _summary(scale) in made
         else []
     )

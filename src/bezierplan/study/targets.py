@@ -600,7 +600,7 @@ def summary_inputs(studies: Studies, scale: str) -> dict[str, Any]:
     return (
         named("comparisons", comparisons)
         | named("claims", claims)
-        | {"worth": f"results/{scale}/worth.csv"}
+        | {"baseline_comparison": f"results/{scale}/baseline_comparison.csv"}
     )
 
 
@@ -613,35 +613,37 @@ def summary_params(studies: Studies, scale: str) -> dict:
     return {"job": job, "code": _code("summary")}
 
 
-def worth_inputs(studies: Studies, scale: str) -> dict[str, Any]:
-    """Input files of the table `worth`: experiments by study and name."""
+def baseline_comparison_inputs(studies: Studies, scale: str) -> dict[str, Any]:
+    """Input files of the comparison with the baseline: experiments by study and name."""
     files = {
         f"{key}/{name}": _files(study, scale, name, _measured(study, name))
         for key, study in studies.items()
-        if study.worth
-        for name in study.worth.experiments
+        if study.baseline_comparison
+        for name in study.baseline_comparison.experiments
     }
     return of_experiments(files)
 
 
 def _measured(study: Study, experiment: str) -> list[str]:
     """Methods of an experiment, and the baseline that they are measured against."""
-    return [*study.experiments[experiment].methods, study.worth.baseline]
+    return [*study.experiments[experiment].methods, study.baseline_comparison.baseline]
 
 
-def worth_params(studies: Studies, scale: str) -> dict:
-    """Params of the table `worth`: `job`, study -> baseline, and experiment -> repeats."""
+def baseline_comparison_params(studies: Studies, scale: str) -> dict:
+    """Params of the comparison with the baseline: `job`, study -> baseline, and experiment ->
+    repeats."""
     job = {
         key: {
-            "baseline": study.worth.baseline,
+            "baseline": study.baseline_comparison.baseline,
             "repeats": {
-                name: study.experiments[name].repeats[scale] for name in study.worth.experiments
+                name: study.experiments[name].repeats[scale]
+                for name in study.baseline_comparison.experiments
             },
         }
         for key, study in studies.items()
-        if study.worth
+        if study.baseline_comparison
     }
-    return {"job": job, "code": _code("worth")}
+    return {"job": job, "code": _code("baseline_comparison")}
 
 
 # --------------------------------------------------------------------------------------------------

@@ -96,7 +96,8 @@ def q_example(
 def printed_over_bound(
     check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, None, int]:
-    """Claim C23: whether no printed length of a rival is larger than such fields explain.
+    """Claim C23: whether no printed length of a competing method is larger than such fields
+    explain.
 
     A path that never turns back in x or in y counts at most two cells for every cell of the side.
     Shortest paths among such obstacles do not turn back, so the fields cannot explain a larger

@@ -4,7 +4,7 @@ fails in each paper, and how surely.
 
 from collections import Counter
 
-from bezierplan.figures.page.content import Claim, Number, Part, Study, Worth
+from bezierplan.figures.page.content import BaselineComparison, Claim, Number, Part, Study
 
 Sentence = list[Part]
 
@@ -85,14 +85,14 @@ def _span(numbers: list[int]) -> str:
     )
 
 
-def reliable(studies: dict[str, Study]) -> list[tuple[str, Worth]]:
+def reliable(studies: dict[str, Study]) -> list[tuple[str, BaselineComparison]]:
     """Methods that are feasible as often as the baseline, each with the name of its study, the
     shortest paths first.
     """
     rows = [
         (key, row)
         for key, study in studies.items()
-        for row in study.worth
+        for row in study.baseline_comparison
         if row.feasible >= row.feasible_baseline
     ]
     return sorted(rows, key=lambda each: each[1].length or float("inf"))

@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bezierplan.analysis import worth
+from bezierplan.analysis import baseline_comparison
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.figures.page import (
     HERE,
@@ -86,7 +86,7 @@ def html(page: content.Page, folder: Path) -> str:
         "meaning": meaning,
         "deviation": deviation,
         "words": glossary.WORDS,
-        "baseline": worth.BASELINE,
+        "baseline": baseline_comparison.BASELINE,
         "address": addresses.address,
         "methods_shown": {
             method.address for study in page.studies.values() for method in study.methods

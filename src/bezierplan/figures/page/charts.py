@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any, NamedTuple
 
-from bezierplan.analysis import comparison, worth
+from bezierplan.analysis import baseline_comparison, comparison
 from bezierplan.analysis.claims.verdicts import VERDICTS
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import heading
@@ -372,7 +372,7 @@ def _methods(page: content.Page) -> Written | None:
     rows = [
         _of_method(key, study, row)
         for key, study in page.studies.items()
-        for row in study.worth
+        for row in study.baseline_comparison
         if row.length and row.cpu
     ]
     if not rows:
@@ -382,7 +382,11 @@ def _methods(page: content.Page) -> Written | None:
         {"domain": names, "range": [looks[n % len(looks)] for n in range(len(names))]}
         for looks in (_COLOURS, _MARKS)
     )
-    feasible = min(row.feasible_baseline for study in page.studies.values() for row in study.worth)
+    feasible = min(
+        row.feasible_baseline
+        for study in page.studies.values()
+        for row in study.baseline_comparison
+    )
     # Axes stay as they are when methods are hidden.
     lengths, shares = (
         _span([1.0, *(row["length"] for row in rows)]),
@@ -471,9 +475,9 @@ def _methods(page: content.Page) -> Written | None:
     }
     text = (
         f"Dots: {len(rows)} methods by the share of their runs that are feasible, and by the "
-        "median length of their paths over that of the "
-        f"baseline (star), {worth.BASELINE}; the larger a dot, the more CPU time. Best is high up "
-        "at the left, and small."
+        "median length of their paths over that of the baseline (star), "
+        f"{baseline_comparison.BASELINE}; the larger a dot, the more CPU time. Best is high up at "
+        "the left, and small."
     )
     return "Methods compared with the baseline", text, spec
 
@@ -497,7 +501,7 @@ def _span(values: list[float]) -> list[float]:
     return [least, most] if least < most else [0.95 * least, 1.05 * most]
 
 
-def _of_method(key: str, study: content.Study, row: content.Worth) -> dict[str, Any]:
+def _of_method(key: str, study: content.Study, row: content.BaselineComparison) -> dict[str, Any]:
     name = study.labels.get(row.method, row.method)
     tip = (
         f"{name} ({key}); feasible {100 * row.feasible:.1f} %; length {row.length:.4g} times "

@@ -238,7 +238,7 @@ class Method(Record):
     )
 
 
-class Worth(Record):
+class BaselineComparison(Record):
     """A method beside a baseline that needs no search: medians over conditions of its median over
     the baseline's.
     """
@@ -328,8 +328,10 @@ class Study(Record):
     gap: float | None = Field(
         None, description="median gap of the numbers that count in the outcome"
     )
-    worth: list[Worth] = []
-    worth_in_words: str = Field("", description="what follows from `worth`")
+    baseline_comparison: list[BaselineComparison] = []
+    baseline_comparison_in_words: str = Field(
+        "", description="what follows from `baseline_comparison`"
+    )
     explanations: list[Explanation] = Field(
         [], description="the best interpretations tried, the best first, and the default"
     )

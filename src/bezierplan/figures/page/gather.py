@@ -95,7 +95,7 @@ def studies(
     job: study -> `title`, `labels`, `tables` and `figures` (name -> `title`, `caption` and, of
     tables, `spec`), `assumptions`, `files` (its claims, comparisons of claims, audit, alternatives
     and interpretations, as far as there are any). numbers, claims, measured: those of all studies
-    (`analysis.summary`, `analysis.worth`), if the scale has them.
+    (`analysis.summary`, `analysis.baseline_comparison`), if the scale has them.
     """
     outcome = (
         headline.outcome(numbers, claims).to_dict("index")
@@ -145,7 +145,7 @@ def _study(
         gap=median(gaps) if gaps else None,
         shown=[],
         labels=job["labels"],
-        **(other.of_worth(key, measured) if measured is not None else {}),
+        **(other.of_baseline_comparison(key, measured) if measured is not None else {}),
         **(
             other.of_interpretations(
                 files["interpretations"], files["explained"], files["held_out"]

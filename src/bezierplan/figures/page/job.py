@@ -31,8 +31,9 @@ def page(
     job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name ->
     `methods`, `repeats` and the files `runs`, `problems`, `bounds` and, of drives, `traces`).
     folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
-    worth.csv, if the scale has them. processes: how many look for runs, if more than one beside
-    this one. verified: the file of the check of these runs (`running.recheck`), if there is one.
+    baseline_comparison.csv, if the scale has them. processes: how many look for runs, if more than
+    one beside this one. verified: the file of the check of these runs (`running.recheck`), if there
+    is one.
     """
     experiments = [
         (key, *each) for key, own in job["studies"].items() for each in own["experiments"].items()

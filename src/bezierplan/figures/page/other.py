@@ -1,5 +1,5 @@
-"""Content of the page from tables beside those of the paper: its methods, what they are worth, and
-which interpretations explain it.
+"""Content of the page from tables beside those of the paper: its methods, how they compare
+with the baseline, and which interpretations explain it.
 """
 
 import ast
@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import worth
+from bezierplan.analysis import baseline_comparison
 from bezierplan.analysis.explained import DEFAULT, sentences
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import address
@@ -41,16 +41,16 @@ def of_method(study: str, name: str, method: dict[str, Any]) -> content.Method:
     )
 
 
-def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
-    """Fields `worth` and `worth_in_words` of a study, from worth.csv; none for a study without
-    methods there.
+def of_baseline_comparison(study: str, measured: pd.DataFrame) -> dict[str, Any]:
+    """Fields `baseline_comparison` and `baseline_comparison_in_words` of a study, from
+    baseline_comparison.csv; none for a study without methods there.
     """
     rows_of_study = measured[measured["study"] == study]
     if rows_of_study.empty:
         return {}
     rows = [
-        content.Worth(
-            address=address(study, "worth", row["method"]),
+        content.BaselineComparison(
+            address=address(study, "baseline_comparison", row["method"]),
             **{
                 name: row[name]
                 for name in ("method", "baseline", "conditions", "feasible", "feasible_baseline")
@@ -62,7 +62,10 @@ def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
         )
         for row in rows_of_study.to_dict("records")
     ]
-    return {"worth": rows, "worth_in_words": worth.sentence(rows_of_study)}
+    return {
+        "baseline_comparison": rows,
+        "baseline_comparison_in_words": baseline_comparison.sentence(rows_of_study),
+    }
 
 
 def of_interpretations(

@@ -60,7 +60,7 @@ def entries(page: Page) -> list[Entry]:
         )
         for word, meaning in WORDS.items()
     ]
-    use = [SECTIONS[0]] if any(study.worth for study in page.studies.values()) else []
+    use = [SECTIONS[0]] if any(study.baseline_comparison for study in page.studies.values()) else []
     return [*use, *SECTIONS[1:], *words, *of_studies]
 
 
@@ -90,12 +90,12 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
             for number in table.numbers
             if number.published is not None
         )
-    for row in study.worth:
+    for row in study.baseline_comparison:
         text = (
             f"{study.labels.get(row.method, _words(row.method))} compared with the exact "
             "shortest path with rounded corners"
         )
-        yield Entry("worth", row.address, text, f"{key} {row.method}", True)
+        yield Entry("baseline_comparison", row.address, text, f"{key} {row.method}", True)
     for figure in study.figures:
         yield Entry("figure", figure.address, f"{heading(figure.name)}: {figure.title}", key)
     for choice in study.assumptions:

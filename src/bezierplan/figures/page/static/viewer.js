@@ -66,7 +66,7 @@ function workspaceAt({ workspace: name, world }, time) {
   return { ...workspace, rows: workspace.rows.map((_, row) => all.slice(row * width, (row + 1) * width).join("")) };
 }
 
-// The way driven until a time; of a run that is no drive, its path.
+// The path travelled until a time; of a run that is no drive, its path.
 function wayUntil({ path, driven, steps }, time) {
   if (steps === null || time >= steps) return path;
   const step = Math.floor(time), share = (time - step) / (Math.min(step + 1, steps) - step);

@@ -3,8 +3,8 @@
 from bezierplan.running import log
 
 with log.job(snakemake) as output:
-    from bezierplan.analysis import worth
+    from bezierplan.analysis import baseline_comparison
     from bezierplan.running import inputs
 
-    rows = worth.of_studies(snakemake.params.job, inputs.experiments(snakemake.input))
+    rows = baseline_comparison.of_studies(snakemake.params.job, inputs.experiments(snakemake.input))
     rows.to_csv(output[0], index=False, float_format="%.6g", lineterminator="\n")

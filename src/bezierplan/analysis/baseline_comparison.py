@@ -1,5 +1,5 @@
-"""What each method is worth beside a baseline that anyone could use: the exact shortest path with
-rounded corners.
+"""Comparison with the baseline: each method beside what anyone could use, the exact shortest path
+with rounded corners.
 
 A method is measured under the conditions of some experiments, a condition being a problem with the
 values of the varied settings. Under each, the median of its runs is divided by the median of the
@@ -129,7 +129,7 @@ def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
     return [
         f"## Comparison with {BASELINE}",
         "The baseline is what a practitioner could drive without any of these planners. "
-        "`worth.csv` has the numbers: medians over "
+        "`baseline_comparison.csv` has the numbers: medians over "
         "conditions of a method's median over the baseline's.",
         *(
             f"**{titles[study]}** {sentence(own)}"

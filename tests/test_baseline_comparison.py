@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import measures, metrics, summary, worth
+from bezierplan.analysis import baseline_comparison, measures, metrics, summary
 from bezierplan.analysis.results import Results
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
@@ -36,7 +36,7 @@ def run(condition, method, length, path, *, cpu=1.0, feasible=True):
 
 
 def rows(*runs):
-    return worth.measured(
+    return baseline_comparison.measured(
         {"only": Results(pd.DataFrame(runs), {}, pd.DataFrame())}, "base"
     ).set_index("method")
 
@@ -102,7 +102,9 @@ def test_experiments_are_paired_each_with_its_own_baseline():
         {},
         pd.DataFrame(),
     )
-    assert worth.measured({"one": one, "other": other}, "base")["length"].tolist() == [3.0]
+    assert baseline_comparison.measured({"one": one, "other": other}, "base")[
+        "length"
+    ].tolist() == [3.0]
 
 
 def described(**changes):
@@ -140,7 +142,7 @@ def described(**changes):
     ],
 )
 def test_the_verdict_follows_from_the_numbers(changes, verdict):
-    assert worth.sentence(pd.DataFrame([described(**changes)])).endswith(verdict)
+    assert baseline_comparison.sentence(pd.DataFrame([described(**changes)])).endswith(verdict)
 
 
 def test_the_section_has_a_sentence_for_each_study():
@@ -151,14 +153,14 @@ def test_the_section_has_a_sentence_for_each_study():
             described(study="two", method="cornered", curvature=math.inf),
         ]
     )
-    paragraphs = worth.section(table, {"one": "The first", "two": "The second"})
+    paragraphs = baseline_comparison.section(table, {"one": "The first", "two": "The second"})
     assert paragraphs[2].startswith(
         "**The first** 1 method: feasible in 100 % of the runs (baseline: 100 %), at 8 times"
     )
     assert "2 methods" in paragraphs[3]
     assert "at 8 to 1,230 times the baseline's CPU time" in paragraphs[3]
     assert "those of 1 have corners" in paragraphs[3]
-    assert worth.section(table[:0], {}) == []
+    assert baseline_comparison.section(table[:0], {}) == []
 
 
 def test_the_section_stands_in_the_summary():
@@ -182,7 +184,7 @@ def test_the_section_stands_in_the_summary():
     text = summary.report(
         numbers, claims, pd.DataFrame([described()]), {"one": "The first"}, "full"
     )
-    assert worth.sentence(pd.DataFrame([described()])) in text
+    assert baseline_comparison.sentence(pd.DataFrame([described()])) in text
 
 
 def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
@@ -218,4 +220,4 @@ def test_equal_curvature_is_not_less():
     own = pd.DataFrame(
         [described(curvature=1.0), described(curvature=0.9995), described(curvature=0.9)]
     )
-    assert "those of 1 of 3 methods curve less" in worth.sentence(own)
+    assert "those of 1 of 3 methods curve less" in baseline_comparison.sentence(own)
