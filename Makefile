@@ -92,6 +92,9 @@ verify-outcome: .venv/ready ## is this installation sound? minutes of runs, test
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --extra workflow --group dev pyproject.toml -o environment.txt
 	$(LOCK) $(ARGS) --group build -c environment.txt -o environment-build.txt
+	sed -i '/- pip:$$/q' workflow/envs/bezierplan.yaml
+	$(RUN) -m uv pip compile --quiet --no-header --no-annotate --python-version 3.13 --extra workflow -c environment.txt pyproject.toml \
+	  | sed 's/^/      - /' >> workflow/envs/bezierplan.yaml
 	$(LOCK) $(ARGS) --group archive -o workflow/archive/requirements.txt
 	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt

@@ -16,6 +16,8 @@ rule claims:
     log:
         f"{RESULTS}/logs/claims.log",
     priority: CLAIMS
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.claims_params, "job", "published", "code"),
     script:
@@ -34,6 +36,8 @@ rule audit:
         ),
     log:
         f"{RESULTS}/logs/audit.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.audit_params, "job", "published", "code"),
     script:
@@ -50,6 +54,8 @@ rule alternative:
         checks=f"{ALTERNATIVE}/claim_checks.csv",
     log:
         f"{RESULTS}/logs/sensitivity/{{alternative}}.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.alternative_params, "chunks", "job", "published", "code"),
     script:
@@ -68,6 +74,8 @@ rule sensitivity:
         ),
     log:
         f"{RESULTS}/logs/sensitivity.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.sensitivity_params, "described", "code"),
     script:

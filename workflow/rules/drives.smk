@@ -12,6 +12,8 @@ rule worlds:
     wildcard_constraints:
         study=studies_of(MOVING),
     priority: PROBLEMS
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -29,6 +31,8 @@ rule clairvoyant:
     wildcard_constraints:
         study=studies_of(MOVING),
     priority: of_bounds
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.clairvoyant_params, "repeats", "code"),
     script:
@@ -47,6 +51,8 @@ rule drives:
     wildcard_constraints:
         study=studies_of(MOVING),
     priority: of_runs
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.run_params, "job", "code"),
     script:

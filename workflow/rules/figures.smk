@@ -18,6 +18,8 @@ rule figure:
         data=f"{RESULTS}/figures/{{figure}}.csv",
     log:
         f"{RESULTS}/logs/figures/{{figure}}.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.figure_params, "job", "folder", "sources", "code"),
         caption=caption,
@@ -34,6 +36,8 @@ rule narrow_figure:
         pdf=f"{RESULTS}/figures/{{figure}}.narrow.pdf",
     log:
         f"{RESULTS}/logs/figures/{{figure}}.narrow.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.figure_params, "job", "folder", "code"),
     script:

@@ -28,6 +28,8 @@ rule interpretations_of:
         png=f"{RESULTS}/interpretations.png",
     log:
         f"{RESULTS}/logs/interpretations.log",
+    conda:
+        "../envs/bezierplan.yaml"
     threads: 4
     params:
         **params(targets.interpretations_params, "job", "folder", "published", "code"),

@@ -12,6 +12,8 @@ rule problems:
     wildcard_constraints:
         study=studies_of(STILL),
     priority: PROBLEMS
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -28,6 +30,8 @@ rule bounds:
     wildcard_constraints:
         study=studies_of(STILL),
     priority: of_bounds
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **targets.bounds_params("bounds"),
     script:

@@ -12,6 +12,8 @@ rule runs:
     wildcard_constraints:
         study=studies_of(STILL),
     priority: of_runs
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.run_params, "job", "code"),
     script:

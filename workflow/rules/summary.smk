@@ -9,13 +9,15 @@ rule baseline_comparison:
             "results/{scale}/baseline_comparison.csv",
             category="summary",
             labels={
-                "item": "baseline_comparison",
+                "item": "comparison with the baseline",
                 "shows": "each method beside the exact shortest path with rounded corners",
             },
             caption="../report/summary.rst",
         ),
     log:
         "results/{scale}/baseline_comparison.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.baseline_comparison_params, "job", "code"),
     script:
@@ -36,6 +38,8 @@ rule summary:
         ),
     log:
         "results/{scale}/summary.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.summary_params, "job", "code"),
     script:
@@ -51,6 +55,8 @@ rule verified:
         "results/{scale}/verified.json",
     log:
         "results/{scale}/verified.log",
+    conda:
+        "../envs/bezierplan.yaml"
     threads: 2
     params:
         **params(partial(page.verified_params, root=PREFIX), "job", "code"),
@@ -73,6 +79,8 @@ rule page:
         page="results/{scale}/index.html",
     log:
         "results/{scale}/page.log",
+    conda:
+        "../envs/bezierplan.yaml"
     # The last job of a workflow, so the others leave it the cores.
     threads: 2
     params:

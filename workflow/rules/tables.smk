@@ -22,6 +22,8 @@ rule table:
         f"{RESULTS}/logs/tables/{{table}}.log",
     wildcard_constraints:
         study=studies_with(COMPARED),
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.table_params, "job", "published", "code"),
         caption=caption,
@@ -46,6 +48,8 @@ rule listing:
         f"{RESULTS}/logs/tables/{{listing}}.log",
     wildcard_constraints:
         study=studies_with(LISTED),
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.listing_params, "job", "published", "code"),
         caption=caption,
@@ -62,6 +66,8 @@ rule latex:
         f"{RESULTS}/tables.tex",
     log:
         f"{RESULTS}/logs/latex.log",
+    conda:
+        "../envs/bezierplan.yaml"
     params:
         **params(targets.latex_params, "captions", "code"),
     script:
