@@ -26,6 +26,7 @@ from bezierplan.figures.page import (
     addresses,
     answer,
     build,
+    charts,
     content,
     gather,
     job,
@@ -687,3 +688,15 @@ def test_a_number_whose_statistic_is_not_stated_has_the_name_of_the_column_besid
         gather._heading(metric, "unstated", table, {}) for metric in ("objective", "length")
     ]
     assert headings == ["objective value", "length: unstated"]
+
+
+def test_the_script_of_the_charts_is_kept(tmp_path, monkeypatch):
+    made = charts.script()
+    monkeypatch.setattr(charts, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("vl_convert.javascript_bundle", lambda vl_version: "a script")
+    assert charts.script.__wrapped__() == "a script"
+    (kept,) = (tmp_path / "charts").iterdir()
+    kept.write_text(made, encoding="utf-8")
+    assert charts.script.__wrapped__() == made
+    monkeypatch.setattr(charts, "cache_folder", lambda: kept)  # a file, so no folder of it
+    assert charts.script.__wrapped__() == "a script"

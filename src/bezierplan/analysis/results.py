@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import PurePath
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -166,7 +166,7 @@ def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None
     return pd.concat(tidy, ignore_index=True) if tidy else None
 
 
-def path_of(run: pd.Series) -> Path | None:
+def path_of(run: Mapping[str, Any] | pd.Series) -> Path | None:
     """The path of a run, or None if it has none."""
     if not run["path_curve"]:
         return None

@@ -5,7 +5,9 @@ Colours of text and lines are names of the page's style, which differ in a light
 those of verdicts and papers are the same in both, and in a print.
 """
 
+import contextlib
 import math
+import os
 import re
 from collections.abc import Iterable
 from functools import cache
@@ -15,6 +17,7 @@ from bezierplan.analysis import baseline_comparison, comparison
 from bezierplan.analysis.claims.verdicts import VERDICTS
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import heading
+from bezierplan.places import cache_folder
 
 VEGA_LITE = "6.1"
 
@@ -139,11 +142,21 @@ def _named(svg: str, chart: str) -> str:
 @cache
 def script() -> str:
     """The script that draws charts in a browser: `vegaEmbed` of the element to draw in, a
-    specification, and options.
+    specification, and options. To put it together takes longer than most of the page, so it is kept
+    for each version of the library.
     """
     import vl_convert
 
-    return vl_convert.javascript_bundle(vl_version=VEGA_LITE)
+    file = cache_folder() / "charts" / f"{vl_convert.__version__}-{VEGA_LITE}.js"
+    with contextlib.suppress(OSError):
+        return file.read_text(encoding="utf-8")
+    text = vl_convert.javascript_bundle(vl_version=VEGA_LITE)
+    with contextlib.suppress(OSError):  # where no folder can be written, each page does this anew
+        file.parent.mkdir(parents=True, exist_ok=True)
+        part = file.with_suffix(f".{os.getpid()}")
+        part.write_text(text, encoding="utf-8")
+        part.replace(file)
+    return text
 
 
 Written = tuple[str, str, dict[str, Any]]

@@ -97,14 +97,15 @@ def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
         problem_files.read(described["problems"]),
         world_files.read(described["problems"]),
     )
-    traces = _traces(described.get("traces", []), rows["id"].tolist())
+    by_name = {row["id"]: row for row in rows.to_dict("records")}
+    traces = _traces(described.get("traces", []), list(by_name))
     prefix = f"{study}/{experiment}/"
     runs = {
-        row["id"]: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
-        for _, row in rows.iterrows()
+        name: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
+        for name, row in by_name.items()
     }
     for name, trace in traces.items():
-        row = rows[rows["id"] == name].iloc[0]
+        row = by_name[name]
         runs[name] = _drive(runs[name], trace, row, moving[row["problem"]].pace)
     named = rows["problem"].unique()
     workspaces = {prefix + name: _shapes(made[name]) for name in named}
@@ -195,7 +196,7 @@ def _world(world: World) -> content.World:
     return content.World(moments=world.moments.tolist(), changed=changed)
 
 
-def _drive(run: content.Run, trace: np.ndarray, row: pd.Series, pace: float) -> content.Run:
+def _drive(run: content.Run, trace: np.ndarray, row: dict[str, Any], pace: float) -> content.Run:
     """A run with what belongs to a drive; the place of its first collision is where the robot was
     then.
     """
@@ -239,7 +240,9 @@ def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
     return np.array(distances)
 
 
-def _run(row: pd.Series, bounds: tuple[float, float, float, float], problem: str) -> content.Run:
+def _run(
+    row: dict[str, Any], bounds: tuple[float, float, float, float], problem: str
+) -> content.Run:
     path, size = results.path_of(row), _size(bounds)
     collision = None
     if (
