@@ -17,7 +17,7 @@ def test_every_alternative_has_a_run_that_it_changes(key, name):
     study = STUDIES[key]
     chunks = targets.alternative_params(STUDIES, "full", key, name)["chunks"]
     assert any(
-        job["settings"] != jobs.job(study, job["experiment"], job["method"], "full", 0)["settings"]
+        job["settings"] != jobs.job(study, job["experiment"], job["method"], "full", 0).settings
         for _, job in chunks
     )
 

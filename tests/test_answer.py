@@ -10,6 +10,7 @@ import pytest
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan
 from bezierplan.running import answer, execution, problems
+from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
@@ -24,19 +25,19 @@ PROBLEM = Problem(
 )
 LINE = np.array([PROBLEM.start, PROBLEM.target])
 PLAN = Plan(Path("polyline", LINE), 8.0, True, 1, np.array([8.0]), "one", {"tries": 1})
-JOB = {
-    "study": "s",
-    "experiment": "e",
-    "method": "m",
-    "planner": "chaotic_pso",
-    "settings": {"inertia": 1.0},
-    "problems": {"disc": {"workspace": "field"}},
-    "vary": {"profile": ["a"]},
-    "presets": {"profile": {"a": {}}},
-    "seeds": "own",
-    "repeats": [0, 1],
-}
-CONDITION = execution.Condition("disc", {"profile": "a"})
+CHUNK = Chunk(
+    study="s",
+    experiment="e",
+    method="m",
+    planner="chaotic_pso",
+    settings={"inertia": 1.0},
+    problems={"disc": {"workspace": "field"}},
+    vary={"profile": ["a"]},
+    presets={"profile": {"a": {}}},
+    seeds="own",
+    repeats=[0, 1],
+)
+CONDITION = Condition("disc", {"profile": "a"})
 
 
 class Liar(np.ndarray):
@@ -215,7 +216,7 @@ LIES = {
 
 
 def row(plan):
-    return execution.row(JOB, CONDITION, 0, plan, PROBLEM, region(PROBLEM.workspace))
+    return execution.row(CHUNK, CONDITION, 0, plan, PROBLEM, region(PROBLEM.workspace))
 
 
 @pytest.mark.parametrize("lie", LIES)
@@ -320,9 +321,9 @@ def plan(problem, rng):
 def chunk(folder, change, workspace):
     file = folder / "changer.py"
     file.write_text(CHANGER.format(change=change))
-    job = JOB | {"planner": str(file), "settings": {}, "vary": {}, "presets": {}}
+    changed = CHUNK._replace(planner=str(file), settings={}, vary={}, presets={})
     problem = Problem("disc", workspace, (1.0, 5.0), (9.0, 5.0))
-    return execution.run_chunk({"disc": problem}, job)[0]
+    return execution.run_chunk({"disc": problem}, changed)[0]
 
 
 @pytest.mark.parametrize("change", CHANGES)

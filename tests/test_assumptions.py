@@ -10,6 +10,7 @@ from studies import studies
 
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems
+from bezierplan.running.chunk import conditions
 from bezierplan.study import choices
 from bezierplan.study.alternatives import (
     alternatives,
@@ -31,15 +32,15 @@ def found(study, experiment, method):
     the way.
     """
     described = job(study, experiment, method, "smoke", 0)
-    name = list(described["problems"])[-1]
+    name = list(described.problems)[-1]
     made, _ = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
     blocked = region(made[name].workspace)
     rows = []
-    for condition in list(execution.conditions([name], described["vary"]))[:1]:
-        for repeat in range(REPEATS):
-            plan = execution.run(described, condition, repeat, made[name])
-            row = execution.row(described, condition, repeat, plan, made[name], blocked)
-            rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
+    condition = next(conditions([name], described.vary))
+    for repeat in range(REPEATS):
+        plan = execution.run(described, condition, repeat, made[name])
+        row = execution.row(described, condition, repeat, plan, made[name], blocked)
+        rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 
 

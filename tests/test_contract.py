@@ -27,9 +27,7 @@ def settings_in_force() -> dict[str, dict]:
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)
-                condition = next(
-                    execution.conditions(list(described["problems"]), described["vary"])
-                )
+                condition = described.conditions()[0]
                 found.setdefault(study.planner(method), execution.settings_in(described, condition))
     return found
 

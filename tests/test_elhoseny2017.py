@@ -16,6 +16,7 @@ from bezierplan.analysis.claims.kinds import function
 from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
 from bezierplan.running import execution, problems
+from bezierplan.running.chunk import Condition
 from bezierplan.schema import checked
 from bezierplan.study import reading, targets
 from bezierplan.study.jobs import job, problems_job
@@ -349,10 +350,7 @@ def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
     evaluations = {}
     for method in ("mga", "mga_plain_100"):
         described = job(own, "fields100", method, "full", 0)
-        plans = [
-            execution.run(described, next(iter(execution.conditions([name], {}))), 0, made[name])
-            for name in names
-        ]
+        plans = [execution.run(described, Condition(name, {}), 0, made[name]) for name in names]
         evaluations[method] = sum(plan.evaluations for plan in plans)
     assert evaluations["mga_plain_100"] == pytest.approx(evaluations["mga"], rel=0.1)
 

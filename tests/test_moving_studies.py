@@ -17,7 +17,7 @@ from bezierplan.commands import replay
 from bezierplan.figures import animation, sheet
 from bezierplan.figures.panels import lines
 from bezierplan.running import problems, rides, worlds
-from bezierplan.running.execution import Condition
+from bezierplan.running.chunk import Condition
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import Planned, Ride
 from bezierplan.schema.checked import Fault

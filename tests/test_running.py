@@ -11,6 +11,7 @@ import pytest
 
 from bezierplan.commands.digest import row_text
 from bezierplan.running import execution, watchdog
+from bezierplan.running.chunk import Chunk
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
@@ -34,24 +35,24 @@ def plan(problem, rng, *, bend: float):
 """
 
 
-def job(folder, **changed):
+def chunk(folder, **changed):
     (folder / "bend.py").write_text(PLANNER)
-    return {
-        "study": "study",
-        "experiment": "bends",
-        "method": "bend",
-        "planner": str(folder / "bend.py"),
-        "settings": {},
-        "problems": {"disc": {"workspace": "field"}},
-        "vary": {"bend": [0.0, 1.0, 2.0]},
-        "presets": {},
-        "seeds": "own",
-        "repeats": [4, 10],
-    } | changed
+    return Chunk(
+        study="study",
+        experiment="bends",
+        method="bend",
+        planner=str(folder / "bend.py"),
+        settings={},
+        problems={"disc": {"workspace": "field"}},
+        vary={"bend": [0.0, 1.0, 2.0]},
+        presets={},
+        seeds="own",
+        repeats=[4, 10],
+    )._replace(**changed)
 
 
 def test_rows_stand_in_order_and_do_not_depend_on_it(tmp_path, monkeypatch):
-    given = job(tmp_path)
+    given = chunk(tmp_path)
     runs, times = execution.run_chunk({"disc": PROBLEM}, given)
     assert runs["id"].to_pylist() == [
         f"study/bends/disc,bend={bend}/bend/{repeat}"
@@ -69,19 +70,19 @@ def test_rows_stand_in_order_and_do_not_depend_on_it(tmp_path, monkeypatch):
 
 
 def test_conditions_take_turns(tmp_path):
-    order = execution._order(job(tmp_path), 3, range(4, 10))
+    order = execution._order(chunk(tmp_path), 3, range(4, 10))
     assert sorted(order) == [(k, repeat) for k in range(3) for repeat in range(4, 10)]
-    assert order == execution._order(job(tmp_path), 3, range(4, 10))
-    assert order != execution._order(job(tmp_path, method="other"), 3, range(4, 10))
+    assert order == execution._order(chunk(tmp_path), 3, range(4, 10))
+    assert order != execution._order(chunk(tmp_path, method="other"), 3, range(4, 10))
     assert len({k for k, _ in order[:6]}) > 1
     # No condition is always first.
     assert {
-        execution._order(job(tmp_path, method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)
+        execution._order(chunk(tmp_path, method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)
     } == {0, 1, 2}
 
 
 def test_deterministic_planner_is_run_once_a_condition(tmp_path):
-    given = job(tmp_path)
+    given = chunk(tmp_path)
     (tmp_path / "bend.py").write_text(
         PLANNER.replace("made = []", "deterministic = True\nmade = []").replace(
             "rng.random()", "1.0"
@@ -125,6 +126,7 @@ def test_runs_are_thrown_away_until_times_are_stable(seconds, runs):
 
 WATCHED = """
 import ctypes, os, signal, subprocess, sys, threading, time
+from bezierplan.running.chunk import Chunk
 from bezierplan.running import log, watchdog
 watchdog.supervise("job", lambda line: log.report("log", line))
 with watchdog.watching({limit}) as watch:
@@ -230,7 +232,7 @@ FAULTS = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_run_that_goes_wrong_is_named_in_one_short_line(fault, tmp_path):
-    given = job(tmp_path)
+    given = chunk(tmp_path)
     file = tmp_path / "bend.py"
     file.write_text(PLANNER.replace("    made.append", f"    {fault}\n    made.append"))
     assert fault in file.read_text()
@@ -255,7 +257,7 @@ UNREPEATABLE = {
 
 @pytest.mark.parametrize("fault", UNREPEATABLE)
 def test_run_that_cannot_be_repeated_is_refused(fault, tmp_path):
-    given = job(tmp_path)
+    given = chunk(tmp_path)
     file = tmp_path / "bend.py"
     file.write_text(
         PLANNER.replace("    made.append", f"    {UNREPEATABLE[fault]}\n    made.append")
@@ -267,7 +269,7 @@ def test_run_that_cannot_be_repeated_is_refused(fault, tmp_path):
 
 
 def test_planner_that_is_not_deterministic_as_it_says_is_refused(tmp_path):
-    given = job(tmp_path)
+    given = chunk(tmp_path)
     (tmp_path / "bend.py").write_text(
         PLANNER.replace("made = []", "deterministic = True\nmade = []")
     )

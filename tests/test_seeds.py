@@ -6,29 +6,31 @@ import numpy as np
 import pytest
 
 from bezierplan.running import execution
+from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
-JOB = {
-    "study": "paper",
-    "experiment": "first",
-    "method": "mine",
-    "planner": "straight_line",
-    "settings": {},
+CHUNK = Chunk(
+    study="paper",
+    experiment="first",
+    method="mine",
+    planner="straight_line",
+    settings={},
     # The first two have one layout in common.
-    "problems": {
+    problems={
         name: {"workspace": "w", "layout": layout}
         for name, layout in (("p", 3), ("q", 3), ("r", 4))
     },
-    "vary": {"x": [1, 2]},
-    "presets": {},
-    "repeats": [0, 3],
-}
+    vary={"x": [1, 2]},
+    presets={},
+    seeds="common",
+    repeats=[0, 3],
+)
 
 
 def first_number(seeds, problem="p", x=1, repeat=0, **changes):
     return execution.generator(
-        JOB | {"seeds": seeds} | changes, execution.Condition(problem, {"x": x}), repeat
+        CHUNK._replace(seeds=seeds, **changes), Condition(problem, {"x": x}), repeat
     ).random()
 
 
@@ -60,7 +62,7 @@ def test_a_seed_depends_on_what_its_rule_names_and_on_nothing_else(seeds, withou
 @pytest.mark.parametrize("repeat", [7, 999, 1000, 12345])
 def test_a_seed_is_the_sha256_of_the_name_of_its_run(repeat):
     name = f"paper/first/p,x=1/mine/{repeat}"
-    assert execution.run_id(JOB, execution.Condition("p", {"x": 1}), repeat) == name
+    assert execution.run_id(CHUNK, Condition("p", {"x": 1}), repeat) == name
     seed = int(hashlib.sha256(name.encode()).hexdigest(), 16)
     assert first_number("own", repeat=repeat) == np.random.default_rng(seed).random()
 
@@ -84,7 +86,7 @@ def plan(problem, rng):
 @pytest.fixture
 def job(tmp_path):
     (tmp_path / "random_point.py").write_text(PLANNER)
-    return JOB | {"planner": str(tmp_path / "random_point.py"), "seeds": "own", "repeats": [4, 7]}
+    return CHUNK._replace(planner=str(tmp_path / "random_point.py"), seeds="own", repeats=[4, 7])
 
 
 PROBLEMS = {
@@ -112,7 +114,7 @@ def test_a_chunk_is_every_condition_with_all_its_repeats(job):
 
 def test_runs_that_repeat_exactly_are_done_once():
     runs, times = (
-        table.to_pandas() for table in execution.run_chunk(PROBLEMS, JOB | {"seeds": "own"})
+        table.to_pandas() for table in execution.run_chunk(PROBLEMS, CHUNK._replace(seeds="own"))
     )
     assert runs["repeat"].to_list() == [0, 1, 2] * 6
     assert runs["length"].to_numpy() == pytest.approx(np.hypot(3, 1))

@@ -16,6 +16,7 @@ from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.settings import filled
 from bezierplan.running import execution, problems
+from bezierplan.running.chunk import Chunk
 from bezierplan.schema import checked
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
@@ -29,18 +30,18 @@ FIELD = Problem(
     (0.0, 0.0),
     (4.0, 6.0),
 )
-JOB = {
-    "study": "study",
-    "experiment": "routes",
-    "method": "swarm",
-    "planner": "chaotic_pso",
-    "settings": SETTINGS | {"chaotic_term": "none", "iterations": 20},
-    "problems": {"field": {"workspace": "field"}},
-    "vary": {"inertia": [1.0, 0.7]},
-    "presets": {},
-    "seeds": "common",
-    "repeats": [0, 6],
-}
+CHUNK = Chunk(
+    study="study",
+    experiment="routes",
+    method="swarm",
+    planner="chaotic_pso",
+    settings=SETTINGS | {"chaotic_term": "none", "iterations": 20},
+    problems={"field": {"workspace": "field"}},
+    vary={"inertia": [1.0, 0.7]},
+    presets={},
+    seeds="common",
+    repeats=[0, 6],
+)
 
 
 def surface(found: results.Results) -> pd.DataFrame:
@@ -58,12 +59,12 @@ def surface(found: results.Results) -> pd.DataFrame:
 
 @pytest.fixture(scope="module")
 def found() -> results.Results:
-    table, _ = execution.run_chunk({"field": FIELD}, JOB)
+    table, _ = execution.run_chunk({"field": FIELD}, CHUNK)
     bounds = problems.bounds_of({"field": FIELD}).to_pandas()
     runs = table.to_pandas()
     runs["path_points"] = runs["path_points"].map(list)
     return results.joined(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(
-        jobs={"swarm": JOB}
+        jobs={"swarm": CHUNK}
     )
 
 
@@ -98,7 +99,7 @@ def test_ways_are_those_of_the_runs(found):
     ]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
-    again = chaotic_pso._objective(FIELD, filled(chaotic_pso.Settings, JOB["settings"]))
+    again = chaotic_pso._objective(FIELD, filled(chaotic_pso.Settings, CHUNK.settings))
     curve, scratch = np.empty((2, SETTINGS["samples"])), np.empty(SETTINGS["samples"])
     for best, position in zip(run["history"], points[:, 1:-1]):
         length = penalised.length(position.T.ravel(), again, curve, scratch)
@@ -128,11 +129,13 @@ def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
 
 
 def test_a_run_that_ends_elsewhere_is_a_fault(found):
-    job = JOB | {"settings": JOB["settings"] | {"c1": 1.4}}
+    other = CHUNK._replace(settings=CHUNK.settings | {"c1": 1.4})
     with pytest.raises(
         ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: its rerun ends in another path"
     ):
-        tracks.data(found._replace(jobs={"swarm": job}), options_of(tracks, by="homotopy", runs=1))
+        tracks.data(
+            found._replace(jobs={"swarm": other}), options_of(tracks, by="homotopy", runs=1)
+        )
 
 
 def test_faults_of_panels_are_said(found):

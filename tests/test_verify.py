@@ -11,6 +11,7 @@ import pytest
 
 from bezierplan.__main__ import main
 from bezierplan.running import execution, problems, recheck, rides, rows, worlds
+from bezierplan.running.chunk import Chunk
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -21,18 +22,18 @@ MADE = {
     "free": Problem("free", CIRCLES, (1.0, 8.0), (9.0, 8.0)),
     "blocked": Problem("blocked", CIRCLES, (1.0, 5.0), (9.0, 5.0)),
 }
-JOB = {
-    "study": "s",
-    "experiment": "e",
-    "method": "line",
-    "planner": "straight_line",
-    "settings": {},
-    "problems": {name: {"workspace": "field"} for name in MADE},
-    "vary": {},
-    "presets": {},
-    "seeds": "own",
-    "repeats": [0, 2],
-}
+CHUNK = Chunk(
+    study="s",
+    experiment="e",
+    method="line",
+    planner="straight_line",
+    settings={},
+    problems={name: {"workspace": "field"} for name in MADE},
+    vary={},
+    presets={},
+    seeds="own",
+    repeats=[0, 2],
+)
 RUNS, BOUNDS = "s/runs/e/line/0.parquet", "s/problems/e.bounds.parquet"
 
 
@@ -43,7 +44,7 @@ def kept(tmp_path_factory):
     (folder / BOUNDS).parent.mkdir(parents=True)
     problems.write(MADE, dict.fromkeys(MADE, "field"), str(folder / "s/problems/e.parquet"))
     parquet.write_table(problems.bounds_of(MADE), folder / BOUNDS)
-    rows.write(execution.run_chunk(MADE, JOB)[0], str(folder / RUNS))
+    rows.write(execution.run_chunk(MADE, CHUNK)[0], str(folder / RUNS))
     return folder
 
 
@@ -176,13 +177,10 @@ def driven(tmp_path_factory):
     (folder / FIRST_DRIVES).parent.mkdir(parents=True)
     worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, str(folder / "s/problems/d.parquet"))
     described = {name: {"workspace": "field"} for name in MET}
-    job = JOB | {
-        "experiment": "d",
-        "planner": "shortest_path",
-        "problems": described,
-        "policy": POLICY,
-    }
-    runs, _, traces = rides.run_chunk(MET, WORLDS, job)
+    drives = CHUNK._replace(
+        experiment="d", planner="shortest_path", problems=described, policy=POLICY
+    )
+    runs, _, traces = rides.run_chunk(MET, WORLDS, drives)
     rows.write(runs, str(folder / DRIVES))
     parquet.write_table(traces, (folder / DRIVES).with_suffix(".traces.parquet"))
     rides.write_bounds(MET, WORLDS, [str(folder / DRIVES)], 1, str(folder / FIRST_DRIVES))

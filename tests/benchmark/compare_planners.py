@@ -47,6 +47,7 @@ from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, problems
+from bezierplan.running.chunk import Condition
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
 from bezierplan.workspaces.problem import Path, Problem
@@ -157,9 +158,9 @@ def planned(
     """CPU seconds and path of a run of a study's method for each share of its own budget."""
     contest = at.contest
     job = jobs.job(at.study, contest.experiment, method, "full", 0)
-    condition = execution.Condition(contest.problem, dict(contest.values))
+    condition = Condition(contest.problem, dict(contest.values))
     settings = execution.settings_in(job, condition)
-    planner = planner_module(job["planner"])
+    planner = planner_module(job.planner)
     if contest.budget in settings:
         settings |= contest.changes
     for share in shares:

@@ -127,10 +127,10 @@ def write_runs(study: Study) -> None:
     parquet.write_table(problems.bounds_of(problems.read(files.problems)), files.bounds)
     for method in study.methods_of("all"):
         runs, times = execution.run_chunk(
-            made, jobs.job(study, "all", method, SCALE, 0) | {"repeats": [0, MADE]}
+            made, jobs.job(study, "all", method, SCALE, 0)._replace(repeats=[0, MADE])
         )
         for file in map(Path, files.runs[method]):
-            first, last = jobs.job(study, "all", method, SCALE, int(file.stem))["repeats"]
+            first, last = jobs.job(study, "all", method, SCALE, int(file.stem)).repeats
             parquet.write_table(repeated(runs, range(first, last)), file)
             parquet.write_table(
                 repeated(times, range(first, last)), file.with_suffix(".times.parquet")

@@ -151,7 +151,7 @@ def _runs(given: Studies, repeats: int) -> None:
     (study,) = given.values()
     made = problems.read(targets.shown_by(study, gathering.SCALE, "lengths")["all"].problems)
     runs, _ = execution.run_chunk(
-        made, jobs.job(study, "all", "pso", gathering.SCALE, 0) | {"repeats": [0, repeats]}
+        made, jobs.job(study, "all", "pso", gathering.SCALE, 0)._replace(repeats=[0, repeats])
     )
     parquet.write_table(runs, "runs.parquet")
 

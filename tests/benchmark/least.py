@@ -317,7 +317,7 @@ def benchmark_least() -> None:
             made, _ = problems.build_all(
                 jobs.problems_job(study, experiment, "smoke"), study.folder
             )
-            condition = next(execution.conditions(list(job["problems"]), job["vary"]))
+            condition = job.conditions()[0]
             run = partial(execution.run, job, condition, 0, made[condition.problem])
             taken = cpu_seconds(run, ROUNDS)
             found, done = operations(run)

@@ -45,7 +45,7 @@ def benchmark_runs() -> None:
             made, _ = problems.build_all(
                 jobs.problems_job(study, experiment, "smoke"), study.folder
             )
-            condition = next(execution.conditions(list(job["problems"]), job["vary"]))
+            condition = job.conditions()[0]
             problem = made[condition.problem]
             taken = _milliseconds(lambda number: execution.run(job, condition, number, problem))  # noqa: B023
             print(f"  {key + ' ' + method:42}{taken:12.2f}   {condition.name}", flush=True)

@@ -6,10 +6,11 @@ with log.job(snakemake) as output:
     import pyarrow.parquet as parquet
 
     from bezierplan.running import problems, rides, rows, worlds
+    from bezierplan.running.chunk import Chunk
 
     file = snakemake.input.problems
     runs, times, traces = rides.run_chunk(
-        problems.read(file), worlds.read(file), snakemake.params.job
+        problems.read(file), worlds.read(file), Chunk(**snakemake.params.job)
     )
     rows.write(runs, output.runs)
     parquet.write_table(times, output.times)

@@ -37,6 +37,7 @@ from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
 from bezierplan.running import problems as problem_files
+from bezierplan.running.chunk import Chunk
 from bezierplan.running.digest import source_digest
 from bezierplan.running.log import end_with_parent
 from bezierplan.workspaces.seeds import generator
@@ -423,7 +424,7 @@ class Evaluator:
         )
         file = self.folder / f"{hashlib.sha256(key.encode()).hexdigest()[:24]}.parquet"
         if not file.exists():
-            table, times = execution.run_chunk(problems, job, timed_alike=False)
+            table, times = execution.run_chunk(problems, Chunk(**job), timed_alike=False)
             file.parent.mkdir(parents=True, exist_ok=True)
             # Two processes may make the same runs.
             part = Path(f"{file}.{os.getpid()}.part")
@@ -506,10 +507,8 @@ def found_by(
 def _excluded(job: dict) -> bool:
     """Whether a planner refuses a combination of settings."""
     check = getattr(planner_module(job["planner"]), "check", None)
-    settings = [
-        execution.settings_in(job, condition)
-        for condition in execution.conditions(list(job["problems"]), job["vary"])
-    ]
+    chunk = Chunk(**job)
+    settings = [execution.settings_in(chunk, condition) for condition in chunk.conditions()]
     try:
         for each in settings if check else []:
             check(each)

@@ -12,6 +12,7 @@ import pyarrow.parquet as parquet
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
 from bezierplan.running import worlds
+from bezierplan.running.chunk import Chunk
 from bezierplan.running.columns import TABLES, Table
 from bezierplan.running.inputs import Files
 from bezierplan.schema.model import one_or_list
@@ -25,7 +26,7 @@ class Results(NamedTuple):
     runs: one row per run, columns as in `running.columns`, with the bounds of its problem.
     problems: by name. bounds: one row per problem, indexed by name, columns as in
     `problems.bounds_of`. published: the study's published numbers, if requested. jobs: method ->
-    the job of its runs (`jobs.job`), if runs are reproduced. worlds: by problem, where a world
+    the first chunk of its runs, if runs are reproduced. worlds: by problem, where a world
     moves.
     """
 
@@ -33,7 +34,7 @@ class Results(NamedTuple):
     problems: dict[str, Problem]
     bounds: pd.DataFrame
     published: pd.DataFrame | None = None
-    jobs: dict[str, dict] | None = None
+    jobs: dict[str, Chunk] | None = None
     worlds: dict[str, World] | None = None
 
 

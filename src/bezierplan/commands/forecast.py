@@ -135,11 +135,9 @@ def units_of(studies: dict[str, Study], job: Job) -> int:
     ):
         return 1
     described = jobs.job(study, experiment, method, job.scale, job.chunk)
-    conditions = len(described["problems"]) * prod(
-        len(values) for values in described["vary"].values()
-    )
-    first, last = described["repeats"]
-    alike = getattr(planner_module(described["planner"]), "deterministic", False)
+    conditions = len(described.problems) * prod(len(values) for values in described.vary.values())
+    first, last = described.repeats
+    alike = getattr(planner_module(described.planner), "deterministic", False)
     return conditions * (1 if alike else last - first)
 
 

@@ -11,6 +11,7 @@ from bezierplan.analysis import results
 from bezierplan.figures import sheet, style
 from bezierplan.figures.panels import Panel, Sources, panel_of
 from bezierplan.running import problems as problem_files
+from bezierplan.running.chunk import Chunk
 from bezierplan.running.inputs import Files
 from bezierplan.workspaces import files as workspace_files
 from bezierplan.workspaces.problem import Problem
@@ -48,8 +49,12 @@ def draw(
     """
     published = {name: results.published_table(file) for name, file in published_files.items()}
     numbers = results.joined_numbers(published)
+    chunks = {
+        name: {method: Chunk(**chunk) for method, chunk in methods.items()}
+        for name, methods in job["jobs"].items()
+    }
     experiments = {
-        name: runs._replace(published=numbers, jobs=job["jobs"].get(name))
+        name: runs._replace(published=numbers, jobs=chunks.get(name))
         for name, runs in results.read_all(files, job["repeats"]).items()
     }
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}

@@ -1,28 +1,11 @@
-"""One chunk of runs: one method on every condition of an experiment, for a block of repeats.
-
-A job is a mapping with these keys, all of them names and plain values (built by `jobs.job`):
-
-    study, experiment, method    names
-    planner, settings            the planner and its settings, by name
-    problems                     problem name -> its workspace's name and, if present, layout,
-                                 obstacles and settings of the problem
-    vary                         setting or preset -> list of values; every combination of problems
-                                 and values is a condition
-    presets                       preset -> value, as text -> settings that go with it
-    seeds                        a run's seed comes from its id (`own`), from its id without the
-                                 method (`shared`), or from study, experiment, layout and repeat
-                                 alone (`common`: all methods and conditions share random numbers)
-    time_limit                   seconds, including compilation, after which a run ends its job; no
-                                 limit without this key
-    repeats                      [first, last): the repeats to run
-"""
+"""One chunk of runs: one method on every condition of an experiment, for a block of repeats."""
 
 import itertools
 import logging
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import partial
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import pyarrow as pa
@@ -30,6 +13,7 @@ import pyarrow as pa
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import Plan, planner_module, planner_settings
 from bezierplan.running import answer, rows, watchdog
+from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
 from bezierplan.running.loans import Loan, lend
 from bezierplan.workspaces import seeds
@@ -51,114 +35,97 @@ _LONG_RUN = 1.0
 _LOGGED = 100
 
 
-class Condition(NamedTuple):
-    """A problem and the values of the varied settings."""
-
-    problem: str
-    values: dict[str, Any]
-
-    @property
-    def name(self) -> str:
-        return ",".join([self.problem, *(f"{key}={value}" for key, value in self.values.items())])
-
-
-def conditions(problems: list[str], vary: dict[str, list]) -> Iterator[Condition]:
-    """Every combination of problems and varied values, in the order given."""
-    for problem in problems:
-        for values in itertools.product(*vary.values()):
-            yield Condition(problem, dict(zip(vary, values, strict=True)))
-
-
-def run_id(job: dict, condition: Condition, repeat: int) -> str:
+def run_id(chunk: Chunk, condition: Condition, repeat: int) -> str:
     """The name of a run: study/experiment/condition/method/repeat."""
-    return f"{job['study']}/{job['experiment']}/{condition.name}/{job['method']}/{repeat}"
+    return f"{chunk.study}/{chunk.experiment}/{condition.name}/{chunk.method}/{repeat}"
 
 
-def settings_in(job: dict, condition: Condition) -> dict[str, Any]:
-    """The settings of the job's method under a condition: those of its problem are applied first,
+def settings_in(chunk: Chunk, condition: Condition) -> dict[str, Any]:
+    """The settings of a chunk's method under a condition: those of its problem are applied first,
     then the varied values. Presets expand to their settings; varied values that are not settings of
     the planner are left out.
     """
-    settings = job["settings"] | job["problems"][condition.problem].get("settings", {})
+    settings = chunk.settings | chunk.problems[condition.problem].get("settings", {})
     for name, value in condition.values.items():
         settings |= (
-            job["presets"][name][str(value).lower()] if name in job["presets"] else {name: value}
+            chunk.presets[name][str(value).lower()] if name in chunk.presets else {name: value}
         )
-    accepted = planner_settings(planner_module(job["planner"]))
+    accepted = planner_settings(planner_module(chunk.planner))
     return {name: value for name, value in settings.items() if name in accepted}
 
 
-def generator(job: dict, condition: Condition, repeat: int) -> np.random.Generator:
+def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Generator:
     """The random generator of a run, seeded from names only, so that nothing depends on order,
     cores or chunks.
     """
-    layout = job["problems"][condition.problem].get("layout", "")
+    layout = chunk.problems[condition.problem].get("layout", "")
     parts = {
-        "own": [condition.name, job["method"]],
+        "own": [condition.name, chunk.method],
         "shared": [condition.name],
         "common": [str(layout)],
     }
-    name = "/".join([job["study"], job["experiment"], *parts[job["seeds"]], str(repeat)])
+    name = "/".join([chunk.study, chunk.experiment, *parts[chunk.seeds], str(repeat)])
     return seeds.generator(name)
 
 
-def run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:
+def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> Plan:
     """The plan of one run."""
-    plan = planner_module(job["planner"]).plan
-    return plan(problem, generator(job, condition, repeat), **settings_in(job, condition))
+    plan = planner_module(chunk.planner).plan
+    return plan(problem, generator(chunk, condition, repeat), **settings_in(chunk, condition))
 
 
 class UnfitAnswer(watchdog.PlannerFailure):
     """A planner's answer that no row may show; the message names run, planner and field."""
 
 
-def accepted(plan: Any, problem: Problem, job: dict, condition: Condition, repeat: int) -> Plan:
+def accepted(plan: Any, problem: Problem, chunk: Chunk, condition: Condition, repeat: int) -> Plan:
     """A planner's answer as plain values (`answer.accepted`). Raises UnfitAnswer if it is not valid
     for the problem.
     """
     try:
         return answer.accepted(
-            plan, problem, {*TAKEN, *settings_in(job, condition), *condition.values}
+            plan, problem, {*TAKEN, *settings_in(chunk, condition), *condition.values}
         )
     except answer.Unfit as fault:
         raise UnfitAnswer(
-            f"run {run_id(job, condition, repeat)}: the answer of planner {job['planner']}: {fault}"
+            f"run {run_id(chunk, condition, repeat)}: "
+            f"the answer of planner {chunk.planner}: {fault}"
         ) from None
 
 
-def refuse_changed(loan: Loan, job: dict, condition: Condition, repeat: int) -> None:
+def refuse_changed(loan: Loan, chunk: Chunk, condition: Condition, repeat: int) -> None:
     """Raise UnfitAnswer if a planner put something else in a workspace that was lent to it."""
     if fault := loan.fault():
         raise UnfitAnswer(
-            f"run {run_id(job, condition, repeat)}: planner {job['planner']}: {fault}"
+            f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}: {fault}"
         )
 
 
-def identity(job: dict, condition: Condition, repeat: int) -> dict[str, Any]:
+def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
     """The first columns of a row: the run's id and its parts, its place, and all settings in
     force.
     """
     return {
-        "id": run_id(job, condition, repeat),
-        "study": job["study"],
-        "experiment": job["experiment"],
+        "id": run_id(chunk, condition, repeat),
+        "study": chunk.study,
+        "experiment": chunk.experiment,
         "condition": condition.name,
         "problem": condition.problem,
         **{
             key: value
-            for key, value in job["problems"][condition.problem].items()
+            for key, value in chunk.problems[condition.problem].items()
             if key != "settings"
         },
-        "method": job["method"],
+        "method": chunk.method,
         "repeat": repeat,
-        "planner": job["planner"],
-        **settings_in(job, condition),
+        "planner": chunk.planner,
+        **settings_in(chunk, condition),
         **condition.values,
     }
 
 
 def row(
-    job: dict, condition: Condition, repeat: int, plan: Any, problem: Problem, blocked: Region
+    chunk: Chunk, condition: Condition, repeat: int, plan: Any, problem: Problem, blocked: Region
 ) -> dict[str, Any]:
     """One row of the runs table, from a planner's answer. `blocked` is the region of the problem's
     workspace, of which no planner holds any part.
@@ -167,7 +134,7 @@ def row(
     is not valid for this problem: for example, if its path begins or ends elsewhere, or a column
     would overwrite another.
     """
-    plan = accepted(plan, problem, job, condition, repeat)
+    plan = accepted(plan, problem, chunk, condition, repeat)
     curve, points = answer.stored(plan.path)
     length, check = answer.verdict(answer.restored(curve, points), blocked)
     outcome = Outcome(
@@ -186,13 +153,13 @@ def row(
         path_curve=curve,
         path_points=points,
     )
-    return identity(job, condition, repeat) | outcome._asdict() | plan.extra
+    return identity(chunk, condition, repeat) | outcome._asdict() | plan.extra
 
 
 def run_chunk(
-    problems: dict[str, Problem], job: dict, timed_alike: bool = True
+    problems: dict[str, Problem], chunk: Chunk, timed_alike: bool = True
 ) -> tuple[pa.Table, pa.Table]:
-    """The runs of a job (columns as in `columns`) and, in a separate table because they are never
+    """The runs of a chunk (columns as in `columns`) and, in a separate table because they are never
     reproducible, their times.
 
     Planners get copies of the problems, and these stay here to judge by. timed_alike: whether a
@@ -200,50 +167,49 @@ def run_chunk(
     the run, if a planner fails, does not return a valid plan for the problem (`row`), changes a
     workspace, or gives another plan when its first run is repeated.
     """
-    met = {name: problem for name, problem in problems.items() if name in job["problems"]}
+    met = {name: problem for name, problem in problems.items() if name in chunk.problems}
     blocked = {name: region(problem.workspace) for name, problem in met.items()}
     loans = lend(met)
-    planned = list(conditions(list(job["problems"]), job["vary"]))
-    deterministic = getattr(planner_module(job["planner"]), "deterministic", False)
-    first, last = job["repeats"]
+    planned = chunk.conditions()
+    deterministic = getattr(planner_module(chunk.planner), "deterministic", False)
+    first, last = chunk.repeats
     outcomes, times = {}, {}
-    with watchdog.watching(job.get("time_limit")) as watch:
+    with watchdog.watching(chunk.time_limit) as watch:
         for n, (k, repeat) in enumerate(
-            _order(job, len(planned), range(first, first + 1 if deterministic else last))
+            _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
         ):
             condition = planned[k]
             problem, loan = met[condition.problem], loans[condition.problem]
-            once = partial(run, job, condition, repeat, loan.problem)
+            once = partial(run, chunk, condition, repeat, loan.problem)
             made = partial(
-                row, job, condition, repeat, problem=problem, blocked=blocked[condition.problem]
+                row, chunk, condition, repeat, problem=problem, blocked=blocked[condition.problem]
             )
             if not outcomes:
                 # What needs no random numbers must not be changed by others.
                 again = (
-                    partial(run, job, condition, repeat + 1, loan.problem)
+                    partial(run, chunk, condition, repeat + 1, loan.problem)
                     if deterministic
                     else once
                 )
                 warm = (
-                    _warm_up(partial(timed, again, job, condition, repeat, watch))
+                    _warm_up(partial(timed, again, chunk, condition, repeat, watch))
                     if timed_alike
                     else []
                 )
-            plan, cpu, wall = timed(once, job, condition, repeat, watch)
-            refuse_changed(loan, job, condition, repeat)
+            plan, cpu, wall = timed(once, chunk, condition, repeat, watch)
+            refuse_changed(loan, chunk, condition, repeat)
             outcomes[k, repeat] = made(plan)
             if n == 0:
-                refuse_unrepeatable(map(made, warm), outcomes[k, repeat], job, deterministic)
+                refuse_unrepeatable(map(made, warm), outcomes[k, repeat], chunk, deterministic)
             times[k, repeat] = Times(outcomes[k, repeat]["id"], cpu, wall)._asdict()
             if (n + 1) % _LOGGED == 0:
                 logger.info("%d runs done", n + 1)
     if fault := next(filter(None, (loan.thorough_fault() for loan in loans.values())), ""):
-        runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
-        raise UnfitAnswer(f"run {runs_of}: planner {job['planner']}: {fault}")
+        raise UnfitAnswer(f"run {chunk.name}: planner {chunk.planner}: {fault}")
     if deterministic:
         for k, repeat in itertools.product(range(len(planned)), range(first + 1, last)):
             outcomes[k, repeat] = outcomes[k, first] | {
-                "id": run_id(job, planned[k], repeat),
+                "id": run_id(chunk, planned[k], repeat),
                 "repeat": repeat,
             }
             times[k, repeat] = times[k, first] | {"id": outcomes[k, repeat]["id"]}
@@ -254,14 +220,14 @@ def run_chunk(
     )
 
 
-def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:
-    """All pairs of a condition's number and a repeat, in a random order seeded by the job's name.
+def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int]]:
+    """All pairs of a condition's number and a repeat, in a random order seeded by the chunk's name.
 
     A processor's speed drifts, and the first call of compiled code loads it. This order spreads
     both effects over all conditions. It affects only times.
     """
     pairs = list(itertools.product(range(conditions), repeats))
-    name = "/".join([job["study"], job["experiment"], job["method"], str(repeats.start), "order"])
+    name = "/".join([chunk.study, chunk.experiment, chunk.method, str(repeats.start), "order"])
     shuffled = seeds.generator(name).permutation(len(pairs))
     return [pairs[n] for n in shuffled]
 
@@ -281,7 +247,7 @@ def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:
 
 
 def refuse_unrepeatable(
-    repetitions: Iterable[dict[str, Any]], row: dict[str, Any], job: dict, deterministic: bool
+    repetitions: Iterable[dict[str, Any]], row: dict[str, Any], chunk: Chunk, deterministic: bool
 ) -> None:
     """Raise PlannerFailure, naming the run, if repetitions of a run do not have the bits of its
     row.
@@ -300,13 +266,13 @@ def refuse_unrepeatable(
                 "nothing kept from an earlier run; but with the same generator"
             )
             raise watchdog.PlannerFailure(
-                f"run {row['id']}: planner {job['planner']}: {reason} its run has another {column}"
+                f"run {row['id']}: planner {chunk.planner}: {reason} its run has another {column}"
             )
 
 
 def timed(
     once: Callable[[], T],
-    job: dict,
+    chunk: Chunk,
     condition: Condition,
     repeat: int,
     watch: Callable[[str], None],
@@ -317,7 +283,7 @@ def timed(
     watch: told what is under way, and with an empty text that it is over (`watchdog.watching`).
     """
     with watchdog.executing(
-        f"run {run_id(job, condition, repeat)}: planner {job['planner']}", watch
+        f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}", watch
     ):
         cpu, wall = time.process_time(), time.perf_counter()
         found = once()

@@ -1,9 +1,9 @@
 """One chunk of runs in moving worlds: like `execution`, of which it keeps names, seeds and columns,
 but a run is a simulated drive.
 
-A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by
-name. Columns are those of `columns.Outcome`, some with a meaning of their own, and
-`columns.DriveOutcome`; of times, those of `columns.Times` and `columns.DriveTimes`.
+A chunk has a policy: the values of a `simulation.policy.Policy` by name. Columns are those of
+`columns.Outcome`, some with a meaning of their own, and `columns.DriveOutcome`; of times, those of
+`columns.Times` and `columns.DriveTimes`.
 """
 
 import json
@@ -20,6 +20,7 @@ import pyarrow.parquet as parquet
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, rows, watchdog
 from bezierplan.running import problems as problem_files
+from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import (
     Bound,
     DriveBound,
@@ -29,7 +30,6 @@ from bezierplan.running.columns import (
     Planned,
     Times,
 )
-from bezierplan.running.execution import Condition
 from bezierplan.running.loans import lend_once
 from bezierplan.running.simulation import cells, hindsight, motion_check
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
@@ -39,13 +39,13 @@ from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_json
 
 
-def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
+def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
     """The drive of one run. Raises `execution.UnfitAnswer` for a plan that is not valid for the
     problem that the robot saw.
     """
-    module, rng = planner_module(job["planner"]), execution.generator(job, condition, repeat)
-    settings = execution.settings_in(job, condition)
-    policy = _policy(job)
+    module, rng = planner_module(chunk.planner), execution.generator(chunk, condition, repeat)
+    settings = execution.settings_in(chunk, condition)
+    policy = _policy(chunk)
 
     def planner(seen: Problem, state: Any) -> tuple:
         loan = lend_once(seen)
@@ -55,18 +55,18 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: W
             if policy.warm
             else (module.plan(*given, **settings), None)
         )
-        execution.refuse_changed(loan, job, condition, repeat)
-        return execution.accepted(plan, seen, job, condition, repeat), state
+        execution.refuse_changed(loan, chunk, condition, repeat)
+        return execution.accepted(plan, seen, chunk, condition, repeat), state
 
     return drive(world, problem, policy, planner)
 
 
-def _policy(job: dict) -> Policy:
-    return Policy(**job["policy"] | {"plan_margins": tuple(job["policy"]["plan_margins"])})
+def _policy(chunk: Chunk) -> Policy:
+    return Policy(**chunk.policy | {"plan_margins": tuple(chunk.policy["plan_margins"])})
 
 
 def row(
-    job: dict, condition: Condition, repeat: int, ride: Ride, problem: Problem, world: World
+    chunk: Chunk, condition: Condition, repeat: int, ride: Ride, problem: Problem, world: World
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """One row of the runs table, and one of the table of traces: id; x and y at step 0, 1, ... and
     at the end of the drive, and clearance in each step, all in single precision; and the plans, by
@@ -89,7 +89,7 @@ def row(
         else 0
     )
     known = (
-        hindsight.known_at(ride.motion, verdict.collision_at, world, _policy(job))
+        hindsight.known_at(ride.motion, verdict.collision_at, world, _policy(chunk))
         if collided
         else math.nan
     )
@@ -132,7 +132,7 @@ def row(
         avoidable=hindsight.avoidable(ride.motion, known, world, problem),
         clearance_least=least,
     )
-    columns = execution.identity(job, condition, repeat) | outcome._asdict() | driving._asdict()
+    columns = execution.identity(chunk, condition, repeat) | outcome._asdict() | driving._asdict()
     trace = {
         "id": columns["id"],
         "x": np.interp(moments, times, points[:, 0]).astype(np.float32),
@@ -158,38 +158,37 @@ def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
 
 
 def run_chunk(
-    problems: dict[str, Problem], worlds: dict[str, World], job: dict
+    problems: dict[str, Problem], worlds: dict[str, World], chunk: Chunk
 ) -> tuple[pa.Table, pa.Table, pa.Table]:
-    """The runs of a job, their times, and their traces (`row`).
+    """The runs of a chunk, their times, and their traces (`row`).
 
     Robots drive in copies of the worlds, and these stay here to judge by. Raises RuntimeError,
     naming the run, if a planner fails, does not return a valid plan, or changes a world.
     """
-    texts = {name: to_json(worlds[name]) for name in job["problems"]}
+    texts = {name: to_json(worlds[name]) for name in chunk.problems}
     driven = {name: from_json(text) for name, text in texts.items()}
     drives, times, traces = [], [], []
-    with watchdog.watching(job.get("time_limit")) as watch:
-        for condition in execution.conditions(list(job["problems"]), job["vary"]):
-            for repeat in range(*job["repeats"]):
+    with watchdog.watching(chunk.time_limit) as watch:
+        for condition in chunk.conditions():
+            for repeat in range(*chunk.repeats):
                 problem, world = problems[condition.problem], worlds[condition.problem]
-                once = partial(run, job, condition, repeat, problem, driven[condition.problem])
+                once = partial(run, chunk, condition, repeat, problem, driven[condition.problem])
                 if not drives:
                     # Compiles and loads.
-                    first, *_ = execution.timed(once, job, condition, repeat, watch)
-                ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
-                drive, trace = row(job, condition, repeat, ride, problem, world)
+                    first, *_ = execution.timed(once, chunk, condition, repeat, watch)
+                ride, cpu, wall = execution.timed(once, chunk, condition, repeat, watch)
+                drive, trace = row(chunk, condition, repeat, ride, problem, world)
                 if not drives:
-                    again, _ = row(job, condition, repeat, first, problem, world)
-                    execution.refuse_unrepeatable([again], drive, job, deterministic=False)
+                    again, _ = row(chunk, condition, repeat, first, problem, world)
+                    execution.refuse_unrepeatable([again], drive, chunk, deterministic=False)
                 drives.append(drive)
                 traces.append(trace)
-                replans = _replan_times(ride, job["policy"]["step_seconds"])
+                replans = _replan_times(ride, chunk.policy["step_seconds"])
                 times.append(Times(drive["id"], cpu, wall)._asdict() | replans._asdict())
     for name, text in texts.items():
         if to_json(driven[name]) != text:
-            runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
             raise execution.UnfitAnswer(
-                f"run {runs_of}: planner {job['planner']}: problem: {name}: world: is another "
+                f"run {chunk.name}: planner {chunk.planner}: problem: {name}: world: is another "
                 "after the runs"
             )
     runs = rows.table(drives, Planned, Outcome, DriveOutcome)
@@ -197,13 +196,13 @@ def run_chunk(
 
 
 def rerun(
-    job: dict, condition: str, repeat: int, problem: Problem, world: World
+    chunk: Chunk, condition: str, repeat: int, problem: Problem, world: World
 ) -> tuple[Ride, motion_check.Verdict]:
     """The drive of a run, by the name of its condition, and the verdict on it: for what no table
     keeps.
     """
-    named = {each.name: each for each in execution.conditions(list(job["problems"]), job["vary"])}
-    ride = run(job, named[condition], repeat, problem, world)
+    named = {each.name: each for each in chunk.conditions()}
+    ride = run(chunk, named[condition], repeat, problem, world)
     return ride, motion_check.check(ride.motion, world)
 
 

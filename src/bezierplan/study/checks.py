@@ -19,7 +19,8 @@ from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import PLACE, planner_module
 from bezierplan.running import columns, interface, problems, worlds
-from bezierplan.running.execution import conditions, settings_in
+from bezierplan.running.chunk import conditions
+from bezierplan.running.execution import settings_in
 from bezierplan.running.interface import check_settings
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list, parsed
@@ -347,8 +348,7 @@ def _check_method_in(
     described = job(study, name, method, "full", 0)
     # One problem for each distinct set of problem settings.
     apart = {
-        str(met.get("settings")): problem
-        for problem, met in reversed(described["problems"].items())
+        str(met.get("settings")): problem for problem, met in reversed(described.problems.items())
     }
     for condition in conditions(list(apart.values()), experiment.vary):
         where = (

@@ -218,7 +218,8 @@ def interpretations_job(study: Study, share: int = 1, fresh: bool = False) -> di
         layouts = _layouts(drawn, share, fresh) if by_layout else None
         methods = _methods(study, name, table)
         chunk_jobs = {
-            method: jobs.job(study, table.experiment, method, scale, 0) for method in methods
+            method: jobs.job(study, table.experiment, method, scale, 0).plain()
+            for method in methods
         }
         world = jobs.problems_job(study, table.experiment, scale)
         for given in (world, *chunk_jobs.values()):

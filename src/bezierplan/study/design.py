@@ -10,6 +10,7 @@ from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.geometry.curves import CURVES
 from bezierplan.planners import PLACE, planner_module
+from bezierplan.running.chunk import Chunk
 from bezierplan.running.columns import (
     DRIVE_JOINED,
     DRIVE_RESULTS,
@@ -46,20 +47,19 @@ class Design:
         self.reported = cache(self._reported)
 
     def _rows(self, experiment: str) -> list[Row]:
-        from bezierplan.running.execution import conditions, settings_in
+        from bezierplan.running.chunk import conditions
+        from bezierplan.running.execution import settings_in
 
         content, rows = self.study.experiments[experiment], []
         for method in self.study.methods_of(experiment):
             described = job(self.study, experiment, method, "full", 0)
             problems = [
-                name
-                for name, problem in described["problems"].items()
-                if problem.get("layout", 0) < 2
+                name for name, problem in described.problems.items() if problem.get("layout", 0) < 2
             ]
             for condition in conditions(problems, content.vary):
                 problem = {
                     key: value
-                    for key, value in described["problems"][condition.problem].items()
+                    for key, value in described.problems[condition.problem].items()
                     if key != "settings"
                 }
                 names = {
@@ -73,7 +73,7 @@ class Design:
                     | problem
                     | settings_in(described, condition)
                     | condition.values
-                    | {"planner": described["planner"]}
+                    | {"planner": described.planner}
                 )
         return rows
 
@@ -292,7 +292,7 @@ class Design:
 
     def _every(self, experiment: str, column: str) -> list[Any]:
         """All problems, layouts or conditions of an experiment at scale full."""
-        from bezierplan.running.execution import conditions
+        from bezierplan.running.chunk import conditions
 
         described = self.study.problems_of(experiment, "full")
         if column == "condition":
@@ -401,7 +401,7 @@ def in_first_variant(claim: Claim, check: Check) -> dict[str, Any]:
     return getattr(check, "where", {}) | extra
 
 
-def judged_only(job: dict, claims: list[Claim]) -> dict:
+def judged_only(chunk: Chunk, claims: list[Claim]) -> dict:
     """A chunk of runs without the problems and varied values that no check of these claims selects
     in its primary variant.
     """
@@ -409,7 +409,7 @@ def judged_only(job: dict, claims: list[Claim]) -> dict:
         in_first_variant(claim, check)
         for claim in claims
         for check in claim.checks
-        if job["experiment"] in check.experiments
+        if chunk.experiment in check.experiments
     ]
 
     def wanted(column: str, value: Any) -> bool:
@@ -427,16 +427,16 @@ def judged_only(job: dict, claims: list[Claim]) -> dict:
 
     problems = {
         name: problem
-        for name, problem in job["problems"].items()
+        for name, problem in chunk.problems.items()
         if met(problem) and ("layout" in problem or wanted("problem", name))
     }
-    return job | {
-        "problems": problems,
-        "vary": {
+    return chunk._replace(
+        problems=problems,
+        vary={
             column: [value for value in values if wanted(column, value)]
-            for column, values in job["vary"].items()
+            for column, values in chunk.vary.items()
         },
-    }
+    )
 
 
 def _names(check: Check, column: str, values: list[Any]) -> bool:

@@ -13,6 +13,7 @@ from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
+from bezierplan.running.chunk import Chunk
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study.alternatives import experiments_of_claims
 from bezierplan.study.artefacts import Figure
@@ -32,32 +33,26 @@ def problems_job(study: Study, experiment: str, scale: str) -> dict:
     return {"study": study.key, "problems": described, "workspaces": workspaces}
 
 
-def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> dict:
-    """A chunk of runs, as `execution.run_chunk` takes it. A chunk always runs whole, whatever the
-    number of requested repeats.
-    """
+def job(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
+    """A chunk of runs, which always runs whole, whatever the number of requested repeats."""
     content = study.experiments[experiment]
     size = content.chunk[scale]
-    return {
-        "study": study.key,
-        "experiment": experiment,
-        "method": method,
-        "planner": study.planner(method),
-        "settings": {
-            name: value
-            for name, value in study.resolved(method).items()
-            if name not in content.vary
-        },
-        "problems": _problems_met(study, experiment, method, scale),
-        "vary": content.vary,
-        "presets": {name: preset for name, preset in study.presets.items() if name in content.vary},
-        "seeds": content.seeds,
-        "time_limit": content.time_limit,
-        "repeats": [chunk * size, (chunk + 1) * size],
-    } | (
-        {"policy": study.policies[study.methods[method].policy].model_dump()}
+    settings = study.resolved(method).items()
+    return Chunk(
+        study=study.key,
+        experiment=experiment,
+        method=method,
+        planner=study.planner(method),
+        settings={name: value for name, value in settings if name not in content.vary},
+        problems=_problems_met(study, experiment, method, scale),
+        vary=content.vary,
+        presets={name: preset for name, preset in study.presets.items() if name in content.vary},
+        seeds=content.seeds,
+        repeats=[number * size, (number + 1) * size],
+        time_limit=content.time_limit,
+        policy=study.policies[study.methods[method].policy].model_dump()
         if study.moves(experiment)
-        else {}
+        else None,
     )
 
 
@@ -151,13 +146,14 @@ def _planned(study: Study, panel: Panel) -> Panel:
 
 
 def _jobs_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:
-    """The jobs whose runs a figure reruns, to draw what no table keeps: experiment -> method ->
-    job.
+    """The chunks whose runs a figure reruns, to draw what no table keeps: experiment -> method ->
+    chunk.
     """
     again = {panel.experiment for panel in study.figures[figure].panels if panel.rerun}
     return {
         name: {
-            method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)
+            method: job(study, name, method, scale, 0).plain()
+            for method in methods_of(study, figure, name)
         }
         for name in sorted(again)
     }

@@ -7,6 +7,7 @@ import pandas as pd
 from bezierplan.analysis import results
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems, rides, worlds
+from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.loans import lend
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.study.definition import Study
@@ -30,50 +31,41 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     _named(experiment, study.experiments, f"{name}: experiment")
     _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
     # Neither the seed nor the settings of a run depend on scale or chunk.
-    described = job(study, experiment, method, "full", 0)
-    conditions = {
-        each.name: each
-        for each in execution.conditions(list(described["problems"]), described["vary"])
-    }
+    chunk = job(study, experiment, method, "full", 0)
+    conditions = {each.name: each for each in chunk.conditions()}
     condition = _named(condition_name, conditions, f"{name}: condition")
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
     again = _redriven if study.moves(experiment) else _rerun
     try:
-        return again(described, condition, int(repeat), study)
+        return again(chunk, condition, int(repeat), study)
     except execution.UnfitAnswer as error:
         raise Fault(str(error)) from None
 
 
-def _rerun(
-    described: dict, condition: execution.Condition, repeat: int, study: Study
-) -> results.Results:
+def _rerun(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
     """A run where nothing moves."""
-    made, _ = problems.build_all(problems_job(study, described["experiment"], "full"), study.folder)
+    made, _ = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     problem = made[condition.problem]
     named = {condition.problem: problem}
-    plan = execution.run(described, condition, repeat, lend(named)[condition.problem].problem)
-    row = execution.row(described, condition, repeat, plan, problem, region(problem.workspace))
+    plan = execution.run(chunk, condition, repeat, lend(named)[condition.problem].problem)
+    row = execution.row(chunk, condition, repeat, plan, problem, region(problem.workspace))
     return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())
 
 
-def _redriven(
-    described: dict, condition: execution.Condition, repeat: int, study: Study
-) -> results.Results:
+def _redriven(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
     """A run in a world that moves."""
-    made, _, found = worlds.build_all(
-        problems_job(study, described["experiment"], "full"), study.folder
-    )
+    made, _, found = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     problem, world = made[condition.problem], found[condition.problem]
-    ride = rides.run(described, condition, repeat, problem, from_json(to_json(world)))
-    row, _ = rides.row(described, condition, repeat, ride, problem, world)
+    ride = rides.run(chunk, condition, repeat, problem, from_json(to_json(world)))
+    row, _ = rides.row(chunk, condition, repeat, ride, problem, world)
     named, moving = {condition.problem: problem}, {condition.problem: world}
     arrivals = {condition.problem: row["arrival"]} if row["feasible"] else {}
     joined = results.joined(
         pd.DataFrame([row]), named, rides.bounds_of(named, moving, arrivals).to_pandas()
     )
-    return joined._replace(worlds=moving, jobs={described["method"]: described})
+    return joined._replace(worlds=moving, jobs={chunk.method: chunk})
 
 
 def _named(name: str, known: dict[str, Any], place: str) -> Any:

@@ -145,7 +145,7 @@ def run_params(
 ) -> dict:
     """Params of a chunk of runs."""
     return {
-        "job": jobs.job(studies[study], experiment, method, scale, int(chunk)),
+        "job": jobs.job(studies[study], experiment, method, scale, int(chunk)).plain(),
         "code": _code(
             "drives" if studies[study].moves(experiment) else "runs",
             _planner(studies[study].planner(method)),
@@ -450,15 +450,15 @@ def alternative_params(studies: Studies, scale: str, study: str, alternative: st
         alternatives.methods_changed(content, alternative),
     )
     chunks = [
-        [chunk, design.judged_only(jobs.job(tried, experiment, method, scale, chunk), claims)]
+        (number, design.judged_only(jobs.job(tried, experiment, method, scale, number), claims))
         for experiment in alternatives.experiments_of_claims(claims)
         for method in alternatives.methods_of_claims(content, claims, experiment)
         if method in changed
-        for chunk in jobs.chunks(content, experiment, scale)
+        for number in jobs.chunks(content, experiment, scale)
     ]
-    planners = sorted({_planner(job["planner"]) for _, job in chunks})
+    planners = sorted({_planner(chunk.planner) for _, chunk in chunks})
     return {
-        "chunks": chunks,
+        "chunks": [[number, chunk.plain()] for number, chunk in chunks],
         "job": _claims_job(
             content, scale, alternatives.claims_tried(content, alternative), primary_alone=True
         ),

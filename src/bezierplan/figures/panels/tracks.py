@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from bezierplan.analysis.results import Results
+    from bezierplan.running.chunk import Chunk
 
 
 # Contour lines below a track, from the lowest to the highest.
@@ -133,19 +134,15 @@ def _commonest(groups: pd.Series) -> list[float]:
     return counts.sort_values(["count", "group"], ascending=[False, True])["group"].to_list()
 
 
-def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
-    """The best path after each iteration of a run, reproduced from its job."""
+def _tracked(run: pd.Series, chunk: Chunk, problem: Problem) -> list[Path]:
+    """The best path after each iteration of a run, reproduced from its chunk."""
     from bezierplan.analysis.results import path_of
     from bezierplan.running import execution
 
-    condition = next(
-        each
-        for each in execution.conditions(list(job["problems"]), job["vary"])
-        if each.name == run["condition"]
-    )
-    rng = execution.generator(job, condition, int(run["repeat"]))
-    track = planner_module(job["planner"]).track(
-        problem, rng, **execution.settings_in(job, condition)
+    condition = next(each for each in chunk.conditions() if each.name == run["condition"])
+    rng = execution.generator(chunk, condition, int(run["repeat"]))
+    track = planner_module(chunk.planner).track(
+        problem, rng, **execution.settings_in(chunk, condition)
     )
     if not np.array_equal(track[-1], path_of(run).points):
         raise ValueError(

@@ -1,0 +1,68 @@
+"""What a job of runs is made from."""
+
+import itertools
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+
+class Condition(NamedTuple):
+    """A problem and the values of the varied settings."""
+
+    problem: str
+    values: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        return ",".join([self.problem, *(f"{key}={value}" for key, value in self.values.items())])
+
+
+def conditions(problems: list[str], vary: dict[str, list]) -> Iterator[Condition]:
+    """Every combination of problems and varied values, in the order given."""
+    for problem in problems:
+        for values in itertools.product(*vary.values()):
+            yield Condition(problem, dict(zip(vary, values, strict=True)))
+
+
+class Chunk(NamedTuple):
+    """One method on every condition of an experiment, for a block of repeats: all that the runs
+    depend on beside the problems themselves, as names and plain values.
+    """
+
+    study: str
+    experiment: str
+    method: str
+    planner: str
+    settings: dict[str, Any]
+    """Those of the method."""
+    problems: dict[str, dict[str, Any]]
+    """By name, the problem's workspace and, if present, its layout, its obstacles, and the settings
+    that belong to it.
+    """
+    vary: dict[str, list]
+    """Setting or preset -> values; every combination of problems and values is a condition."""
+    presets: dict[str, dict[str, dict[str, Any]]]
+    """Preset -> value, as text -> settings that go with it."""
+    seeds: str
+    """A run's seed comes from its id (`own`), from its id without the method (`shared`), or from
+    study, experiment, layout and repeat alone (`common`: all methods and conditions share random
+    numbers).
+    """
+    repeats: list[int]
+    """[first, last): the repeats to run."""
+    time_limit: float | None = None
+    """Seconds, including compilation, after which a run ends its job."""
+    policy: dict[str, Any] | None = None
+    """What the robot does, where the world moves."""
+
+    def plain(self) -> dict[str, Any]:
+        """The chunk as Snakemake's params hold it; where nothing moves there is no policy."""
+        return {name: value for name, value in self._asdict().items() if name != "policy" or value}
+
+    def conditions(self) -> list[Condition]:
+        """Its conditions, in order."""
+        return list(conditions(list(self.problems), self.vary))
+
+    @property
+    def name(self) -> str:
+        """What the ids of its runs have in common, with a star for conditions."""
+        return f"{self.study}/{self.experiment}/*/{self.method}"
