@@ -30,6 +30,9 @@ DESIGN = 64
 KICKED = 2
 # After so many kicks in a row that asked for nothing new, everything near has been tried.
 STALE = 200
+# So many standard errors of the difference below the best score, an interpretation may still be the
+# best.
+REACH = 2.0
 # What a printed number that no run could have costs an interpretation in the climb: more than any
 # likelihood gives.
 RULED_OUT = 1e6
@@ -72,7 +75,7 @@ class _Book:
     """What is known of each part, and what may still be spent."""
 
     def __init__(
-        self, choices: list[dict], parts: list[Part], evaluate: Evaluate, most: int
+        self, choices: list[dict], parts: list[Part], evaluate: Evaluate, most: float
     ) -> None:
         self.choices, self.parts, self.evaluate, self.left = choices, parts, evaluate, most
         self.known: list[dict[str, Evaluated | None]] = [{} for _ in parts]
@@ -181,13 +184,56 @@ def settled(interpretation: Interpretation, choices: list[dict]) -> Interpretati
     }
 
 
-def confirm(found: Found, parts: list[Part], evaluate: Evaluate, finalists: int) -> list[Evaluated]:
-    """The default and the best of the interpretations found, evaluated anew, such as with more
-    runs; the best first, after the default.
+def within_reach(
+    interpretations: list[Interpretation], parts: list[Part], evaluate: Evaluate, most: int
+) -> list[Interpretation]:
+    """Those that may be the best, the best first, up to a number: not ruled out, and with a score
+    no more than `REACH` standard errors of the difference below the best one.
+
+    interpretations: about in the order of their scores, the best first: after a batch of which none
+    may be the best the rest is not asked for. evaluate: with the scores of resampled runs. Of
+    interpretations with one score, which are one experiment under several names, the one with the
+    fewest choices stays.
     """
-    book = _Book([], parts, evaluate, (finalists + 1) * len(parts))
-    book.ask([each.interpretation for each in found.interpretations[: finalists + 1]])
-    return book.found(finalists).interpretations
+    book = _Book([], parts, evaluate, math.inf)
+    asked, near = [], []
+    for start in range(0, len(interpretations), most):
+        batch = interpretations[start : start + most]
+        book.ask(batch)
+        asked += [
+            together(interpretation, own)
+            for interpretation in batch
+            if (own := book.evaluated(interpretation))
+        ]
+        near = _near_the_best(asked)
+        if len(near) >= most or not any(each in batch for each in near):
+            break
+    return near[:most]
+
+
+def _near_the_best(evaluated: list[Evaluated]) -> list[Interpretation]:
+    ordered = sorted(
+        (each for each in evaluated if not each.impossible),
+        key=lambda each: (-each.score, len(each.interpretation)),
+    )
+    different = {each.score: each for each in reversed(ordered)}.values()
+    return [
+        each.interpretation
+        for each in reversed(different)
+        if ordered[0].score - each.score
+        <= REACH * np.std(ordered[0].resampled - each.resampled, ddof=1)
+    ]
+
+
+def confirm(
+    interpretations: list[Interpretation], parts: list[Part], evaluate: Evaluate
+) -> list[Evaluated]:
+    """The default and some interpretations, evaluated anew, such as by more runs; the best first,
+    after the default.
+    """
+    book = _Book([], parts, evaluate, math.inf)
+    book.ask([{}, *interpretations])
+    return book.found(len(interpretations)).interpretations
 
 
 def whole(interpretation: Interpretation, parts: list[Part], evaluate: Evaluate) -> Evaluated:

@@ -356,3 +356,8 @@ class ExperimentsFile(Model):
     interpretations_tried: Count = Field(
         60, description="how many interpretations `snakemake interpretations` tries at most"
     )
+    interpretations_finalists: Count = Field(
+        10,
+        description="how many of them it judges by 1,000 runs at most: those whose likelihood is "
+        "within reach of the best",
+    )
