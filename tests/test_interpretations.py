@@ -522,6 +522,27 @@ def test_the_error_of_a_score_is_that_of_other_runs():
     assert error == pytest.approx(spread, rel=0.5)
 
 
+def test_an_experiment_within_one_of_our_groups_has_a_score_with_an_error():
+    own = results(5.0)
+    frame = own.runs.assign(layout=own.runs["repeat"] % 8, problem="only")
+    spec = pivot_of(TABLE | {"within": "layout"})
+    found = interpretations.numbers_of(
+        own._replace(runs=frame), spec, printed(5.0, 6.0), "study/table", 3
+    )
+    assert np.isfinite(found[1])
+    assert len(set(found[2])) == 3
+
+
+def test_a_part_with_many_choices_leaves_the_others_their_trials():
+    parts = [Part(["a"], ["O0", "O1", "O2", "O3"]), Part(["b"], ["O4", "O5"])]
+    planted = {"O3": 1, "O5": 2}
+    found = search(CHOICES, parts, evaluating(planted), "study", most=20)
+    first, second = map(len, found.of_parts)
+    assert first < 20 + 3  # a batch is finished
+    assert second == 9
+    assert found.interpretations[1].interpretation["O5"] == 2
+
+
 def test_luck_does_not_choose_the_best_of_many(monkeypatch):
     """All interpretations are alike: the one that few runs flatter is judged by others, and the
     score that is reported is one that chose nothing.

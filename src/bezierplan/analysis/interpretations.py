@@ -253,7 +253,9 @@ def _units(runs: pd.DataFrame, row: pd.Series) -> np.ndarray | list[np.ndarray]:
     """The units of a number: repeats, layouts, or groups of these. runs: with the metric of each as
     `value`.
     """
-    return row["groups"] or runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
+    if row["groups"]:
+        return [*row["groups"]]
+    return runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
 
 
 def _resampled(sample: _Sample, number: int) -> _Sample:

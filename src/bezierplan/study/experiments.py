@@ -354,7 +354,9 @@ class ExperimentsFile(Model):
         "for each method",
     )
     interpretations_tried: Count = Field(
-        60, description="how many interpretations `snakemake interpretations` tries at most"
+        60,
+        description="how many interpretations `snakemake interpretations` tries of each method at "
+        "most; of methods whose numbers are compared with each other, together",
     )
     interpretations_finalists: Count = Field(
         10,
