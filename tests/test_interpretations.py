@@ -16,7 +16,7 @@ from pivots import pivot_of
 from bezierplan.analysis import explained, interpretations, statistics
 from bezierplan.analysis.explained import Evaluated
 from bezierplan.analysis.results import Results
-from bezierplan.analysis.search import Part, confirm, search
+from bezierplan.analysis.search import Part, confirm, search, within_reach
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import specification
 from bezierplan.study import choices, reading
@@ -71,14 +71,14 @@ def test_grid_has_settings_worlds_and_metrics(studies):
 
 
 def test_what_the_paper_does_not_define_has_no_vote(studies):
-    job = choices.interpretations_job(studies["tharwat2018"], 1)
+    job = choices.interpretations_job(studies["tharwat2018"])
     assert "O10" not in {choice["id"] for choice in job["choices"]}
     assert {
         value["metric"] for table in job["tables"].values() for value in table["spec"]["values"]
     } == {"rank", "objective"}
     # Its numbers stand in the same file as the others, and are passed over.
     both = printed(5.0, 6.0)
-    found, likelihood = interpretations.numbers_of(
+    found, likelihood, _ = interpretations.numbers_of(
         results(5.0), SPEC, pd.concat([both, both.assign(metric="length")]), "study/table"
     )
     assert found["metric"].to_list() == ["objective"] * 2
@@ -87,41 +87,59 @@ def test_what_the_paper_does_not_define_has_no_vote(studies):
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_study_has_a_grid_of_plain_values(studies, key):
-    job = choices.interpretations_job(studies[key], 1)
+    job = choices.interpretations_job(studies[key])
     assert json.loads(json.dumps(job)) == job
     assert job["tables"]
     assert job["choices"]
 
 
 @pytest.mark.parametrize("key", KEYS)
-def test_the_best_interpretation_is_judged_anew_by_a_thousand_runs_that_no_other_saw(studies, key):
+def test_a_thousand_runs_choose_among_finalists_and_a_thousand_others_judge_the_chosen_one(
+    studies, key
+):
     job = choices.search_job(studies[key])
 
-    def runs(part, table, method):
-        chunk = job[part]["tables"][table]["jobs"][method]
+    def runs(stage, table, method):
+        chunk = job[stage]["tables"][table]["jobs"][method]
+        spec = Pivot.model_validate(job[stage]["tables"][table]["spec"])
+        _, own = interpretations.in_world(spec, chunk, {})
         return {
-            (problem, repeat)
-            for problem in chunk["problems"]
-            for repeat in range(*chunk["repeats"])
+            (problem, repeat) for problem in own["problems"] for repeat in range(*own["repeats"])
         }
 
-    for name, table in job["confirmed"]["tables"].items():
+    for name, table in job["finalists"]["tables"].items():
         drawn = "layout" in next(
             iter(table["jobs"][next(iter(table["jobs"]))]["problems"].values())
         )
         for method in table["jobs"]:
-            fresh, seen = runs("fresh", name, method), runs("confirmed", name, method)
-            assert seen >= runs("screened", name, method)
-            assert fresh.isdisjoint(seen)
-            counts = Counter("drawn" if drawn else problem for problem, _ in fresh)
-            assert min(counts.values()) >= choices.FRESH
+            screened, judged, finalists, fresh = (
+                runs(stage, name, method) for stage in choices.STAGES
+            )
+            assert screened <= judged
+            assert judged.isdisjoint(finalists)
+            assert fresh.isdisjoint(judged | finalists)
+            for many in (finalists, fresh):
+                counts = Counter("drawn" if drawn else problem for problem, _ in many)
+                assert min(counts.values()) >= choices.MANY
+
+
+def test_finalists_and_the_chosen_one_are_judged_on_fields_that_none_met_before(studies):
+    job = choices.search_job(studies["elhoseny2017"])
+    screened, judged, finalists, fresh = (
+        {place["layout"] for place in job[stage]["worlds"]["fields100"]["problems"].values()}
+        for stage in choices.STAGES
+    )
+    assert screened < judged
+    assert len(judged) == len(finalists) == len(fresh)
+    assert judged.isdisjoint(finalists)
+    assert fresh.isdisjoint(judged | finalists)
 
 
 # One interpretation.
 
 
 def test_an_interpretation_changes_the_settings_of_its_methods_and_nothing_else(studies):
-    job = choices.interpretations_job(studies["meledje"], 1)
+    job = choices.interpretations_job(studies["meledje"])
     chunk = job["tables"]["table2"]["jobs"]["proposed"]
     changed = interpretations.job_under(chunk, {"M5": 1, "M18": "path"}, job["choices"])
     assert changed["settings"] == chunk["settings"] | {"elitism": 1}
@@ -130,7 +148,7 @@ def test_an_interpretation_changes_the_settings_of_its_methods_and_nothing_else(
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_choice_can_be_made_in_every_job(studies, key):
-    job = choices.interpretations_job(studies[key], 1)
+    job = choices.interpretations_job(studies[key])
     for choice in job["choices"]:
         for value in choice["values"][1:]:
             chosen = {choice["id"]: value}
@@ -145,7 +163,7 @@ def test_every_choice_can_be_made_in_every_job(studies, key):
 
 
 def test_a_choice_wins_over_the_settings_of_a_problem(studies):
-    job = choices.interpretations_job(studies["ma2020"], 1)
+    job = choices.interpretations_job(studies["ma2020"])
     chunk = job["tables"]["table2"]["jobs"]["aco"]
     assert chunk["problems"]["environment2"]["settings"]["iterations"] == 100
     changed = interpretations.job_under(chunk, {"O12d": 200}, job["choices"])
@@ -154,7 +172,7 @@ def test_a_choice_wins_over_the_settings_of_a_problem(studies):
 
 
 def test_only_the_world_of_the_interpretation_is_run(studies):
-    table = choices.interpretations_job(studies["tharwat2018"], 1)["tables"]["table3"]
+    table = choices.interpretations_job(studies["tharwat2018"])["tables"]["table3"]
     chunk, given = table["jobs"]["cpso1_gauss"], Pivot.model_validate(table["spec"])
     for chosen, world in (
         ({}, ("equal", "default")),
@@ -204,7 +222,7 @@ def printed(a: float, b: float) -> pd.DataFrame:
 
 
 def test_numbers_lie_in_range_where_the_comparison_says_so():
-    near, _ = interpretations.numbers_of(results(5.0), SPEC, printed(5.1, 9.0), "study/table")
+    near, *_ = interpretations.numbers_of(results(5.0), SPEC, printed(5.1, 9.0), "study/table")
     assert near["in_range"].to_list() == [True, False]
     ours = results(5.0).runs.query("method == 'a'")["objective"].to_numpy()
     *_, low, high = statistics.prediction("mean", np.sort(ours), 5.1, 10, None, generator("any"))
@@ -243,11 +261,12 @@ def test_a_number_of_an_unstated_number_of_runs_is_as_likely_by_many_of_ours_as_
 
 
 def test_too_few_runs_explain_nothing():
-    found, likelihood = interpretations.numbers_of(
-        results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table"
+    found, likelihood, resampled = interpretations.numbers_of(
+        results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table", 5
     )
     assert not found["in_range"].any()
     assert math.isfinite(likelihood)
+    assert np.isfinite(resampled).all()
 
 
 def test_a_metric_takes_the_place_of_the_printed_word():
@@ -278,7 +297,7 @@ def test_the_length_that_a_fitness_uses_is_not_the_length_that_is_printed(studie
 
 
 def test_a_choice_for_some_problems_leaves_the_others_alone(studies):
-    job = choices.interpretations_job(studies["meledje"], 1)
+    job = choices.interpretations_job(studies["meledje"])
     first, second = (job["tables"][name]["jobs"]["ref12"] for name in ("table2", "table4"))
     changed = [
         interpretations.job_under(chunk, {"M15": 50, "M15b": 200}, job["choices"])
@@ -317,13 +336,12 @@ def test_a_share_of_the_runs_screens_interpretations(studies):
     job = choices.search_job(studies["elhoseny2017"])
     layouts = [
         {place["layout"] for place in job[name]["worlds"]["fields100"]["problems"].values()}
-        for name in ("screened", "confirmed")
+        for name in ("screened", "judged")
     ]
     assert list(map(len, layouts)) == [statistics.LEAST_RUNS, 20]
     job = choices.search_job(studies["ma2020"])
     assert [
-        job[name]["tables"]["table1"]["jobs"]["aco"]["repeats"]
-        for name in ("screened", "confirmed")
+        job[name]["tables"]["table1"]["jobs"]["aco"]["repeats"] for name in ("screened", "judged")
     ] == [[0, 25], [0, 100]]
 
 
@@ -424,12 +442,149 @@ def test_interpretations_that_exclude_themselves_are_left_out_and_the_budget_is_
     ]
 
 
-def test_the_best_are_judged_again():
-    found = search(CHOICES, ALONE, evaluating({"O1": 2}), "study", most=60)
-    confirmed = confirm(found, ALONE, evaluating({"O1": 1}), 5)
-    assert confirmed[0].interpretation == {}
-    assert len({explained.name_of(each.interpretation) for each in confirmed}) == 6
-    assert max(confirmed, key=lambda each: each.rank).interpretation.get("O1") != 2
+def test_finalists_are_judged_again():
+    finalists = [{"O1": 2}, {"O1": 1}, {"O1": 1, "O2": 2}]
+    confirmed = confirm(finalists, ALONE, evaluating({"O1": 1}))
+    assert [each.interpretation for each in confirmed] == [
+        {},
+        {"O1": 1},
+        *sorted(finalists, key=lambda each: -evaluated(each, {"O1": 1}).score)[1:],
+    ]
+
+
+def reached(scores: list[float], most: int, apart: list[float], impossible=()) -> list[int]:
+    """The numbers of the interpretations within reach. scores: theirs. apart: how far the
+    differences of their scores from that of the first go up and down in resampled runs.
+    """
+    up_and_down = np.tile([1.0, -1.0], 10)
+
+    def evaluate(tasks):
+        found = []
+        for task in tasks:
+            number = task.interpretation["O0"]
+            possible = numbers([True]).assign(possible=number not in impossible)
+            resampled = scores[number] + apart[number] * up_and_down
+            found.append(
+                Evaluated(task.interpretation, possible, {"table1": scores[number]}, resampled)
+            )
+        return found
+
+    tried = [{"O0": number} for number in range(len(scores))]
+    return [each["O0"] for each in within_reach(tried, ALONE, evaluate, most)]
+
+
+def test_finalists_are_those_within_reach_of_the_best_given_the_error_of_the_difference():
+    assert reached([0.0, -9.0, -9.5, -8.0], 4, apart=[0, 1, 5, 0]) == [0, 2]
+    # What moves both alike tells them apart as before.
+    assert reached([0.0, -9.0], 4, apart=[50, 50]) == [0]
+    assert reached([-9.0, 0.0, -5.0], 4, apart=[0, 0, 9]) == [1, 2]
+
+
+def test_finalists_are_limited_and_the_rest_is_not_asked_for():
+    assert reached([0.0, -1.0, -2.0, -3.0], 2, apart=[0, 9, 9, 9]) == [0, 1]
+    asked = within_reach(
+        [{"O0": n} for n in range(9)],
+        ALONE,
+        lambda tasks: [
+            evaluated(task.interpretation, {})._replace(
+                likelihoods={"table1": -100.0 * task.interpretation["O0"]},
+                resampled=np.zeros(5),
+            )
+            if task.interpretation["O0"] < 4
+            else pytest.fail("asked for")
+            for task in tasks
+        ],
+        2,
+    )
+    assert asked == [{"O0": 0}]
+
+
+def test_finalists_are_no_interpretations_that_are_ruled_out_and_no_other_name_of_one():
+    assert reached([0.0, -1.0, -2.0], 3, apart=[9, 0, 9], impossible=[0]) == [1, 2]
+    assert reached([0.0, -1.0], 3, apart=[9, 9], impossible=[0, 1]) == []
+    assert reached([0.0, 0.0, -1.0], 3, apart=[0, 0, 9]) == [0, 2]
+
+
+def test_the_error_of_a_score_is_that_of_other_runs():
+    """The spread of scores of resampled runs, beside that of the scores of runs made anew."""
+    frame = printed(5.5, 6.5)
+
+    def judged(seed, resamples=0):
+        noise = generator(f"runs/{seed}").normal(size=40)
+        runs = results(5.0)
+        runs.runs["objective"] = (
+            5.0 + runs.runs["method"].map({"a": 0.0, "b": 1.0}) + noise[runs.runs["repeat"]]
+        )
+        return interpretations.numbers_of(runs, SPEC, frame, "study/table", resamples)
+
+    spread = np.std([judged(seed)[1] for seed in range(60)])
+    error = np.mean([np.std(judged(seed, 25)[2]) for seed in range(10)])
+    assert error == pytest.approx(spread, rel=0.5)
+
+
+def test_an_experiment_within_one_of_our_groups_has_a_score_with_an_error():
+    own = results(5.0)
+    frame = own.runs.assign(layout=own.runs["repeat"] % 8, problem="only")
+    spec = pivot_of(TABLE | {"within": "layout"})
+    found = interpretations.numbers_of(
+        own._replace(runs=frame), spec, printed(5.0, 6.0), "study/table", 3
+    )
+    assert np.isfinite(found[1])
+    assert len(set(found[2])) == 3
+
+
+def test_a_part_with_many_choices_leaves_the_others_their_trials():
+    parts = [Part(["a"], ["O0", "O1", "O2", "O3"]), Part(["b"], ["O4", "O5"])]
+    planted = {"O3": 1, "O5": 2}
+    found = search(CHOICES, parts, evaluating(planted), "study", most=20)
+    first, second = map(len, found.of_parts)
+    assert first < 20 + 3  # a batch is finished
+    assert second == 9
+    assert found.interpretations[1].interpretation["O5"] == 2
+
+
+def test_luck_does_not_choose_the_best_of_many(monkeypatch):
+    """All interpretations are alike: the one that few runs flatter is judged by others, and the
+    score that is reported is one that chose nothing.
+    """
+    names = ["screened", "judged", "finalists", "fresh"]
+    job = {
+        "study": "study",
+        "most": 27,
+        "most_finalists": 5,
+        "parts": [{"methods": ["a"], "choices": ["O0", "O1", "O2"]}],
+        "along": {},
+    } | {stage: {"choices": CHOICES[:3], "stage": stage} for stage in names}
+    asked = {}
+
+    class Lucky:
+        """Few runs have a large error, many a small one."""
+
+        def __init__(self, job, files, maps, folder, resamples=0):
+            self.stage, self.resamples, self.published = job["stage"], resamples, {}
+
+        def __call__(self, methods, interpretation):
+            name = explained.name_of(interpretation)
+            asked.setdefault(self.stage, []).append(name)
+            error = 9.0 if self.stage in ("screened", "judged") else 1.0
+            luck = generator(f"{self.stage}/{name}").normal(0.0, error)
+            again = luck + generator(f"{name}/again").normal(0.0, error, self.resamples)
+            return Evaluated(interpretation, numbers([True]), {"table1": luck}, again)
+
+    monkeypatch.setattr(interpretations, "Evaluator", Lucky)
+    table = interpretations.found_by(job, {}, ROOT, ROOT, 1)["interpretations"]
+    confirmed = table[table["confirmed"]]
+    assert len(asked["finalists"]) == len(set(asked["finalists"])) == len(confirmed)
+    assert 3 <= len(confirmed) <= 5 + 1
+    # The best by the runs that choose among finalists, which the search has not seen.
+    best = confirmed.iloc[0]
+    assert best["score"] == pytest.approx(
+        max(generator(f"finalists/{name}").normal(0.0, 1.0) for name in asked["finalists"])
+    )
+    assert asked["fresh"] == [best["interpretation"]]
+    assert best["fresh_score"] == pytest.approx(
+        generator(f"fresh/{best['interpretation']}").normal(0.0, 1.0)
+    )
 
 
 PLANTED = [("song2016", 0), ("ma2020", 0), ("meledje", 0), ("meledje", 1), ("ma2020", 1)]
@@ -666,8 +821,8 @@ def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(
 ):
     study = studies["song2016"]
     job = choices.search_job(study) | {"most": 2}
-    for part in ("screened", "confirmed", "fresh"):
-        for table in job[part]["tables"].values():
+    for stage in choices.STAGES:
+        for table in job[stage]["tables"].values():
             for chunk in table["jobs"].values():
                 chunk["settings"] = chunk["settings"] | {"generations": 5, "population": 20}
                 chunk["repeats"] = [

@@ -5,8 +5,8 @@ Columns of interpretations.csv, one row per interpretation, the best first:
 
 - study, interpretation: its changes, such as `O2=0.9, O7=clamp`; `default` without any
 - in_words: what the paper's experiment would have been: each choice made, in words
-- confirmed: whether it was one of the best, which are judged by more runs; only these are compared
-  in what follows
+- confirmed: whether it was a finalist, or the default, which are judged by many runs; only these
+  are compared in what follows
 - one column per choice: its value, empty for the default
 - in_range, numbers: how many of the published numbers lie in range, and of how many
 - by_chance: how many would if each printed number were exchanged with another of its kind in the
@@ -16,8 +16,8 @@ Columns of interpretations.csv, one row per interpretation, the best first:
 - score: sum of the logarithms of the tables' likelihoods, by which interpretations that are not
   ruled out are compared
 - in_range_<table>: in_range by table
-- fresh_in_range, fresh_score: those of the best interpretation by runs of its own, with other
-  seeds, that the search did not see
+- fresh_in_range, fresh_score: those of the best interpretation by as many runs with other seeds,
+  that chose nothing
 
 Columns of explained.csv, one row per published number, those that no interpretation gives first:
 study, table, the table's keys, metric, statistic, value_published; default and best, whether it
@@ -49,12 +49,13 @@ DEFAULT = "default"
 
 class Evaluated(NamedTuple):
     """An interpretation with its numbers, one row each, as from `numbers_of`, and the logarithm of
-    the likelihood of each table.
+    the likelihood of each table; resampled: the scores that resampled runs give, if asked for.
     """
 
     interpretation: Interpretation
     numbers: pd.DataFrame
     likelihoods: dict[str, float]
+    resampled: np.ndarray = np.zeros(0)
 
     @property
     def impossible(self) -> int:
@@ -89,7 +90,10 @@ def together(interpretation: Interpretation, parts: list[Evaluated]) -> Evaluate
         for table, likelihood in each.likelihoods.items():
             likelihoods[table] = likelihoods.get(table, 0.0) + likelihood
     return Evaluated(
-        interpretation, pd.concat([each.numbers for each in parts], ignore_index=True), likelihoods
+        interpretation,
+        pd.concat([each.numbers for each in parts], ignore_index=True),
+        likelihoods,
+        sum(each.resampled for each in parts),
     )
 
 
@@ -110,8 +114,9 @@ def interpretations_table(
     fresh: Evaluated,
     choices: list[dict],
 ) -> pd.DataFrame:
-    """interpretations.csv. confirmed: the best, judged by more runs. screened: all, of which those
-    confirmed are left out. fresh: the very best, judged by runs with other seeds.
+    """interpretations.csv. confirmed: the default and the finalists, judged by many runs. screened:
+    all, of which those confirmed are left out. fresh: the best finalist, judged by as many runs
+    with other seeds.
     """
     rows, again = [], {name_of(evaluated.interpretation) for evaluated in confirmed}
     rest = [evaluated for evaluated in screened if name_of(evaluated.interpretation) not in again]
@@ -307,8 +312,10 @@ def section(
         "What a paper leaves open is varied together, and each such interpretation is scored by "
         "the joint likelihood of "
         "the printed numbers among "
-        "what experiments of the paper's size would print, by a search that judges the best ones "
-        "by more runs. A number is in range if it "
+        "what experiments of the paper's size would print. A search judges many by few runs; those "
+        "that may be the best, given the error of their scores, are finalists, among which 1,000 "
+        "runs with other seeds choose, and the chosen one is judged anew by 1,000 runs that chose "
+        "nothing. A number is in range if it "
         "lies in the central 95 % of these; but an interpretation whose runs vary widely refuses "
         "nothing, so beside the "
         "count stands how many "

@@ -21,9 +21,9 @@ import os
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -32,7 +32,7 @@ import pyarrow.parquet as parquet
 from bezierplan.analysis import comparison, explained, metrics, statistics, tables
 from bezierplan.analysis.explained import Evaluated, Interpretation, name_of, together
 from bezierplan.analysis.results import Results, joined, select
-from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search, whole
+from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search, whole, within_reach
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
@@ -48,8 +48,10 @@ logger = logging.getLogger(__name__)
 _BOUNDED, _ROUNDING = ("mean", "median", "min", "max"), 1e-9
 # Draws of whole experiments.
 EXPERIMENTS = 500
-# Interpretations that are judged by more runs.
-FINALISTS = 10
+# How often the runs of an interpretation are resampled for the error of its score.
+RESAMPLES = 25
+# So many times as many interpretations as there are finalists may be judged by all runs before.
+JUDGED = 3
 
 
 # One interpretation.
@@ -135,16 +137,17 @@ def under_metrics(
 
 
 def numbers_of(
-    results: Results, spec: Pivot, published: pd.DataFrame, name: str
-) -> tuple[pd.DataFrame, float]:
-    """The published numbers of a table under an interpretation, and the logarithm of their joint
-    likelihood.
+    results: Results, spec: Pivot, published: pd.DataFrame, name: str, resamples: int = 0
+) -> tuple[pd.DataFrame, float, np.ndarray]:
+    """The published numbers of a table under an interpretation, the logarithm of their joint
+    likelihood, and what it is by resampled runs (resamples,).
 
     results: the runs of the table's methods. spec: its description, restricted to the
-    interpretation's world. published: as from `comparison.read_published`. name: seeds the draws.
-    Columns: the table's keys, metric, statistic, value_published, low, high, in_range, possible (it
-    does not lie below what every run has at least). Seconds are left out; with fewer than
-    `statistics.LEAST_RUNS` runs no number is in range.
+    interpretation's world. published: as from `comparison.read_published`. name: seeds the draws,
+    so that interpretations are resampled alike. Columns: the table's keys, metric, statistic,
+    value_published, low, high, in_range, possible (it does not lie below what every run has at
+    least). Seconds are left out; with fewer than `statistics.LEAST_RUNS` runs no number is in
+    range.
     """
     keys_printed = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = keys_printed + [key for key in spec.key_columns if key not in keys_printed]
@@ -168,7 +171,7 @@ def numbers_of(
         for entry in spec.values
         if isinstance(entry.least or metrics.METRICS[entry.metric].least, str)
     }
-    rows, draws, least = [], [], []
+    rows, samples, least = [], [], []
     for number, row in both.iterrows():
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
             continue
@@ -204,7 +207,7 @@ def numbers_of(
         own = runs[np.logical_and.reduce([runs[key] == row[key] for key in keys_printed])].assign(
             value=measured[row["metric"]]
         )
-        draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))
+        samples.append(_Sample(_units(own, row), row["statistic"], size, name, number, enough))
         least.append(max(half / math.sqrt(3), _least_of_count(row, size)))
     frame = pd.DataFrame(
         rows,
@@ -219,34 +222,76 @@ def numbers_of(
             "possible",
         ],
     )
-    return frame, _likelihood(
-        frame["value_published"].to_numpy(dtype=float), np.array(draws), np.array(least), results
+    printed, floors = frame["value_published"].to_numpy(dtype=float), np.array(least)
+    drawn = np.array([_experiments(sample) for sample in samples])
+    again = [
+        _likelihood(
+            printed,
+            np.array([_experiments(_resampled(sample, number)) for sample in samples]),
+            floors,
+            results,
+        )
+        for number in range(resamples)
+    ]
+    return frame, _likelihood(printed, drawn, floors, results), np.array(again)
+
+
+class _Sample(NamedTuple):
+    """What experiments that print a number are drawn from. units: our values (n,), one a unit, or,
+    if an experiment lies within a group, those of each group. size: runs of the paper's experiment.
+    table, number: which number of which table it is. enough: whether the units suffice.
+    """
+
+    units: np.ndarray | list[np.ndarray]
+    statistic: str
+    size: int | None
+    table: str
+    number: int
+    enough: bool
+
+
+def _units(runs: pd.DataFrame, row: pd.Series) -> np.ndarray | list[np.ndarray]:
+    """The units of a number: repeats, layouts, or groups of these. runs: with the metric of each as
+    `value`.
+    """
+    if row["groups"]:
+        return [*row["groups"]]
+    return runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
+
+
+def _resampled(sample: _Sample, number: int) -> _Sample:
+    """A sample whose units are drawn from its own with replacement: the same ones for all numbers
+    of a table and under all interpretations.
+    """
+    count = len(sample.units)
+    chosen = generator(f"{sample.table}/resampled/{number}").integers(1 << 30, size=count) % count
+    return sample._replace(
+        units=[sample.units[place] for place in chosen]
+        if isinstance(sample.units, list)
+        else sample.units[chosen]
     )
 
 
-def _experiments(runs: pd.DataFrame, row: pd.Series, name: str) -> np.ndarray:
+def _experiments(sample: _Sample) -> np.ndarray:
     """A number of a table in experiments of the paper's size, drawn as a whole from its runs
     (EXPERIMENTS,): the same units, which are repeats or layouts, for all numbers of the table.
-    Experiments within a group are drawn for each number alone.
-
-    runs: with the metric of each as `value`.
+    Experiments within a group are drawn for each number alone. Nan without enough units.
     """
-    size = None if pd.isna(row["n"]) else int(row["n"])
-    if row["groups"]:
+    units, size, statistic = sample.units, sample.size, sample.statistic
+    if not sample.enough:
+        return np.full(EXPERIMENTS, np.nan)
+    if isinstance(units, list):
         drawn = statistics.predicted_within(
-            row["statistic"], row["groups"], size, generator(f"{name}/{row.name}/within")
+            statistic, units, size, generator(f"{sample.table}/{sample.number}/within")
         )
         return drawn[:: len(drawn) // EXPERIMENTS][:EXPERIMENTS]
-    values = runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
     # Of a number of runs that is not stated, a single one, as `statistics.prediction` has it.
-    chosen = generator(f"{name}/experiments").integers(
+    chosen = generator(f"{sample.table}/experiments").integers(
         1 << 30, size=(EXPERIMENTS, size or 1)
-    ) % len(values)
-    if not np.isnan(values).any():
-        return statistics.STATISTICS[row["statistic"]](values[chosen])
-    return np.array(
-        [statistics.statistic(row["statistic"], own[~np.isnan(own)]) for own in values[chosen]]
-    )
+    ) % len(units)
+    if not np.isnan(units).any():
+        return statistics.STATISTICS[statistic](units[chosen])
+    return np.array([statistics.statistic(statistic, own[~np.isnan(own)]) for own in units[chosen]])
 
 
 def _unit_columns(runs: pd.DataFrame) -> list[str]:
@@ -313,11 +358,14 @@ class Evaluator:
     agree on a method share its runs.
     """
 
-    def __init__(self, job: dict, files: dict[str, str], maps: Path, folder: Path) -> None:
+    def __init__(
+        self, job: dict, files: dict[str, str], maps: Path, folder: Path, resamples: int = 0
+    ) -> None:
         """job: as from `study.choices.interpretations_job`. files: published numbers, by table.
-        maps: where map files are looked up.
+        maps: where map files are looked up. resamples: how often runs are resampled for the error
+        of the score.
         """
-        self.job, self.maps, self.folder = job, maps, folder
+        self.job, self.maps, self.folder, self.resamples = job, maps, folder, resamples
         self.specs = {
             name: Pivot.model_validate(table["spec"]) for name, table in job["tables"].items()
         }
@@ -365,11 +413,15 @@ class Evaluator:
                 own = [job["method"] for job in jobs]
                 spec = spec.but(where=spec.where | {"method": own})
                 published = published[published["method"].isin(own)]
-            numbers, likelihood = numbers_of(
-                joined(runs, problems, bounds), spec, published, f"{self.job['study']}/{name}"
+            numbers, likelihood, resampled = numbers_of(
+                joined(runs, problems, bounds),
+                spec,
+                published,
+                f"{self.job['study']}/{name}",
+                self.resamples,
             )
             evaluated.append(
-                Evaluated(interpretation, numbers.assign(table=name), {name: likelihood})
+                Evaluated(interpretation, numbers.assign(table=name), {name: likelihood}, resampled)
             )
         whole = together(interpretation, evaluated)
         logger.info(
@@ -471,28 +523,41 @@ def _evaluated(task: Task) -> Evaluated | None:
 def found_by(
     job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int
 ) -> dict[str, pd.DataFrame]:
-    """The three tables of `explained`, by name, after the search for a study's best interpretation;
-    the best are judged again by more runs, and the very best anew, by runs with other seeds.
+    """The three tables of `explained`, by name, after the search for a study's best interpretation.
+
+    Few runs judge each interpretation that is tried, so that the best of them owes its score to
+    luck as well. So those within its reach are judged by more, then the finalists by many others,
+    which choose the best one; and as these runs were kind to the one that they chose, it is judged
+    anew by as many with seeds that chose nothing.
 
     job: as from `study.choices.search_job`.
     """
     parts = [Part(**part) for part in job["parts"]]
-    choices, study = job["screened"]["choices"], job["study"]
-    with evaluating(Evaluator(job["screened"], files, maps, folder), parts, processes) as evaluate:
+    choices, study, most = job["screened"]["choices"], job["study"], job["most_finalists"]
+
+    def by(stage: str, resamples: int = 0) -> AbstractContextManager[Evaluate]:
+        evaluator = Evaluator(job[stage], files, maps, folder, resamples)
+        return evaluating(evaluator, parts, processes)
+
+    with by("screened") as evaluate:
         tried = search(choices, parts, evaluate, study, job["most"])
-    more = Evaluator(job["confirmed"], files, maps, folder)
-    with evaluating(more, parts, processes) as evaluate:
-        confirmed = confirm(tried, parts, evaluate, FINALISTS)
+    near = [each.interpretation for each in tried.interpretations]
+    for stage, kept in (("screened", JUDGED * most), ("judged", most)):
+        with by(stage, RESAMPLES) as evaluate:
+            near = within_reach(near, parts, evaluate, kept)
+    with by("finalists") as evaluate:
+        confirmed = confirm(near, parts, evaluate)
     best = max(confirmed, key=lambda each: each.rank).interpretation
-    with evaluating(Evaluator(job["fresh"], files, maps, folder), parts, processes) as evaluate:
+    with by("fresh") as evaluate:
         fresh = whole(best, parts, evaluate)
     shared = {
         choice["id"]
         for choice in choices
         if sum(choice["id"] in part.choices for part in parts) > 1
     }
+    published = Evaluator(job["finalists"], files, maps, folder).published
     lines = {
-        name: (along, explained.yardstick(more.published[name], along))
+        name: (along, explained.yardstick(published[name], along))
         for name, along in job["along"].items()
     }
     return {

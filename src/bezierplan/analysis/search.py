@@ -29,7 +29,10 @@ DESIGN = 64
 # How many choices a kick changes: enough to leave a hill, few enough to keep what is good.
 KICKED = 2
 # After so many kicks in a row that asked for nothing new, everything near has been tried.
-STALE = 200
+STALE = 60
+# So many standard errors of the difference below the best score, an interpretation may still be the
+# best.
+REACH = 2.0
 # What a printed number that no run could have costs an interpretation in the climb: more than any
 # likelihood gives.
 RULED_OUT = 1e6
@@ -65,17 +68,21 @@ Evaluate = Callable[[list[Task]], list[Evaluated | None]]
 
 
 class _SpentError(Exception):
-    """No more parts may be evaluated."""
+    """A part may not be evaluated any more."""
 
 
 class _Book:
-    """What is known of each part, and what may still be spent."""
+    """What is known of each part, and how often each may still be evaluated. most: that, for each
+    part: one whose choices are many does not spend what others need.
+    """
 
     def __init__(
-        self, choices: list[dict], parts: list[Part], evaluate: Evaluate, most: int
+        self, choices: list[dict], parts: list[Part], evaluate: Evaluate, most: float
     ) -> None:
-        self.choices, self.parts, self.evaluate, self.left = choices, parts, evaluate, most
+        self.choices, self.parts, self.evaluate = choices, parts, evaluate
+        self.left = [most] * len(parts)
         self.known: list[dict[str, Evaluated | None]] = [{} for _ in parts]
+        self.values: list[dict[str, float]] = [{} for _ in parts]
         self.seen: dict[str, Interpretation] = {}
 
     def changed(self, interpretation: Interpretation, choice: str, value: Any) -> Interpretation:
@@ -92,27 +99,31 @@ class _Book:
 
     def ask(self, interpretations: list[Interpretation]) -> list[float]:
         """The values of interpretations, for which their unknown parts are evaluated in one batch.
-        Raises _SpentError if nothing may be spent.
+        Raises _SpentError if one of these may not be evaluated.
         """
         wanted: dict[tuple[int, str], Task] = {}
         for interpretation, part in itertools.product(interpretations, range(len(self.parts))):
             own = self.part_of(interpretation, part)
             if name_of(own) not in self.known[part]:
                 wanted[part, name_of(own)] = Task(part, own)
-        if wanted and self.left <= 0:
+        if any(self.left[part] <= 0 for part, _ in wanted):
             raise _SpentError
-        self.left -= len(wanted)
+        for part, _ in wanted:
+            self.left[part] -= 1
         for (part, name), found in zip(
             wanted, self.evaluate([*wanted.values()]) if wanted else [], strict=True
         ):
             self.known[part][name] = found
+            self.values[part][name] = (
+                found.score - RULED_OUT * found.impossible if found else -math.inf
+            )
         self.seen |= {name_of(interpretation): interpretation for interpretation in interpretations}
         return [self.value(interpretation) for interpretation in interpretations]
 
     def value(self, interpretation: Interpretation) -> float:
-        parts = self.evaluated(interpretation)
-        return (
-            sum(each.score - RULED_OUT * each.impossible for each in parts) if parts else -math.inf
+        return sum(
+            values[name_of(self.part_of(interpretation, part))]
+            for part, values in enumerate(self.values)
         )
 
     def evaluated(self, interpretation: Interpretation) -> list[Evaluated] | None:
@@ -150,18 +161,16 @@ def search(
     """The interpretations tried, up to a number, and all that is known of the parts.
 
     choices: with `id` and `values`, the default first, as None. name: seeds the design.
-    most: how many interpretations may be evaluated; one that shares parts with others costs only
-    the share that is new. All are, if there are no more than that.
+    most: how often each part may be evaluated. All interpretations are, if there are no more than
+    that.
     """
-    book = _Book(choices, parts, evaluate, most * len(parts))
-    try:
-        book.ask([{}])
-        if math.prod(len(choice["values"]) for choice in choices) <= most:
-            book.ask([*_all(choices)])
-        else:
-            _climb_on(choices, book, name)
-    except _SpentError:
-        pass
+    everything = math.prod(len(choice["values"]) for choice in choices) <= most
+    book = _Book(choices, parts, evaluate, math.inf if everything else most)
+    book.ask([{}])
+    if everything:
+        book.ask([*_all(choices)])
+    else:
+        _climb_on(choices, book, name)
     return book.found(listed)
 
 
@@ -181,13 +190,56 @@ def settled(interpretation: Interpretation, choices: list[dict]) -> Interpretati
     }
 
 
-def confirm(found: Found, parts: list[Part], evaluate: Evaluate, finalists: int) -> list[Evaluated]:
-    """The default and the best of the interpretations found, evaluated anew, such as with more
-    runs; the best first, after the default.
+def within_reach(
+    interpretations: list[Interpretation], parts: list[Part], evaluate: Evaluate, most: int
+) -> list[Interpretation]:
+    """Those that may be the best, the best first, up to a number: not ruled out, and with a score
+    no more than `REACH` standard errors of the difference below the best one.
+
+    interpretations: about in the order of their scores, the best first: after a batch of which none
+    may be the best the rest is not asked for. evaluate: with the scores of resampled runs. Of
+    interpretations with one score, which are one experiment under several names, the one with the
+    fewest choices stays.
     """
-    book = _Book([], parts, evaluate, (finalists + 1) * len(parts))
-    book.ask([each.interpretation for each in found.interpretations[: finalists + 1]])
-    return book.found(finalists).interpretations
+    book = _Book([], parts, evaluate, math.inf)
+    asked, near = [], []
+    for start in range(0, len(interpretations), most):
+        batch = interpretations[start : start + most]
+        book.ask(batch)
+        asked += [
+            together(interpretation, own)
+            for interpretation in batch
+            if (own := book.evaluated(interpretation))
+        ]
+        near = _near_the_best(asked)
+        if len(near) >= most or not any(each in batch for each in near):
+            break
+    return near[:most]
+
+
+def _near_the_best(evaluated: list[Evaluated]) -> list[Interpretation]:
+    ordered = sorted(
+        (each for each in evaluated if not each.impossible),
+        key=lambda each: (-each.score, len(each.interpretation)),
+    )
+    different = {each.score: each for each in reversed(ordered)}.values()
+    return [
+        each.interpretation
+        for each in reversed(different)
+        if ordered[0].score - each.score
+        <= REACH * np.std(ordered[0].resampled - each.resampled, ddof=1)
+    ]
+
+
+def confirm(
+    interpretations: list[Interpretation], parts: list[Part], evaluate: Evaluate
+) -> list[Evaluated]:
+    """The default and some interpretations, evaluated anew, such as by more runs; the best first,
+    after the default.
+    """
+    book = _Book([], parts, evaluate, math.inf)
+    book.ask([{}, *interpretations])
+    return book.found(len(interpretations)).interpretations
 
 
 def whole(interpretation: Interpretation, parts: list[Part], evaluate: Evaluate) -> Evaluated:
@@ -198,8 +250,8 @@ def whole(interpretation: Interpretation, parts: list[Part], evaluate: Evaluate)
 
 
 def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
-    """Climb from the default interpretation, then from kicks of the best one, until nothing may be
-    spent or nothing is new.
+    """Climb from the default interpretation, then from kicks of the best one, until nothing is new,
+    or too little may be evaluated.
     """
     interpretation = _climb({}, choices, book, generator(f"{name}/climb/0"))
     shared, own = _shared_and_own(choices, book.parts)
@@ -220,31 +272,38 @@ def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
         kicked_interpretation = interpretation
         for choice in kicked:
             kicked_interpretation = book.changed(kicked_interpretation, choice, drawn[choice])
-        before = book.left
-        kicked_interpretation = _climb(
-            kicked_interpretation, choices if group is shared else group, book, rng
-        )
-        if book.value(kicked_interpretation) >= book.value(interpretation):
-            interpretation = kicked_interpretation
-        stale = stale + 1 if book.left == before else 0
-        if stale == STALE:
+        before = sum(book.left)
+        climbed = _climb(kicked_interpretation, choices if group is shared else group, book, rng)
+        if climbed is not None and book.value(climbed) >= book.value(interpretation):
+            interpretation = climbed
+        stale = stale + 1 if sum(book.left) == before else 0
+        if stale == STALE or max(book.left) <= 0:
             return
 
 
 def _climb(
     interpretation: Interpretation, choices: list[dict], book: _Book, rng: np.random.Generator
-) -> Interpretation:
+) -> Interpretation | None:
     """Give one choice after the other its best value, in random order, until none improves the
-    score.
+    score. A choice stays as it is where its values may not be evaluated any more; None if the
+    interpretation to begin with may not.
     """
-    (best,) = book.ask([interpretation])
+    try:
+        (best,) = book.ask([interpretation])
+    except _SpentError:
+        return None
     order = [choices[place] for place in rng.permutation(len(choices))]
     unchanged = 0
     for choice in itertools.cycle(order):
-        others = [book.changed(interpretation, choice["id"], value) for value in choice["values"]]
-        values = book.ask(others)
-        place = int(np.argmax(values))
         unchanged += 1
+        others = [book.changed(interpretation, choice["id"], value) for value in choice["values"]]
+        try:
+            values = book.ask(others)
+        except _SpentError:
+            if unchanged >= len(order):
+                return interpretation
+            continue
+        place = int(np.argmax(values))
         if values[place] > best:
             interpretation, best, unchanged = others[place], values[place], 1
         if unchanged >= len(order):

@@ -14,6 +14,7 @@ differ in it); and what it governs:
 """
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +25,22 @@ from bezierplan.running.digest import content_digest
 from bezierplan.schema.model import one_or_list
 from bezierplan.study import alternatives, jobs
 from bezierplan.study.definition import Study, relative
+from bezierplan.study.experiments import SCALES
 from bezierplan.workspaces.kinds import file_keys
 
-SCREENED = 4
-"""The search judges interpretations by one of so many of the runs by which the best are judged."""
+STAGES = ("screened", "judged", "finalists", "fresh")
+"""What an interpretation is judged by: a share of the runs in the search, all of them if it may be
+the best, `MANY` others if it is a finalist, and once more so many others if it is chosen.
+"""
 
-FRESH = 1000
-"""With so many runs of each method on each problem, or on all fields drawn together, and other
-seeds, the best interpretation is judged anew.
+SCREENED = 4
+"""The search judges interpretations by one of so many of the runs by which those are judged that
+may be the best.
+"""
+
+MANY = 1000
+"""Runs of each method on each problem, or on all fields drawn together, that choose among the
+finalists; so many others judge the chosen one anew.
 """
 
 
@@ -174,32 +183,30 @@ def search_job(study: Study) -> dict[str, Any]:
     """What the search for an interpretation depends on, in addition to the files of maps and
     published numbers.
 
-    screened, confirmed, fresh: `interpretations_job` for the search, for the best that it finds,
-    and for the very best. parts: as `analysis.search.Part`. along: of some tables, the column along
-    which the paper says that its numbers rise or fall.
+    One key a stage (`STAGES`): its `interpretations_job`. most, finalists: how many interpretations
+    are tried, and how many may be finalists. parts: as `analysis.search.Part`. along: of some
+    tables, the column along which the paper says that its numbers rise or fall.
     """
     tables = printed_tables(study)
     along = {name: table.monotone[0].along for name, table in tables.items() if table.monotone}
     search = {
         "study": study.key,
         "most": study.interpretations_tried,
+        "most_finalists": study.interpretations_finalists,
         "parts": _parts(study),
         "along": along,
     }
-    return search | {
-        "screened": interpretations_job(study, SCREENED),
-        "confirmed": interpretations_job(study, 1),
-        "fresh": interpretations_job(study, fresh=True),
-    }
+    return search | {stage: interpretations_job(study, stage) for stage in STAGES}
 
 
-def interpretations_job(study: Study, share: int = 1, fresh: bool = False) -> dict[str, Any]:
-    """What interpretations are judged by: the jobs of their runs, and the problems of these.
+def interpretations_job(study: Study, stage: str = "judged") -> dict[str, Any]:
+    """What interpretations are judged by in a stage: the jobs of their runs, and the problems of
+    these.
 
-    share: a share of 1 / share of the runs that judge an interpretation, though at least as many as
-    are judged at all. Where there is one run in each layout, it is a share of the layouts, of which
-    twice those of scale full judge an interpretation. fresh: `FRESH` runs instead, whose repeats,
-    and layouts where there are more, come after all those.
+    Those screened have a share of the runs of those judged, though at least as many as are judged
+    at all. Where there is one run in each layout, it is a share of the layouts, of which twice
+    those of scale full judge an interpretation. Repeats of the later stages, and layouts where
+    there is one run in each, come after all those of the stages before.
     """
     tables, worlds = {}, {}
     for name, table in printed_tables(study).items():
@@ -214,31 +221,30 @@ def interpretations_job(study: Study, share: int = 1, fresh: bool = False) -> di
         )
         by_layout = drawn is not None and content.interpretations is None
         repeats = content.interpretations or content.repeats["full"]
-        scale = "extended" if by_layout else "full"
-        layouts = _layouts(drawn, share, fresh) if by_layout else None
+        layouts = _layouts(drawn, stage) if by_layout else None
+        placed = _with_layouts(study, table.experiment, layouts.stop) if by_layout else study
         methods = _methods(study, name, table)
         chunk_jobs = {
-            method: jobs.job(study, table.experiment, method, scale, 0).plain()
+            method: jobs.job(placed, table.experiment, method, "full", 0).plain()
             for method in methods
         }
-        world = jobs.problems_job(study, table.experiment, scale)
+        world = jobs.problems_job(placed, table.experiment, "full")
         for given in (world, *chunk_jobs.values()):
             given["problems"] = {
                 key: place
                 for key, place in given["problems"].items()
                 if layouts is None or place.get("layout") in layouts
             }
+        share = 1 if by_layout else SCREENED
+        many = -(-MANY // _in_one_world(table, world)) if drawn else MANY
+        stages = {
+            "screened": [0, _share(repeats, share, 1 if drawn else LEAST_RUNS)],
+            "judged": [0, repeats],
+            "finalists": [repeats, repeats + many],
+            "fresh": [repeats + many, repeats + 2 * many],
+        }
         for job in chunk_jobs.values():
-            if fresh:
-                job["repeats"] = [
-                    repeats,
-                    repeats + (-(-FRESH // len(job["problems"])) if drawn else FRESH),
-                ]
-            else:
-                job["repeats"] = [
-                    0,
-                    repeats if by_layout else _share(repeats, share, 1 if drawn else LEAST_RUNS),
-                ]
+            job["repeats"] = stages[stage]
         # What the paper does not define has no vote.
         voting = [entry.plain() for entry in table.values if entry.defined]
         spec = table.plain() | {"where": table.where | {"method": methods}, "values": voting}
@@ -253,15 +259,35 @@ def interpretations_job(study: Study, share: int = 1, fresh: bool = False) -> di
     }
 
 
-def _layouts(drawn: dict[str, int], share: int, fresh: bool) -> range:
-    """Numbers of the fields on which interpretations are judged; the fresh ones are those that no
-    other interpretation met, if there are such.
+def _layouts(drawn: dict[str, int], stage: str) -> range:
+    """Numbers of the fields on which interpretations are judged in a stage: the finalists, and then
+    the chosen one, on fields that no interpretation met before.
     """
     judged, most = min(2 * drawn["full"], drawn["extended"]), drawn["extended"]
-    return (
-        range(judged if judged < most else 0, most)
-        if fresh
-        else range(_share(judged, share, LEAST_RUNS))
+    many = max(judged, most - judged)
+    return {
+        "screened": range(_share(judged, SCREENED, LEAST_RUNS)),
+        "judged": range(judged),
+        "finalists": range(judged, judged + many),
+        "fresh": range(judged + many, judged + 2 * many),
+    }[stage]
+
+
+def _with_layouts(study: Study, experiment: str, layouts: int) -> Study:
+    """A study whose problems of an experiment have so many layouts at every scale."""
+    drawn = {
+        name: study.problems[name].but(layouts=dict.fromkeys(SCALES, layouts))
+        for name in study.experiments[experiment].problems
+        if study.problems[name].layouts
+    }
+    return replace(study, problems=study.problems | drawn)
+
+
+def _in_one_world(table: Pivot, world: dict) -> int:
+    """How many problems belong to the paper's own interpretation of the world."""
+    return sum(
+        all(problem.get(column, value) == value for column, value in table.primary.items())
+        for problem in world["problems"].values()
     )
 
 

@@ -42,6 +42,7 @@ class Study:
     experiments: dict[str, Experiment]
     baseline_comparison: BaselineComparison | None
     interpretations_tried: int
+    interpretations_finalists: int
     labels: dict[str, str]
     looks: dict[str, str]
     tables: dict[str, Table]

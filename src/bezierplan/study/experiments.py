@@ -354,5 +354,12 @@ class ExperimentsFile(Model):
         "`baseline_comparison.csv` for each method",
     )
     interpretations_tried: Count = Field(
-        60, description="how many interpretations `snakemake interpretations` tries at most"
+        60,
+        description="how many interpretations `snakemake interpretations` tries of each method at "
+        "most; of methods whose numbers are compared with each other, together",
+    )
+    interpretations_finalists: Count = Field(
+        10,
+        description="how many of them it judges by 1,000 runs at most: those whose likelihood is "
+        "within reach of the best",
     )

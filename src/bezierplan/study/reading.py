@@ -142,6 +142,7 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
         experiments=experiments.experiments,
         baseline_comparison=experiments.baseline_comparison,
         interpretations_tried=experiments.interpretations_tried,
+        interpretations_finalists=experiments.interpretations_finalists,
         labels=artefacts.labels,
         looks=artefacts.looks,
         tables=artefacts.tables,
