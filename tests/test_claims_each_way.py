@@ -601,6 +601,16 @@ def sequences(monkeypatch, truth):
     return {}, None
 
 
+def starts(monkeypatch, truth):
+    """The circle map is not sensitive to its start; the logistic map is."""
+    if truth:
+        own = tharwat2018.chaotic_maps.sequence
+        monkeypatch.setattr(
+            tharwat2018.chaotic_maps, "sequence", lambda _, *given: own("logistic", *given)
+        )
+    return {}, None
+
+
 def paths(monkeypatch, truth):
     points = [0.0, 0.0, 1.0, 2.0, 3.0, 2.0, 4.0, 0.0]
     rows = pd.DataFrame(
@@ -682,6 +692,7 @@ BY_HAND = {
     ("tharwat2018", "C17"): classes,
     ("tharwat2018", "C20"): boxes,
     ("tharwat2018", "C39"): sequences,
+    ("tharwat2018", "C46"): starts,
     ("ma2020", "C6"): clearances,
     ("ma2020", "C16"): coverage,
     ("ma2020", "C18"): quoted,
