@@ -201,6 +201,29 @@ def test_drawn_mutations_have_the_settings_in_force():
     )
 
 
+def test_drawn_mutations_mark_the_node_that_changes_the_one_in_its_place_and_the_others():
+    marks = drawing.data(
+        meledje.mutations(workspace("operators"), **arguments("meledje", "mutations")),
+        options_of(drawing),
+    )
+    for operator, own in marks.groupby("operator"):
+        places = {
+            label: set(zip(dots["x"], dots["y"]))
+            for label, dots in own[own["mark"] == "dots"].groupby("label")
+        }
+        before, after = (
+            set(zip(line["x"], line["y"]))
+            for line in (
+                own[(own["mark"] == "line") & (own["label"] == name)]
+                for name in ("before", "after")
+            )
+        )
+        assert places["node that changes"] == before - after, operator
+        # It may take the place of the target.
+        assert after - before <= places["node in its place"] <= after, operator
+        assert places["node"] | places["start"] | places["target"] == before & after, operator
+
+
 def test_drawn_mutations_show_what_is_said_of_them():
     home = workspace("operators")
     ground = ground_of(home, 1.0)

@@ -211,8 +211,11 @@ def _mutation(
                     "group": "tried",
                     "label": "cells tried",
                 }
+    for x, y in [*first[1:k], *first[k + 1 : -1]]:
+        yield {"mark": "dots", "role": "third", "x": x, "y": y, "group": "others", "label": "node"}
     for role, label, (x, y) in (
         ("first", "node that changes", first[k]),
+        ("accent", "node in its place", second[k]),
         ("start", "start", first[0]),
         ("target", "target", first[-1]),
     ):
