@@ -611,6 +611,16 @@ def starts(monkeypatch, truth):
     return {}, None
 
 
+def optima(monkeypatch, truth):
+    """False: the last circles are in no layout's way."""
+    rows = pd.DataFrame(itertools.product(range(8), range(1, 11)), columns=["layout", "obstacles"])
+    growing = rows["obstacles"] if truth else rows["obstacles"].clip(upper=8)
+    rows["bound"] = 7.2 + 0.1 * growing + 0.01 * rows["layout"]
+    return results_of(
+        rows.assign(repeat=0), "obstacles", method="cpso2_singer", profile="default"
+    ), None
+
+
 def paths(monkeypatch, truth):
     points = [0.0, 0.0, 1.0, 2.0, 3.0, 2.0, 4.0, 0.0]
     rows = pd.DataFrame(
@@ -693,6 +703,7 @@ BY_HAND = {
     ("tharwat2018", "C20"): boxes,
     ("tharwat2018", "C39"): sequences,
     ("tharwat2018", "C46"): starts,
+    ("tharwat2018", "C48"): optima,
     ("ma2020", "C6"): clearances,
     ("ma2020", "C16"): coverage,
     ("ma2020", "C18"): quoted,

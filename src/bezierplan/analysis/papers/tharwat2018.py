@@ -286,6 +286,22 @@ def _exponent(
     return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
 
 
+def optimum_grows(
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, None, int]:
+    """Claim C48: whether the exact shortest path is longer, in the mean over layouts, with each
+    number of obstacles than with the one before.
+
+    The effect is the relative growth from the fewest to the most obstacles, the units are the
+    layouts.
+    """
+    runs = select(results[check.experiment].runs, check.where)
+    optima = runs.groupby(["layout", "obstacles"])["bound"].first().unstack("obstacles")
+    means = optima.mean().to_numpy()
+    growth = float(means[-1] / means[0] - 1)
+    return "+" if (np.diff(means) > 0).all() else "-", growth, None, len(optima)
+
+
 def bowl_with_local_minima(
     check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
