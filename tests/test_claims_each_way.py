@@ -612,9 +612,9 @@ def starts(monkeypatch, truth):
 
 
 def optima(monkeypatch, truth):
-    """False: the last circles are in no layout's way."""
+    """False: further circles are in no layout's way."""
     rows = pd.DataFrame(itertools.product(range(8), range(1, 11)), columns=["layout", "obstacles"])
-    growing = rows["obstacles"] if truth else rows["obstacles"].clip(upper=8)
+    growing = rows["obstacles"] if truth else 1
     rows["bound"] = 7.2 + 0.1 * growing + 0.01 * rows["layout"]
     return results_of(
         rows.assign(repeat=0), "obstacles", method="cpso2_singer", profile="default"

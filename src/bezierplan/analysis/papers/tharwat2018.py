@@ -40,7 +40,7 @@ RIM = 0.01  # least height of a valley's edge above its lowest node, as a share 
 
 SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # discarded from each of them
-STARTS, LONG = 20, 500  # sequences of each map whose exponents are taken, and their lengths
+DIVERGING, LONG = 20, 500  # sequences of each map whose exponents are taken, and their lengths
 # That map has none.
 NO_PARAMETERS = chaotic_maps.Parameters(*[math.nan] * len(chaotic_maps.Parameters._fields))
 
@@ -265,13 +265,14 @@ def sensitive_to_start(
     parameters = chaotic_maps.Parameters(singer_mu, singer_x4, sine_a, piecewise_p, sinusoidal_a)
     rng = np.random.default_rng(0)
     exponents = {
-        name: [_exponent(rng, name, apart, parameters) for _ in range(STARTS)] for name in CHAOTIC
+        name: [_exponent(rng, name, apart, parameters) for _ in range(DIVERGING)]
+        for name in CHAOTIC
     }
     least = np.array(min(exponents.values(), key=np.mean))
-    reach = 1.96 * float(least.std(ddof=1)) / math.sqrt(STARTS)
+    reach = 1.96 * float(least.std(ddof=1)) / math.sqrt(DIVERGING)
     low, high = float(least.mean()) - reach, float(least.mean()) + reach
     mark = "+" if low > 0 else "-" if high < 1 / iterations else "?"
-    return mark, float(least.mean()), (low, high), STARTS
+    return mark, float(least.mean()), (low, high), DIVERGING
 
 
 def _exponent(
@@ -288,18 +289,18 @@ def _exponent(
 
 def optimum_grows(
     check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, None, int]:
-    """Claim C48: whether the exact shortest path is longer, in the mean over layouts, with each
-    number of obstacles than with the one before.
+) -> tuple[str, float, tuple[float, float], int]:
+    """Claim C48: whether the exact shortest path of a layout grows from the fewest to the most
+    obstacles, in the mean over layouts.
 
-    The effect is the relative growth from the fewest to the most obstacles, the units are the
-    layouts.
+    The effect is the mean relative growth with its interval; the units are the layouts.
     """
     runs = select(results[check.experiment].runs, check.where)
     optima = runs.groupby(["layout", "obstacles"])["bound"].first().unstack("obstacles")
-    means = optima.mean().to_numpy()
-    growth = float(means[-1] / means[0] - 1)
-    return "+" if (np.diff(means) > 0).all() else "-", growth, None, len(optima)
+    growth = (optima.iloc[:, -1] / optima.iloc[:, 0] - 1).to_numpy()
+    low, high = statistics.interval("mean", growth, generator("tharwat2018/C48"))
+    mark = "+" if low > 0 else "-" if high <= 0 else "?"
+    return mark, float(growth.mean()), (low, high), len(growth)
 
 
 def bowl_with_local_minima(
