@@ -2,11 +2,14 @@
 and starts.
 """
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bezierplan.analysis.papers import tharwat2018
 from bezierplan.planners.parts.chaotic_maps import MAPS, Parameters, random_start, sequence
 
 PARAMETERS = Parameters(
@@ -34,6 +37,22 @@ def test_first_values(name, expected):
     assert sequence(name, expected[0], len(expected), PARAMETERS).values == pytest.approx(
         expected, abs=5e-11, rel=1e-9
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "exponent"),
+    [
+        ("gauss", math.pi**2 / (6 * math.log(2))),
+        ("logistic", math.log(2)),
+        ("tent", -0.7 * math.log(0.7) - 0.3 * math.log(0.3)),  # slopes 1 / 0.7 and 1 / 0.3
+        ("circle", 0.0),
+    ],
+)
+def test_lyapunov_exponents_are_the_known_ones(name, exponent):
+    """How fast two sequences part that begin close to each other, as claim C46 measures it."""
+    rng = np.random.default_rng(1)
+    found = [tharwat2018._exponent(rng, name, 1e-9, PARAMETERS) for _ in range(20)]
+    assert np.mean(found) == pytest.approx(exponent, abs=0.05)
 
 
 def test_the_fourth_value_of_gauss_is_what_rounding_leaves_of_zero():

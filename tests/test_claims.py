@@ -106,6 +106,30 @@ def marks(claim: dict, *runs: pd.DataFrame, **material) -> list[str]:
     return judge(claim, *runs, **material)[1]["mark"].to_list()
 
 
+@pytest.mark.parametrize("statistic", ["rank", "mean", "median"])
+@pytest.mark.parametrize(("value", "mark"), [(5100, "+"), (5995, "0"), (7000, "-")])
+def test_two_constants_that_differ_have_a_mark_and_no_p(statistic, value, mark):
+    """As numbers of evaluations that settings fix: nothing varies by chance."""
+    runs = table({"a": np.full(60, value), "b": np.full(60, 6000)})
+    check = {
+        "test": "lower",
+        "experiment": "tried",
+        "metric": "objective",
+        "groups": ["a"],
+        "than": ["b"],
+        "direction": "lower",
+        "statistic": statistic,
+        "margin": 10,
+    }
+    _, checks = judge({"checks": [check]}, runs)
+    (row,) = checks.to_dict("records")
+    assert (row["mark"], row["mark_family"]) == (mark, mark)
+    assert math.isnan(row["p"])
+    assert math.isnan(row["p_family"])
+    varying = table({name: sample(name, mean) for name, mean in {"a": value, "b": 6000}.items()})
+    assert not math.isnan(judged(check, varying)["p"])
+
+
 def together(*findings: Finding) -> tuple[str, int]:
     """The mark of comparisons that are judged as one, and which of them decides."""
     found, decisive = verdicts.conjunction(findings)

@@ -601,6 +601,26 @@ def sequences(monkeypatch, truth):
     return {}, None
 
 
+def starts(monkeypatch, truth):
+    """The circle map is not sensitive to its start; the logistic map is."""
+    if truth:
+        own = tharwat2018.chaotic_maps.sequence
+        monkeypatch.setattr(
+            tharwat2018.chaotic_maps, "sequence", lambda _, *given: own("logistic", *given)
+        )
+    return {}, None
+
+
+def optima(monkeypatch, truth):
+    """False: further circles are in no layout's way."""
+    rows = pd.DataFrame(itertools.product(range(8), range(1, 11)), columns=["layout", "obstacles"])
+    growing = rows["obstacles"] if truth else 1
+    rows["bound"] = 7.2 + 0.1 * growing + 0.01 * rows["layout"]
+    return results_of(
+        rows.assign(repeat=0), "obstacles", method="cpso2_singer", profile="default"
+    ), None
+
+
 def paths(monkeypatch, truth):
     points = [0.0, 0.0, 1.0, 2.0, 3.0, 2.0, 4.0, 0.0]
     rows = pd.DataFrame(
@@ -682,6 +702,8 @@ BY_HAND = {
     ("tharwat2018", "C17"): classes,
     ("tharwat2018", "C20"): boxes,
     ("tharwat2018", "C39"): sequences,
+    ("tharwat2018", "C46"): starts,
+    ("tharwat2018", "C48"): optima,
     ("ma2020", "C6"): clearances,
     ("ma2020", "C16"): coverage,
     ("ma2020", "C18"): quoted,

@@ -299,6 +299,19 @@ def test_paths_data_holds_all_that_is_drawn():
     np.testing.assert_array_equal(parts["hull"][0], parts["hull"][-1])
 
 
+def test_points_of_a_polyline_are_nodes():
+    """Not control points, which are not on the curve; and no node is told to be one of several in
+    one place.
+    """
+    found = results()
+    runs = found.runs.assign(path_curve="polyline")
+    frame = paths.data(found._replace(runs=runs), options_of(paths, pick=LOWEST, control="points"))
+    nodes = frame.loc[frame["part"] == "nodes", ["x", "y"]].to_numpy()
+    np.testing.assert_array_equal(nodes.ravel(), found.runs["path_points"][1])
+    assert "points" not in set(frame["part"])
+    assert not any("distinct" in line for line in paths._note(frame, "m"))
+
+
 def test_paths_side_by_side(tmp_path):
     found = results()
     other = found.runs.assign(
@@ -883,6 +896,17 @@ def test_workspace_numbers(numbers, printed):
     centre = frame[frame["number"] == 7]
     if printed:
         assert (centre["x"].item(), centre["y"].item()) == grid().centre(7)
+
+
+@pytest.mark.parametrize(("heights", "named"), [([0, 1, 2, 3], 4), (range(12), 2)])
+def test_every_height_is_named_unless_there_are_many(heights, named):
+    from matplotlib.figure import Figure
+
+    cells = pd.DataFrame({"part": "free", "x": 0.5, "y": 0.5, "size": 1.0, "height": [*heights]})
+    axes = Figure().add_subplot()
+    workspace._draw_heights(axes, cells)
+    labels = [each.get_label() for each in axes.collections]
+    assert sum(label.startswith("height ") for label in labels) == named
 
 
 def test_embedding_marks_surplus_cells():

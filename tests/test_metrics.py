@@ -257,6 +257,14 @@ def test_clearance_to_occupied_cells_does_not_count_the_border(points, clearance
     assert value("obstacle_clearance", "polyline", points) == pytest.approx(clearance, abs=1e-8)
 
 
+def test_only_paths_that_keep_the_safety_distance_have_that_length():
+    paths = [("polyline", [(0, 0), (0, 40)])] * 3
+    table = runs(paths, length=[40.0] * 3, safety_distance=[9.0, 11.0, math.nan])
+    kept, *others = metrics.values(table, "length_at_distance", PROBLEMS)
+    assert kept == 40.0
+    assert np.isnan(others).all()
+
+
 def test_clearance_in_an_empty_grid_is_infinite():
     empty = {
         "across": PROBLEMS["across"]._replace(workspace=from_lines(["..", ".."], 20.0, "unit"))

@@ -547,6 +547,11 @@ def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarr
     return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
 
 
+def length_at_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Lengths (n,) of the paths that keep their planner's safety distance; NaN of all others."""
+    return runs["length"].where(keeps_distance(runs, problems) == 1).to_numpy()
+
+
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
     """Number of the points (n, 2), in units, in occupied cells; a point on a grid line belongs to
     the cell above or to the right.

@@ -196,6 +196,14 @@ METRICS: dict[str, Metric] = {
         needs=("safety_distance",),
         on=("grid",),
     ),
+    "length_at_distance": Metric(
+        "u",
+        "length of a path that keeps the planner's safety distance",
+        True,
+        measures.length_at_distance,
+        needs=("safety_distance",),
+        on=("grid",),
+    ),
     "collision_depth": Metric(
         "u", "largest depth of the path in obstacles or beyond the border", False
     ),

@@ -177,7 +177,10 @@ def report(
         "on which others were tried, at the paper's number of runs. `verdict_papers_size`: the "
         "verdict from as many runs as the paper "
         "made; `replication_probability`: how often an experiment of that size shows what the "
-        "claim says. Interpretations that do not "
+        "claim says. Comparisons of a claim are corrected by the procedure of Benjamini and "
+        "Hochberg: it bounds the share of false discoveries, a weaker promise than Holm's, which "
+        "bounds the chance of a single one. Margins, the smallest effects that count, are ours; "
+        "no paper gives one. Interpretations that do not "
         "decide are left out here; `numbers.csv` and `claims.csv` have them.",
         *baseline_comparison.section(measured, titles),
         *(explained.section(*interpretations, titles) if interpretations else []),

@@ -127,7 +127,7 @@ class Judged(NamedTuple):
 class Limits(NamedTuple):
     """What a comparison could find, and the printed numbers."""
 
-    margin: Annotated[float, Column("the smallest effect that matters")]
+    margin: Annotated[float, Column("the smallest effect that matters, a choice of ours")]
     least_detectable: Annotated[
         float,
         Column("the effect detected with a power of 0.8; empty where the units do not differ"),

@@ -244,7 +244,8 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     If the four lattice methods plan on cells, each of their shortest and longest paths has the
     length of an 8-connected path: all minima do, the maxima do not. No path is shorter than the
     straight line. Shares of occupied cells are whole numbers of cells. Statements in the text about
-    lengths and times are checked against the tables.
+    lengths and times are checked against the tables, that on the parameter of a curve and equation
+    (11) by computing.
     """
     tables = {name: published[name] for name in ("table1", "table2")}
     side = _side(published)
@@ -324,6 +325,15 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     rows.append(
         _said("text", "3.2, equation (11)", rule, inside, side * side, inside == side * side)
     )
+    # One curve refutes a sentence about all: its points lie on a line, two of them at the start.
+    text = published["text_values"].set_index("quantity")["value"]
+    quarter = float(text["t of a quarter of the path"])
+    share = float(curves.bernstein(2, np.array([quarter]))[0] @ np.array([0.0, 0.0, 1.0]))
+    rule = (
+        f"a curve is a quarter of the way along at t = {quarter:g}: share of the way of the curve "
+        "with control points at 0, 0 and 1"
+    )
+    rows.append(_said("text", "2, equation (1)", rule, quarter, share, abs(share - quarter) < 1e-9))
     listed = int((published["parameters"]["parameter"] == "control_points").sum())
     rule = (
         "Data Availability: all required parameters are listed, here: the number of control points"

@@ -40,6 +40,7 @@ RIM = 0.01  # least height of a valley's edge above its lowest node, as a share 
 
 SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # discarded from each of them
+DIVERGING, LONG = 20, 500  # sequences of each map whose exponents are taken, and their lengths
 # That map has none.
 NO_PARAMETERS = chaotic_maps.Parameters(*[math.nan] * len(chaotic_maps.Parameters._fields))
 
@@ -237,6 +238,69 @@ def gauss_above(
     share = float(np.mean(shares))
     reach = 1.96 * float(np.std(shares, ddof=1)) / math.sqrt(SEQUENCES)
     return "-" if share > 0 else "+", share, (share - reach, share + reach), SEQUENCES
+
+
+def sensitive_to_start(
+    check: "function.Options",
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    apart: float,
+    iterations: int,
+    singer_mu: float,
+    singer_x4: float,
+    sine_a: float,
+    piecewise_p: float,
+    sinusoidal_a: float,
+) -> tuple[str, float, tuple[float, float], int]:
+    """Claim C46: whether every map of the paper is sensitive to its first value.
+
+    The effect is the least Lyapunov exponent of a map: the mean logarithm by which a difference
+    grows in an iteration, measured with differences of `apart`. The interval is that of the mean
+    over sequences, each one unit. + if it lies above 0, - if a difference grows less than e-fold in
+    as many iterations as a run has.
+
+    The other arguments: parameters of the maps, as in `chaotic_maps.Parameters`.
+    """
+    parameters = chaotic_maps.Parameters(singer_mu, singer_x4, sine_a, piecewise_p, sinusoidal_a)
+    rng = np.random.default_rng(0)
+    exponents = {
+        name: [_exponent(rng, name, apart, parameters) for _ in range(DIVERGING)]
+        for name in CHAOTIC
+    }
+    least = np.array(min(exponents.values(), key=np.mean))
+    reach = 1.96 * float(least.std(ddof=1)) / math.sqrt(DIVERGING)
+    low, high = float(least.mean()) - reach, float(least.mean()) + reach
+    mark = "+" if low > 0 else "-" if high < 1 / iterations else "?"
+    return mark, float(least.mean()), (low, high), DIVERGING
+
+
+def _exponent(
+    rng: np.random.Generator, name: str, apart: float, parameters: chaotic_maps.Parameters
+) -> float:
+    """The Lyapunov exponent, per iteration, of a map's sequence from a random start."""
+    start = chaotic_maps.random_start(rng, name, parameters)
+    values = chaotic_maps.sequence(name, start, LONG, parameters).values
+    beside = np.where(values[:-1] < 0.5, values[:-1] + apart, values[:-1] - apart)
+    following = [chaotic_maps.sequence(name, each, 2, parameters).values[1] for each in beside]
+    grown = np.abs(np.array(following) - values[1:]) / np.abs(beside - values[:-1])
+    return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
+
+
+def optimum_grows(
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, tuple[float, float], int]:
+    """Claim C48: whether the exact shortest path of a layout grows from the fewest to the most
+    obstacles, in the mean over layouts.
+
+    The effect is the mean relative growth with its interval; the units are the layouts.
+    """
+    runs = select(results[check.experiment].runs, check.where)
+    optima = runs.groupby(["layout", "obstacles"])["bound"].first().unstack("obstacles")
+    growth = (optima.iloc[:, -1] / optima.iloc[:, 0] - 1).to_numpy()
+    low, high = statistics.interval("mean", growth, generator("tharwat2018/C48"))
+    mark = "+" if low > 0 else "-" if high <= 0 else "?"
+    return mark, float(growth.mean()), (low, high), len(growth)
 
 
 def bowl_with_local_minima(

@@ -74,6 +74,7 @@ _LOOK = {
         "label": "control points and polygon",
     },
     "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
+    "nodes": {**_CONTROL_POINT, "linestyle": "", "label": "nodes"},
     "occupied": {
         **_CONTROL_POINT,
         "linestyle": "",
@@ -366,7 +367,8 @@ def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
     if path.curve in curves.B_SPLINES and control == "all":
         drawn["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
     if path.curve != "ferguson" and control != "none":
-        drawn["control" if control == "all" else "points"] = path.points
+        alone = "nodes" if path.curve == "polyline" else "points"
+        drawn["control" if control == "all" else alone] = path.points
     return drawn | {"path": steps(path)}
 
 

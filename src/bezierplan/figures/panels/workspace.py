@@ -68,6 +68,9 @@ _MOST_CELLS = 2500
 # would hide what they surround.
 _MOST_OUTLINES = 10_000
 
+# Up to so many heights are named in the legend.
+_MOST_HEIGHTS = 5
+
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
@@ -209,6 +212,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xticks([])
     axes.set_yticks([])
     side = numbered["size"].iloc[0]
+    if (side, unit) == (1, "cell"):
+        return Note()
     return Note(
         f"cells of {side:g} x {side:g} "
         f"{unit}{'s' if side != 1 and unit in ('unit', 'cell') else ''}"
@@ -291,13 +296,14 @@ def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
-    """Shade free cells by their height; the legend names the lowest and the highest."""
+    """Shade free cells by their height; the legend names every height, or of many the lowest and
+    the highest.
+    """
     low, high = cells["height"].min(), cells["height"].max()
+    named = (low, high) if cells["height"].nunique() > _MOST_HEIGHTS else cells["height"].unique()
     for height, own in cells.groupby("height"):
         look = {"facecolor": style.ground((height - low) / (high - low) if high > low else 0.0)}
-        _draw_cells(
-            axes, own, look | ({"label": f"height {height:g}"} if height in (low, high) else {})
-        )
+        _draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in named else {}))
 
 
 def _circles(circles: pd.DataFrame) -> list[Circle]:

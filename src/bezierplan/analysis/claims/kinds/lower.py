@@ -25,6 +25,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.effects import (
+    ALPHA,
     BETWEEN_GROUPS,
     SIDES,
     Comparison,
@@ -154,9 +155,32 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
     reason = why_none(p) or ("" if toward else no_difference(low, high, n))
     negligible = not infinite and is_negligible(low, high, margin, n, side * least)
-    return finding._replace(
+    finding = finding._replace(
         negligible=negligible, least_detectable=least_detectable(low, high, n), reason=reason
     )
+    return _without_p(finding) if ours and _are_constant(comparison) else finding
+
+
+def _are_constant(comparison: Comparison) -> bool:
+    """Whether each cell has one and the same number in all its units, in every condition."""
+    cells = [
+        values
+        for stratum in comparison.strata.values()
+        for values in counted(stratum, comparison.paired)
+    ]
+    return not comparison.boolean and all(
+        np.isfinite(values).all() and np.ptp(values) == 0 for values in cells
+    )
+
+
+def _without_p(finding: Finding) -> Finding:
+    """The finding on two constants that differ, with the mark that its p gives, and no p: nothing
+    varies by chance.
+    """
+    side = {1: "+", -1: "-"}.get(finding.toward if finding.p < ALPHA else 0)
+    mark = side or ("0" if finding.negligible else "?")
+    reason = finding.reason or "both are constant, so there is no p"
+    return finding._replace(mark=mark, p=math.nan, reason=reason)
 
 
 def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
