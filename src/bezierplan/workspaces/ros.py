@@ -81,7 +81,7 @@ def read(
 ) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
 
-    turned: whether its yaw may be other than 0; the grid is the map before it is turned.
+    turned: whether its yaw may be other than 0.
 
     folder: where the image must lie, also through links. robot_radius: in units; cells that come
     closer than that to an occupied cell or to the border also count as occupied. largest: size of a
@@ -128,6 +128,7 @@ def _grid(
         float(content["resolution"]),
         unit,
         (float(content["origin"][0]), float(content["origin"][1])),
+        yaw=content["origin"][2],
     )
 
 
@@ -213,13 +214,6 @@ def _content(file: Path) -> dict[str, Any]:
         "negate": negate,
         "origin": [*origin[:2], yaw if abs(yaw) > SMALLEST_YAW else 0.0],
     }
-
-
-def yaw_of(file: Path) -> float:
-    """By how much a map_server YAML file turns its map about its origin, in radians, from -pi to
-    pi. Raises ValueError as `read` does.
-    """
-    return _content(file)["origin"][2]
 
 
 def _is_number(value: Any) -> bool:
