@@ -201,7 +201,7 @@ class Judged:
                 f"lateral_acceleration: {lateral_acceleration:g}: the path has corners, which no "
                 f"speed keeps it at; expected a turning radius that is kept"
             )
-        points = self.sample(step=step or self.length / 1000)
+        points = self._spaced(step)
         more = {}
         if speed is not None:
             allowed = samples.speeds(
@@ -217,13 +217,17 @@ class Judged:
         from bezierplan.geometry import path_files
 
         verdict = {"feasible": self.feasible, "length": self.length, "clearance": self.clearance}
-        path_files.write_geojson(File(file), self.sample(step=step or self.length / 1000), verdict)
+        path_files.write_geojson(File(file), self._spaced(step), verdict)
 
     def to_ros(self, file: str | File, *, step: float | None = None, frame: str = "map") -> None:
         """Write the path as a `nav_msgs/Path` message in YAML, as `ros2 topic pub` reads it."""
         from bezierplan.geometry import path_files
 
-        path_files.write_ros(File(file), self.sample(step=step or self.length / 1000), frame)
+        path_files.write_ros(File(file), self._spaced(step), frame)
+
+    def _spaced(self, step: float | None) -> Samples:
+        """Samples for a file. A path of no length has two, whatever their distance."""
+        return self.sample(step=(self.length / 1000 or 1.0) if step is None else step)
 
     def _path(self) -> Path:
         if self.path is None:

@@ -788,12 +788,7 @@ def _scenario(options: Namespace, described: dict, workspace: Workspace) -> dict
         raise Fault(
             f"--scenario: {options.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1"
         )
-    return problems.scenario(
-        described | {"scenarios": str(File(file).resolve())},
-        int(number),
-        workspace,
-        options.map.parent,
-    )
+    return problems.scenario(described | {"scenarios": file}, int(number), workspace, File())
 
 
 def _write(arguments: Namespace, judged: api.Judged) -> None:
