@@ -12,6 +12,7 @@ import yaml
 from fields import BENCHMARK_MAPS
 from PIL import Image
 
+import bezierplan as bp
 from bezierplan.__main__ import main
 from bezierplan.commands.plan import EXAMPLES
 from bezierplan.geometry import shortest_paths
@@ -173,6 +174,13 @@ def test_a_path_of_no_length_is_written_too(capsys, tmp_path, suffix):
     if suffix == "csv":
         rows = np.loadtxt(out, delimiter=",", skiprows=1)
         assert rows[:, :3].tolist() == [[0.0, 2.0, 10.0]] * 2
+
+
+def test_a_step_of_0_in_python_is_refused_like_that_of_the_command(tmp_path):
+    room = bp.Grid(np.zeros((4, 4), dtype=bool), cell=1.0, unit="m")
+    answer = bp.plan(bp.Problem("room", room, (0.5, 0.5), (3.5, 3.5)))
+    with pytest.raises(ValueError, match=r"step: 0; expected a number above 0"):
+        answer.to_csv(tmp_path / "path.csv", step=0)
 
 
 FAULTS = {
