@@ -194,7 +194,7 @@ MAPS = {
     "a vertical tab": ("txt", "....\n.\x0b#.\n", "line 2: unknown character '\\x0b'"),
     "a form feed": ("txt", "..\x0c..\n.....\n", "line 1: unknown character '\\x0c'"),
     "a line separator": ("txt", "..\u2028..\n", "line 1: unknown character '\\u2028'"),
-    "trailing spaces": ("txt", ".... \n....\n", "line 1: unknown character ' '"),
+    "a space before cells": ("txt", "....\n ....\n", "line 2: unknown character ' '"),
     "full-width dots": ("txt", "....\n．．．．\n", "line 2: unknown character"),
     "a blank line within": ("txt", "....\n\n....\n", "line 2 has 0 cells, the first line has 4"),
     "only blank lines": ("txt", "\n\n\n", "the map is empty"),
@@ -310,6 +310,16 @@ MAPS = {
     ),
     "a huge resolution": ("yaml", ROS.replace("0.5", "9" * 5000), "expected a number"),
     "a resolution twice": ("yaml", ROS + "resolution: 1\n", "resolution: this key is given twice"),
+    "a resolution in quotes": (
+        "yaml",
+        ROS.replace("resolution: 0.5", "resolution: '0.5'"),
+        "resolution: '0.5'; expected a number",
+    ),
+    "a yaw in quotes": (
+        "yaml",
+        ROS.replace("[-1.0, 2.0, 0.0]", "[-1.0, 2.0, '0.3']"),
+        "origin: yaw '0.3'; expected a number of radians",
+    ),
     "a yaw in words": (
         "yaml",
         ROS.replace("0.0]", "north]"),

@@ -12,6 +12,7 @@ import yaml
 from fields import BENCHMARK_MAPS
 from PIL import Image
 
+import bezierplan as bp
 from bezierplan.__main__ import main
 from bezierplan.commands.plan import EXAMPLES
 from bezierplan.geometry import shortest_paths
@@ -139,6 +140,47 @@ def test_other_kinds_of_map(capsys, tmp_path):
     assert "expected a number from 1 to 1" in refused(
         capsys, tmp_path / "room.map", "--scenario", f"{tmp_path / 'room.scen'}:2"
     )
+
+
+def test_a_scenario_that_was_written_on_windows_and_faults_named_as_given(
+    capsys, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "room.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n.@.\n")
+    (tmp_path / "room.scen").write_text("version 1\n0\tmaps\\room.map\t3\t2\t0\t1\t2\t1\t4\n")
+    assert planned(capsys, "room.map", "--scenario", "room.scen:1")["feasible"] == "yes"
+    (tmp_path / "room.scen").write_text("version 1\n0\thall.map\t3\t2\t0\t1\t2\t1\t4\n")
+    told = refused(capsys, "room.map", "--scenario", "room.scen:1")
+    assert told.startswith("room.scen: line 2: map hall.map; expected a scenario of room.map")
+
+
+def test_blanks_at_the_end_of_lines_of_cells_say_nothing(capsys, tmp_path):
+    ends = ("--start", "0.5,0.5", "--target", "3.5,2.5")
+    head = "type octile\nheight 3\nwidth 4\nmap\n"
+    for name, text in {
+        "room.txt": "....  \n.##.\t\n....\n  \n",
+        "room.map": f"{head}....  \n.@@.\n.... \n \n\n",
+    }.items():
+        (tmp_path / name).write_text(text)
+        assert planned(capsys, tmp_path / name, *ends)["shortest"] == "4.13065 cell"
+
+
+@pytest.mark.parametrize("suffix", ["csv", "geojson", "yaml"])
+def test_a_path_of_no_length_is_written_too(capsys, tmp_path, suffix):
+    out = tmp_path / f"path.{suffix}"
+    speed = ["--speed", "1", "--acceleration", "1"] if suffix == "csv" else []
+    here = ["--start", "2,10", "--target", "2,10"]
+    assert planned(capsys, GAPS, *here, "--out", out, *speed)["feasible"] == "yes"
+    if suffix == "csv":
+        rows = np.loadtxt(out, delimiter=",", skiprows=1)
+        assert rows[:, :3].tolist() == [[0.0, 2.0, 10.0]] * 2
+
+
+def test_a_step_of_0_in_python_is_refused_like_that_of_the_command(tmp_path):
+    room = bp.Grid(np.zeros((4, 4), dtype=bool), cell=1.0, unit="m")
+    answer = bp.plan(bp.Problem("room", room, (0.5, 0.5), (3.5, 3.5)))
+    with pytest.raises(ValueError, match=r"step: 0; expected a number above 0"):
+        answer.to_csv(tmp_path / "path.csv", step=0)
 
 
 FAULTS = {

@@ -7,7 +7,7 @@ The command line and the documentation use the same functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path as File
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from bezierplan.geometry.samples import Samples
     from bezierplan.planners import Plan
-    from bezierplan.running.problems import Regions
+    from bezierplan.running.problems import Placed, Regions
 
 __all__ = bezierplan.__all__
 
@@ -46,8 +46,9 @@ class Judged:
     Attributes
     ----------
     problem : Problem
+        On the map for the robot's centre: of the kind that was given, and if that is turned, so.
     path : Path or None
-        None if there is none to judge.
+        In the world, as all points and headings are; None if there is none to judge.
     length : float
         Exact arc length, in the map's unit; nan without a path.
     feasible : bool
@@ -122,11 +123,12 @@ class Judged:
             If there is no path, or for an `n` or `step` out of range.
         """
         from bezierplan.geometry import curves, samples
-        from bezierplan.workspaces import shifted
+        from bezierplan.workspaces.frames import frame_of
 
-        x, y = shifted.shift_of(self.problem.workspace)
-        found = samples.along(curves.moved(self._path(), (-x, -y)), n, step)
-        return found._replace(x=found.x + x, y=found.y + y)
+        frame = frame_of(self.problem.workspace)
+        found = samples.along(curves.inward(self._path(), frame), n, step)
+        x, y = frame.outward(np.column_stack([found.x, found.y])).T
+        return found._replace(x=x, y=y, heading=frame.outward_headings(found.heading))
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are
@@ -134,17 +136,19 @@ class Judged:
         """
         from bezierplan.figures import drawn_path
         from bezierplan.running import legs, problems
-        from bezierplan.workspaces import shifted
         from bezierplan.workspaces.grown import original
 
         if axes is None:
             import matplotlib.pyplot as plt
 
             axes = plt.figure(layout="constrained").add_subplot()
-        home, regions = self.problem.workspace, problems.remembered()
-        bound = legs.whole(legs.shortest(legs.legs(self.problem, self.via, regions), regions(home)))
-        own = self.problem._replace(workspace=original(home))
-        drawn_path.draw(axes, own, self.path, bound.points + shifted.shift_of(home), self.collision)
+        regions = problems.remembered()
+        placed = problems.placed(self.problem, regions)
+        parts = legs.legs(placed, self.via, regions)
+        bound = legs.whole(legs.shortest(parts, regions(placed.near.workspace)))
+        own = self.problem._replace(workspace=original(self.problem.workspace))
+        shortest = placed.frame.outward(bound.points)
+        drawn_path.draw(axes, own, self.path, shortest, self.collision)
         return axes
 
     def to_picture(self, file: str | File) -> None:
@@ -197,7 +201,7 @@ class Judged:
                 f"lateral_acceleration: {lateral_acceleration:g}: the path has corners, which no "
                 f"speed keeps it at; expected a turning radius that is kept"
             )
-        points = self.sample(step=step or self.length / 1000)
+        points = self._spaced(step)
         more = {}
         if speed is not None:
             allowed = samples.speeds(
@@ -213,13 +217,17 @@ class Judged:
         from bezierplan.geometry import path_files
 
         verdict = {"feasible": self.feasible, "length": self.length, "clearance": self.clearance}
-        path_files.write_geojson(File(file), self.sample(step=step or self.length / 1000), verdict)
+        path_files.write_geojson(File(file), self._spaced(step), verdict)
 
     def to_ros(self, file: str | File, *, step: float | None = None, frame: str = "map") -> None:
         """Write the path as a `nav_msgs/Path` message in YAML, as `ros2 topic pub` reads it."""
         from bezierplan.geometry import path_files
 
-        path_files.write_ros(File(file), self.sample(step=step or self.length / 1000), frame)
+        path_files.write_ros(File(file), self._spaced(step), frame)
+
+    def _spaced(self, step: float | None) -> Samples:
+        """Samples for a file. A path of no length has two, whatever their distance."""
+        return self.sample(step=(self.length / 1000 or 1.0) if step is None else step)
 
     def _path(self) -> Path:
         if self.path is None:
@@ -324,7 +332,10 @@ def read_map(
     Returns
     -------
     Grid or Polygons
-        With a `robot_radius`, a grid has the grown obstacles as polygons in its field `drawn`.
+        With a `robot_radius`, a grid has the grown obstacles as polygons in its field `drawn`. A
+        ROS map that is turned is a grid with a `yaw`: its cells, bounds and polygons are told as
+        before it is turned about its `origin`, but start, target, way points and headings, and all
+        that is answered, are in the world.
 
     Raises
     ------
@@ -368,14 +379,12 @@ def shortest_path(problem: Problem) -> Shortest:
     """
     from bezierplan.geometry import shortest_paths
     from bezierplan.running import problems
-    from bezierplan.workspaces import shifted
 
+    _check_problem(problem)
     regions = problems.remembered()
-    placed = _placed(problem, regions)
-    bound = shortest_paths.shortest_path(
-        shifted.near_problem(placed), blocked=regions(placed.workspace)
-    )
-    return Shortest(bound.length, bound.points + shifted.shift_of(placed.workspace))
+    _, near, frame = problems.placed(problem, regions)
+    bound = shortest_paths.shortest_path(near, blocked=regions(near.workspace))
+    return Shortest(bound.length, frame.outward(bound.points))
 
 
 def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Judged:
@@ -412,22 +421,20 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     """
     from bezierplan.geometry import curves, shortest_paths
     from bezierplan.running import footprints, problems
-    from bezierplan.workspaces import shifted
 
+    _check_problem(problem)
     regions = problems.remembered()
     outline = None if footprint is None else outline_of(footprint)
     footprints.check_map(outline, problem.workspace, 0.0)
-    placed = _placed(problem, regions)
-    x, y = shifted.shift_of(placed.workspace)
-    bound = shortest_paths.shortest_path(
-        shifted.near_problem(placed), blocked=regions(placed.workspace)
-    )
-    judged = verdict(placed, curves.moved(path, (-x, -y)), bound.length, regions, footprint=outline)
+    placed = problems.placed(problem, regions)
+    bound = shortest_paths.shortest_path(placed.near, blocked=regions(placed.near.workspace))
+    inward = curves.inward(path, placed.frame)
+    judged = verdict(placed, inward, bound.length, regions, footprint=outline)
     return Judged(**judged | {"path": path})
 
 
 def verdict(
-    problem: Problem,
+    problem: Placed,
     path: Path | None,
     shortest: float,
     regions: Regions,
@@ -436,18 +443,19 @@ def verdict(
 ) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
-    path: on the map where it is computed with (`shifted`). shortest: length of the exact shortest
-    path. regions: the blocked regions of maps. Raises ValueError if the path is feasible and yet
-    closer to the map's own obstacles than the robot's radius, so that the checker is wrong.
+    path: in the frame of the map. shortest: length of the exact shortest path. regions: the blocked
+    regions of maps. Raises ValueError if the path is feasible and yet closer to the map's own
+    obstacles than the robot's radius, so that the checker is wrong.
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
     from bezierplan.geometry import checker, curves
     from bezierplan.geometry.checker.footprint import check_footprint
     from bezierplan.geometry.curvature_bound import largest_curvature
-    from bezierplan.workspaces import robot, shifted
+    from bezierplan.workspaces import robot
     from bezierplan.workspaces.grown import grown_of, original
 
-    grown = grown_of(problem.workspace)
+    world, near, frame = problem
+    grown = grown_of(near.workspace)
     asked = {
         "robot_radius": grown.radius if grown else 0.0,
         "via": tuple(via),
@@ -460,7 +468,7 @@ def verdict(
             math.nan,
         )
         return {
-            "problem": problem,
+            "problem": world,
             "path": None,
             **nothing,
             "feasible": False,
@@ -469,7 +477,7 @@ def verdict(
             **asked,
         }
     pieces = curves.bezier_pieces(path)
-    verdict = checker.check(pieces, regions(problem.workspace))
+    verdict = checker.check(pieces, regions(near.workspace))
     clearance = (
         checker.check(pieces, regions(grown.original)).clearance if grown else verdict.clearance
     )
@@ -480,19 +488,18 @@ def verdict(
         )
     jump = curves.curvature_jump(path)
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
-    shift = shifted.shift_of(problem.workspace)
     feasible, collision_at = verdict.feasible, verdict.collision_at
     if footprint and feasible:
         feasible, collision_at, clearance, _ = check_footprint(
-            pieces, regions(original(problem.workspace)), footprint
+            pieces, regions(original(near.workspace)), footprint
         )
-    collision = None if feasible else tuple((curves.point_at(path, collision_at) + shift).tolist())
+    collision = None if feasible else frame.outward(curves.point_at(path, collision_at))
     return {
-        "problem": problem,
-        "path": curves.moved(path, shift),
+        "problem": world,
+        "path": curves.outward(path, frame),
         "length": curves.length(path),
         "feasible": feasible,
-        "collision": collision,
+        "collision": None if collision is None else tuple(collision.tolist()),
         "depth": verdict.depth,
         "clearance": clearance,
         "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
@@ -590,28 +597,30 @@ def plan(
     tours.check_order(via_order, via)
     served = getattr(named[1], "workspaces", None)
     if footprint is None:
-        placed = _placed(_grown(problem, robot_radius), regions, served)
+        placed = problems.placed(_grown(problem, robot_radius), regions, served)
         via = tours.ordered(via_order, placed, via, regions)
         planned = _planned(placed, named, seed, via, smooth, settings, regions)
     else:
         outline = outline_of(footprint)
         footprints.check_map(outline, problem.workspace, robot_radius)
 
-        def attempt(radius: float, first: Answer | None) -> Answer | None:
+        def attempt(
+            radius: float, first: tuple[Placed, Answer] | None
+        ) -> tuple[Placed, Answer] | None:
             try:
-                placed = _placed(_grown(problem, radius), regions, served)
-                # Larger discs keep the order of the smallest one, by whose shortest path all are
-                # judged.
-                order = first.via if first else tours.ordered(via_order, placed, via, regions)
+                placed = problems.placed(_grown(problem, radius), regions, served)
+                # Larger discs keep the order of the smallest one, by whose map and shortest path
+                # all are judged.
+                order = first[1].via if first else tours.ordered(via_order, placed, via, regions)
                 legs.legs(placed, order, regions)
             except ValueError:  # no room for a disc that large
                 if first is None:
                     raise
                 return None
             answer = _planned(placed, named, seed, order, smooth, settings, regions, outline, first)
-            return None if first and answer.path is None else answer
+            return None if first and answer.path is None else (placed, answer)
 
-        planned = footprints.first_that_holds(outline, attempt, lambda answer: answer.feasible)
+        _, planned = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
     if strict:
         footprints.check_held(planned.footprint, planned.feasible)
         legs.check_continuous(
@@ -624,7 +633,7 @@ def plan(
 
 
 def _planned(
-    problem: Problem,
+    problem: Placed,
     named: tuple[str, Any, dict[str, Any]],
     seed: int,
     via: Via,
@@ -632,13 +641,13 @@ def _planned(
     settings: Mapping[str, Any],
     regions: Regions,
     footprint: Footprint | None = None,
-    judged_as: Answer | None = None,
+    judged_as: tuple[Placed, Answer] | None = None,
 ) -> Answer:
     """The answer of a method, given by name, module and settings, to a problem on a map for the
     robot's centre.
 
-    judged_as: an answer on the map and by the shortest path of which this one is judged, if not by
-    its own.
+    judged_as: a problem and its answer, on the map and by the shortest path of which this one is
+    judged, if not by its own.
     """
     from bezierplan.running import answer as door
     from bezierplan.running import legs
@@ -647,24 +656,22 @@ def _planned(
 
     name, module, preset = named
     chosen = preset | settings
-    _check_settings(name, module, chosen, problem)
-    planner = _planner_name(name, module)
-    parts, blocked = legs.legs(problem, via, regions), regions(problem.workspace)
+    _check_settings(name, module, chosen, problem.near)
+    planner, given = _planner_name(name, module), legs.inward(chosen, problem.frame)
+    parts, blocked = legs.legs(problem, via, regions), regions(problem.near.workspace)
     bounds = legs.shortest(parts, blocked)
     if planner in legs.TURNING:
-        answer = legs.solved(planner, parts, bounds, blocked, chosen, smooth)
+        answer = legs.solved(planner, parts, bounds, blocked, given, smooth)
     else:
-        answer = legs.joined([_answered(part, name, module, seed, chosen) for part in parts])
+        answer = legs.joined([_answered(part, name, module, seed, given) for part in parts])
     try:
         whole = parts[0]._replace(target=parts[-1].target)
         answer = door.accepted(answer, whole, {*TAKEN, *chosen})
     except door.Unfit as fault:
         raise ValueError(f"the answer of planner {name}: {fault}") from None
-    grown = grown_of(problem.workspace)
+    grown = grown_of(problem.near.workspace)
     home, shortest = (
-        (judged_as.problem, judged_as.shortest)
-        if judged_as
-        else (problem, legs.whole(bounds).length)
+        (judged_as[0], judged_as[1].shortest) if judged_as else (problem, legs.whole(bounds).length)
     )
     return Answer(
         **verdict(home, answer.path, shortest, regions, via, footprint),
@@ -712,22 +719,6 @@ def _grown(problem: Problem, radius: float) -> Problem:
     from bezierplan.workspaces import robot
 
     return problem._replace(workspace=robot.grow(problem.workspace, radius))
-
-
-def _placed(problem: Problem, regions: Regions, served: Collection[str] | None = None) -> Problem:
-    """A problem whose start and target are known to be free, in the workspace that suits a planner
-    of some kinds, None for all.
-
-    Raises TypeError and ValueError.
-    """
-    from bezierplan.running import problems
-    from bezierplan.workspaces import robot
-
-    _check_problem(problem)
-    workspace = robot.suited(problem.workspace, served)
-    return problems.build(
-        problem.name, {"start": problem.start, "target": problem.target}, workspace, regions
-    )
 
 
 class _Function:
@@ -921,7 +912,8 @@ def replay(run: str) -> Answer:
         )
     names = planner_settings(planner_module(row["planner"]))
     problem = made.problems[row["problem"]]
-    judged = verdict(problem, path_of(row), shortest_path(problem).length, problems.remembered())
+    home = problems.Placed(problem, problem)
+    judged = verdict(home, path_of(row), shortest_path(problem).length, problems.remembered())
     return Answer(
         **judged,
         turning_radius=float(row.get("least_radius", math.nan)),

@@ -20,7 +20,7 @@ from bezierplan.planners import Plan, known_planners, planner_module
 from bezierplan.running import answer, footprints, interface, legs, problems, tours, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
-from bezierplan.running.problems import Regions
+from bezierplan.running.problems import Placed, Regions
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
@@ -92,9 +92,8 @@ maps:
              of any shape, or the file's bbox, or --margin around the obstacles; planners that need
              cells get --cell and --rule
   .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as
-             occupied, or with --unknown free as free. A map that is turned, by the yaw of its
-             origin, becomes polygons where its obstacles are, if its cells have at most
-             {robot.MOST_CORNERS:,} corners
+             occupied, or with --unknown free as free. On a map that is turned, by the yaw of its
+             origin, places and headings are those of the world
   .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner
              is at 0,0
   .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the
@@ -324,10 +323,10 @@ def _plan(arguments: Namespace) -> None:
         via = tours.ordered(arguments.via_order, problem, via, regions)
         legs.legs(problem, via, regions)  # two places that are the same may be neighbours only now
     if planner in legs.TURNING:
-        settings = legs.preset(planner, problem.workspace) | settings
+        settings = legs.preset(planner, problem.near.workspace) | settings
     interface.check_settings(module, settings, "--settings")
     if hasattr(module, "serves"):
-        interface.asked(module.serves, f"--planner: {planner}", problem)
+        interface.asked(module.serves, f"--planner: {planner}", problem.near)
     task = _Task(planner, module, settings, arguments.seed, via, arguments.smooth, regions)
     solution = _solution(task, problem)
     judged = _judged(task, problem, solution, solution.bound, outline)
@@ -361,9 +360,9 @@ def _plan(arguments: Namespace) -> None:
                 arguments.smooth,
                 judged.curvature_jump,
                 judged.curvature_bound,
-                problem.workspace.unit,
+                home.unit,
             )
-            legs.check_kept(settings["turning_radius"], kept, problem.workspace.unit)
+            legs.check_kept(settings["turning_radius"], kept, home.unit)
     for name, text in _told(judged, task, solution, kept):
         print(f"{name:16}{text}")
     if arguments.out and judged.path is None:
@@ -401,15 +400,16 @@ class _Solution(NamedTuple):
     radius: float
 
 
-def _solution(task: _Task, problem: Problem) -> _Solution:
+def _solution(task: _Task, problem: Placed) -> _Solution:
     """The planner's answer to a problem. Raises Fault without a free way, and if the planner
     fails.
     """
-    parts, blocked = legs.legs(problem, task.via, task.regions), task.regions(problem.workspace)
+    home, settings = problem.near.workspace, legs.inward(task.settings, problem.frame)
+    parts, blocked = legs.legs(problem, task.via, task.regions), task.regions(home)
     bounds = legs.shortest(parts, blocked)
     bound = legs.whole(bounds)
     if not np.isfinite(bound.length):
-        x, y = problem.target
+        x, y = problem.world.target
         raise Fault(
             f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
             "that can be reached"
@@ -417,23 +417,23 @@ def _solution(task: _Task, problem: Problem) -> _Solution:
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
         if task.planner in legs.TURNING:
             begin = time.process_time()
-            plan = legs.solved(task.planner, parts, bounds, blocked, task.settings, task.smooth)
+            plan = legs.solved(task.planner, parts, bounds, blocked, settings, task.smooth)
             seconds = time.process_time() - begin
         else:
             answers = [
-                _answer(task.module, part, task.planner, task.settings, task.seed) for part in parts
+                _answer(task.module, part, task.planner, settings, task.seed) for part in parts
             ]
             plan, seconds = (
                 legs.joined([answer for answer, _ in answers]),
                 sum(taken for _, taken in answers),
             )
-    grown = grown_of(problem.workspace)
+    grown = grown_of(home)
     return _Solution(plan, seconds, bound, grown.radius if grown else 0.0)
 
 
 def _judged(
     task: _Task,
-    problem: Problem,
+    problem: Placed,
     solution: _Solution,
     bound: shortest_paths.Bound,
     outline: Footprint | None,
@@ -767,21 +767,18 @@ def _problem(
     places: dict[str, tuple[float, float]],
     home: Workspace,
     regions: Regions,
-) -> Problem:
+) -> Placed:
     """The map with start and target."""
     served = getattr(planner_module(planner), "workspaces", None)
-    workspace = robot.suited(home, served)
-    met = "polygons" if isinstance(workspace, Polygons) else "grid"
+    met = "polygons" if isinstance(robot.suited(home, served), Polygons) else "grid"
     if served is not None and met not in served:
         raise Fault(
             f"--planner: {planner}: "
             f"serves workspaces of kind {', '.join(served)}, and a map is {met}"
         )
     if arguments.scenario:
-        return problems.build(
-            "", _scenario(arguments, described, original(workspace)), workspace, regions
-        )
-    return problems.build("", places, workspace, regions)
+        places = _scenario(arguments, described, original(home))
+    return problems.placed(Problem("", home, places["start"], places["target"]), regions, served)
 
 
 def _scenario(options: Namespace, described: dict, workspace: Workspace) -> dict:
@@ -791,12 +788,7 @@ def _scenario(options: Namespace, described: dict, workspace: Workspace) -> dict
         raise Fault(
             f"--scenario: {options.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1"
         )
-    return problems.scenario(
-        described | {"scenarios": str(File(file).resolve())},
-        int(number),
-        workspace,
-        options.map.parent,
-    )
+    return problems.scenario(described | {"scenarios": file}, int(number), workspace, File())
 
 
 def _write(arguments: Namespace, judged: api.Judged) -> None:

@@ -3,7 +3,7 @@ path.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -11,12 +11,12 @@ import numpy as np
 
 from bezierplan.geometry import curves, shortest_paths, transitions
 from bezierplan.geometry.curvature_bound import largest_curvature
-from bezierplan.geometry.region import Region
+from bezierplan.geometry.region import Region, region
 from bezierplan.planners import Plan, dubins_search, rounded_shortest_path
 from bezierplan.planners.parts.settings import filled
 from bezierplan.running import problems
-from bezierplan.running.problems import Regions, near_region
-from bezierplan.workspaces import shifted
+from bezierplan.running.problems import Placed, Regions
+from bezierplan.workspaces.frames import Frame
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
@@ -25,6 +25,8 @@ TURNING = (ROUNDED, DRIVEN)
 """Planners of this package that keep a turning radius: they get the exact shortest path and the
 region, which are known already.
 """
+HEADINGS = ("start_heading", "target_heading")
+"""Settings that are directions in the world."""
 CHAINED = (*TURNING, "shortest_path")
 """Planners whose paths can be joined: chains of pieces."""
 
@@ -73,35 +75,41 @@ def preset(planner: str, workspace: Workspace) -> dict[str, Any]:
     """Settings of a planner with a turning radius where none are given."""
     x_low, x_high, y_low, y_high = workspace.bounds
     radius = {"turning_radius": SHARE * max(x_high - x_low, y_high - y_low)}
-    return radius | (
-        {"offset": 0.0} if planner == ROUNDED else {"start_heading": None, "target_heading": None}
-    )
+    return radius | ({"offset": 0.0} if planner == ROUNDED else dict.fromkeys(HEADINGS))
+
+
+def inward(settings: Mapping[str, Any], frame: Frame) -> dict[str, Any]:
+    """Settings in the frame of a map."""
+    headings = {
+        name: frame.inward_heading(settings[name])
+        for name in HEADINGS
+        if settings.get(name) is not None
+    }
+    return {**settings, **headings}
 
 
 def legs(
-    problem: Problem, via: Sequence[tuple[float, float]], regions: Regions = near_region
+    problem: Placed, via: Sequence[tuple[float, float]], regions: Regions = region
 ) -> list[Problem]:
-    """The problems from start to the first way point, and so on to the target, on the map where it
-    is computed with.
+    """The problems from start to the first way point, and so on to the target, in the map's frame.
 
-    Raises ValueError for a way point that is not free.
+    via: in the world. Raises ValueError for a way point that is not free.
     """
-    places = [problem.start]
+    near = problem.near
+    places = [near.start]
     for point in via:
         try:
-            placed = problems.build(
-                "", {"start": point, "target": point}, problem.workspace, regions
+            place = problems.build(
+                "", {"start": point, "target": point}, near.workspace, regions, problem.frame
             ).start
         except ValueError as error:
             raise ValueError(f"via{str(error).removeprefix('start')}") from None
-        if placed == places[-1]:
+        if place == places[-1]:
             raise ValueError(f"via: {point}: the same place as the one before; expected another")
-        places.append(placed)
-    if via and places[-1] == problem.target:
+        places.append(place)
+    if via and places[-1] == near.target:
         raise ValueError(f"via: {via[-1]}: the same place as the target; expected another")
-    near = shifted.near_problem(problem)
-    shift = shifted.shift_of(problem.workspace)
-    ends = [shifted.lowered(place, shift) for place in (*places, problem.target)]
+    ends = [*places, near.target]
     return [near._replace(start=start, target=target) for start, target in pairwise(ends)]
 
 

@@ -7,9 +7,9 @@ bounds: `columns.Bound`.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,8 @@ from bezierplan.geometry import cell_length
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import Region, blocks, region
 from bezierplan.running.columns import Bound
-from bezierplan.workspaces import files, lattice, random_blocks, robot, shifted
+from bezierplan.workspaces import files, lattice, random_blocks, robot
+from bezierplan.workspaces.frames import WORLD, Frame, corners, frame_of, inward_map
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import grown_of, original
 from bezierplan.workspaces.problem import Problem, Workspace
@@ -29,45 +30,76 @@ if TYPE_CHECKING:
 
 
 Regions = Callable[[Workspace], Region]
-"""The blocked region of a map, where it is computed with (`shifted`)."""
-
-
-def near_region(workspace: Workspace) -> Region:
-    """The blocked region of a map, where it is computed with."""
-    return region(shifted.near(workspace))
+"""The blocked region of a map in its own frame."""
 
 
 def remembered() -> Regions:
-    """`near_region` that builds the one of each map once, for callers who keep their maps."""
+    """`region` that builds the one of each map once, for callers who keep their maps."""
     known: dict[int, tuple[Workspace, Region]] = {}
 
     def find(workspace: Workspace) -> Region:
         if id(workspace) not in known:
-            known[id(workspace)] = workspace, near_region(workspace)
+            known[id(workspace)] = workspace, region(workspace)
         return known[id(workspace)][1]
 
     return find
 
 
+class Placed(NamedTuple):
+    """A problem in the world, and in the frame in which it is computed with."""
+
+    world: Problem
+    near: Problem
+    frame: Frame = WORLD
+
+
+def placed(
+    problem: Problem, regions: Regions = region, served: Collection[str] | None = None
+) -> Placed:
+    """A problem of the world whose start and target are known to be free, in its frame on the map
+    that suits a planner of some kinds of workspace, None for all.
+
+    Raises ValueError as `build` does.
+    """
+    frame = frame_of(problem.workspace)
+    home = robot.suited(inward_map(problem.workspace, frame), served)
+    ends = {"start": problem.start, "target": problem.target}
+    near = build(problem.name, ends, home, regions, frame)
+    start, target = (_pair(end) for end in (problem.start, problem.target))
+    return Placed(problem._replace(start=start, target=target), near, frame)
+
+
+# A place of a turned map that is this close to its border, in units, is on it: projected
+# coordinates are no finer.
+_ON_BORDER = 1e-8
+
+
 def build(
-    name: str, description: dict, workspace: Workspace, regions: Regions = near_region
+    name: str,
+    description: dict,
+    workspace: Workspace,
+    regions: Regions = region,
+    frame: Frame = WORLD,
 ) -> Problem:
     """A problem from its description: start and target, (x, y) in units, or start_cell and
     target_cell, cell numbers of a grid.
 
-    Raises ValueError, naming key and value, unless start and target lie in free space.
+    frame: of the workspace, and so of the problem; start and target are told in the world. Raises
+    ValueError, naming key and value, unless they lie in free space.
     """
-    start, target = (_end(end, description, workspace, regions) for end in ("start", "target"))
+    start, target = (
+        _end(end, description, workspace, regions, frame) for end in ("start", "target")
+    )
     return Problem(name, workspace, start, target)
 
 
 def _end(
-    end: str, description: dict, workspace: Workspace, regions: Regions
+    end: str, description: dict, workspace: Workspace, regions: Regions, frame: Frame
 ) -> tuple[float, float]:
     key = end if end in description else f"{end}_cell"
     value = description[key]
     if key == end:
-        point = (float(value[0]), float(value[1]))
+        point = _pair(frame.inward(_pair(value)))
     elif isinstance(workspace, Grid):
         try:
             point = workspace.centre(value)
@@ -77,16 +109,14 @@ def _end(
         raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
     grown, home = grown_of(workspace), original(workspace)
     x_low, x_high, y_low, y_high = home.bounds
+    if frame.yaw:
+        point = _on_border(point[0], x_low, x_high), _on_border(point[1], y_low, y_high)
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
-        raise ValueError(
-            f"{key}: {value}: outside the workspace; expected x from {x_low:.12g} to "
-            f"{x_high:.12g} and y from {y_low:.12g} to {y_high:.12g}"
-        )
-    near = shifted.lowered(point, shifted.shift_of(home))
-    if blocks(regions(home), near):
+        raise ValueError(f"{key}: {value}: outside the workspace; {_within(home, frame)}")
+    if blocks(regions(home), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
-    if grown and blocks(regions(workspace), near):
-        distance = check(np.array([[near, near]]), regions(home)).clearance
+    if grown and blocks(regions(workspace), point):
+        distance = check(np.array([[point, point]]), regions(home)).clearance
         least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
         cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.drawn else ""
         raise ValueError(
@@ -102,6 +132,25 @@ def _end(
             f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell"
         )
     return point
+
+
+def _pair(value: Sequence[float] | np.ndarray) -> tuple[float, float]:
+    return float(value[0]), float(value[1])
+
+
+def _on_border(value: float, low: float, high: float) -> float:
+    nearest = min(max(value, low), high)
+    return nearest if abs(value - nearest) < _ON_BORDER else value
+
+
+def _within(workspace: Workspace, frame: Frame) -> str:
+    """Where the places of a map are, in the world."""
+    around = corners(workspace, frame)
+    if frame.yaw:
+        places = " ".join(f"{x:.9g},{y:.9g}" for x, y in around)
+        return f"expected a place of the turned map, whose corners are {places}"
+    (x_low, y_low), (x_high, y_high) = around[0], around[2]
+    return f"expected x from {x_low:.12g} to {x_high:.12g} and y from {y_low:.12g} to {y_high:.12g}"
 
 
 def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:

@@ -8,8 +8,7 @@ import numpy as np
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import legs
-from bezierplan.running.problems import Regions
-from bezierplan.workspaces.problem import Problem
+from bezierplan.running.problems import Placed, Regions
 
 ORDERS = ("given", "shortest")
 """Orders of way points: as they are given, or the one of the shortest path through all."""
@@ -32,9 +31,9 @@ def check_order(order: str, via: Sequence[tuple[float, float]]) -> None:
 
 
 def ordered(
-    order: str, problem: Problem, via: Sequence[tuple[float, float]], regions: Regions
+    order: str, problem: Placed, via: Sequence[tuple[float, float]], regions: Regions
 ) -> list[tuple[float, float]]:
-    """Way points in the order in which a path passes them.
+    """Way points, in the world, in the order in which a path passes them.
 
     Raises ValueError for one that is not free.
     """
@@ -42,7 +41,7 @@ def ordered(
         return list(via)
     ends = [part.start for part in legs.legs(problem, via, regions)]
     whole = legs.legs(problem, (), regions)[0]
-    places, blocked = [*ends, whole.target], regions(problem.workspace)
+    places, blocked = [*ends, whole.target], regions(problem.near.workspace)
     lengths = np.zeros((len(places), len(places)))
     for one, other in combinations(range(len(places)), 2):
         part = whole._replace(start=places[one], target=places[other])

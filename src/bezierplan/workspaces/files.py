@@ -80,6 +80,8 @@ def to_json(workspace: Workspace) -> str:
         content = _circles_content(workspace)
     else:
         content = _polygons_content(workspace)
+    if isinstance(workspace, Grid) and workspace.yaw:
+        content["yaw"] = workspace.yaw
     return json.dumps(content | {"unit": workspace.unit})
 
 
@@ -129,6 +131,7 @@ def from_json(text: str) -> Workspace:
             grid.from_lines(content["rows"], content["cell"], unit),
             origin=tuple(content.get("origin", (0.0, 0.0))),
             grown=_grown(content),
+            yaw=content.get("yaw", 0.0),
         )
         return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])
@@ -138,7 +141,12 @@ def from_json(text: str) -> Workspace:
         if content["kind"] == "polygons":
             return polygons
         cells = grid.from_lines(content["rows"], content["cell"], unit)
-        return replace(cells, origin=tuple(content["origin"]), drawn=polygons)
+        return replace(
+            cells,
+            origin=tuple(content["origin"]),
+            drawn=polygons,
+            yaw=content.get("yaw", 0.0),
+        )
     table = np.array(content["circles"], dtype=float).reshape(-1, 3)
     circles = Circles(bounds, table[:, :2], table[:, 2], unit, _grown(content))
     return random_field.from_circles(circles) if content["kind"] == "random_field" else circles

@@ -8,7 +8,7 @@ tolerance.
 """
 
 FARTHEST = 3e7
-"""Largest size of a coordinate of a map that is shifted before anything is computed: beyond all
+"""Largest size of a coordinate of a map that is computed with in a frame of its own: beyond all
 projected coordinates of the earth.
 """
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.schema.checked import Fault
-from bezierplan.workspaces import files, raster, robot, ros, shifted, turned
+from bezierplan.workspaces import files, frames, raster, robot, ros
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.limits import FARTHEST, check_thickness
@@ -132,8 +132,8 @@ def described(
 def read(file: Path, description: dict[str, Any], robot_radius: float | None = None) -> Workspace:
     """The map of a file and its description, for a robot of a radius, in units.
 
-    Its coordinates may be as large as projected ones are. Raises ValueError, which names file or
-    option.
+    It lies in the world: its coordinates may be as large as projected ones are, and a grid may be
+    turned (`frames`). Raises ValueError, which names file or option.
     """
     robot.check_radius(robot_radius or 0.0)
     if description["kind"] != "raster":
@@ -152,7 +152,7 @@ def _loaded(file: Path, description: dict[str, Any]) -> Workspace:
     """
     try:
         workspace = _anywhere(file, description)
-        shifted.shift_of(workspace)
+        frames.frame_of(workspace)
         return workspace
     except ValueError as error:
         told = str(error).removeprefix("file: ").removeprefix(f"{description['file']}: ")
@@ -174,9 +174,7 @@ def _anywhere(file: Path, description: dict[str, Any]) -> Workspace:
     if kind == "image":
         return ros.read_image(file, description["resolution"], unit, **options)
     if kind == "ros_map":
-        grid = ros.read(file, file.parent, unit, largest=FARTHEST, turned=True, **options)
-        yaw = ros.yaw_of(file)
-        return turned.polygons(grid, yaw) if yaw else grid
+        return ros.read(file, file.parent, unit, largest=FARTHEST, turned=True, **options)
     return files.load(description, file.parent)
 
 

@@ -6,7 +6,7 @@ columns from the left and rows from the top; its optimal length is that of the s
 the eight neighbours, with diagonal steps of length sqrt 2, that cuts no corner of an occupied cell.
 """
 
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import NamedTuple
 
 import numpy as np
@@ -100,7 +100,7 @@ def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
             f"{line}: expected bucket, map, width, height, start x, start y, target x, target y, "
             "optimal length"
         ) from None
-    if Path(home).name != name:
+    if name not in (Path(home).name, PureWindowsPath(home).name):
         raise ValueError(f"{line}: map {home}; expected a scenario of {name}")
     if (rows, columns) != grid.occupied.shape:
         raise ValueError(

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.workspaces import raster, shifted
+from bezierplan.workspaces import raster
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import Workspace
+from bezierplan.workspaces.frames import frame_of, inward_map, outward_map
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import Grown, grown_of
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
@@ -66,8 +67,8 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
     check_radius(radius)
     if radius == 0:
         return workspace
-    shift = shifted.shift_of(workspace)
-    return shifted.moved(_grow(shifted.near(workspace), radius), shift)
+    frame = frame_of(workspace)
+    return outward_map(_grow(inward_map(workspace, frame), radius), frame)
 
 
 def _grow(workspace: Workspace, radius: float) -> Workspace:
@@ -87,7 +88,7 @@ def _grow(workspace: Workspace, radius: float) -> Workspace:
             workspace, _union_of_polygons(workspace.drawn), workspace.drawn.bounds, radius
         )
         return raster.from_polygons(polygons, workspace.cell, "overlap")
-    shape = union_of_cells(workspace)
+    shape = _union_of_cells(workspace)
     if shape is None:
         return by_cells(workspace, radius)
     polygons = _polygons(workspace, shape, workspace.bounds, radius)
@@ -237,7 +238,7 @@ def _union_of_polygons(polygons: Polygons) -> "shapely.Geometry":
     )
 
 
-def union_of_cells(grid: Grid) -> "shapely.Geometry | None":
+def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
     """The occupied cells as one shape; None if it has more than `MOST_CORNERS` corners."""
     import shapely
 

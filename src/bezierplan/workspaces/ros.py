@@ -13,7 +13,7 @@ is unknown, unless it is asked to be free. The image's first row is the top of t
 import logging
 import math
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path, PureWindowsPath
 from typing import Any, Literal, NamedTuple
 
@@ -23,7 +23,7 @@ from bezierplan.schema import checked
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import LARGEST, check_numbers, check_thickness
-from bezierplan.workspaces.text_file import read_text
+from bezierplan.workspaces.text_file import number, read_text
 
 logger = logging.getLogger(__name__)
 
@@ -81,7 +81,7 @@ def read(
 ) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
 
-    turned: whether its yaw may be other than 0; the grid is the map before it is turned.
+    turned: whether its yaw may be other than 0.
 
     folder: where the image must lie, also through links. robot_radius: in units; cells that come
     closer than that to an occupied cell or to the border also count as occupied. largest: size of a
@@ -128,6 +128,7 @@ def _grid(
         float(content["resolution"]),
         unit,
         (float(content["origin"][0]), float(content["origin"][1])),
+        yaw=content["origin"][2],
     )
 
 
@@ -207,7 +208,7 @@ def _content(file: Path) -> dict[str, Any]:
             origin[2],
         )
         origin = [*origin[:2], 0.0]
-    _expect(_is_number(origin[2]), "origin", f"yaw {origin[2]}", "a number of radians")
+    _expect(_is_number(origin[2]), "origin", f"yaw {_told(origin[2])}", "a number of radians")
     yaw = math.remainder(origin[2], math.tau)
     return content | {
         "negate": negate,
@@ -215,20 +216,22 @@ def _content(file: Path) -> dict[str, Any]:
     }
 
 
-def yaw_of(file: Path) -> float:
-    """By how much a map_server YAML file turns its map about its origin, in radians, from -pi to
-    pi. Raises ValueError as `read` does.
-    """
-    return _content(file)["origin"][2]
-
-
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
+def _told(value: Any) -> str:
+    """A value as its file has it: a number in quotes, which is text, with these."""
+    if isinstance(value, str):
+        with suppress(ValueError):
+            number(value)
+            return repr(value)
+    return "missing" if value is None else str(value)
+
+
 def _expect(right: bool, key: str, value: Any, wanted: str) -> None:
     if not right:
-        raise ValueError(f"{key}: {'missing' if value is None else value}; expected {wanted}")
+        raise ValueError(f"{key}: {_told(value)}; expected {wanted}")
 
 
 def _occupied(

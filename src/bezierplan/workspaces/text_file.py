@@ -32,10 +32,13 @@ def is_count(word: str) -> bool:
 
 
 def lines_of(text: str) -> list[str]:
-    """The lines of a text, without blank ones at its end. Nothing but `\\n` ends a line: a vertical
-    tab is a character in it.
+    """The lines of a text, without blank ones at its end, and without spaces and tabs at theirs,
+    which editors leave. Nothing but `\\n` ends a line: a vertical tab is a character in it.
     """
-    return text.rstrip("\n").split("\n") if text.strip("\n") else []
+    lines = [line.rstrip(" \t") for line in text.split("\n")]
+    while lines and not lines[-1]:
+        lines.pop()
+    return lines
 
 
 def read_text(file: Path, largest: int = LARGEST_FILE) -> str:
