@@ -138,7 +138,7 @@ def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) ->
         for step_y in range(high - low + 1):
             row = low + step_y if b[1] >= a[1] else high - step_y
             place = column * bins.rows + row
-            for e in bins.edges[bins.first[place] : bins.first[place + 1]]:
+            for e in bins.members[bins.first[place] : bins.first[place + 1]]:
                 beside = (
                     max(edges[e, 0], edges[e, 2]) < left or min(edges[e, 0], edges[e, 2]) > right
                 )
