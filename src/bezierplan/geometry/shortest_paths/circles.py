@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry.bins import Bins, bins_of_discs
 from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import CircleRegion
-from bezierplan.geometry.shortest_paths.bins import Bins, bins_of_discs
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
 from bezierplan.geometry.shortest_paths.tangents import SAME_ANGLE, Scene, met, search
 from bezierplan.kernels import allocation_free, compiled

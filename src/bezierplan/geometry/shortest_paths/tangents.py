@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry.bins import Bins, columns_between, rows_between, rows_near
 from bezierplan.geometry.checker import TOLERANCE
-from bezierplan.geometry.shortest_paths.bins import Bins, columns_between, rows_between
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH
 from bezierplan.kernels import allocation_free, compiled
 
@@ -295,7 +295,7 @@ def _free_sweep(side: int, angle: float, scene: Scene) -> float:
             free = min(free, _before(sense * outward * math.pi - angle, half))
     bins = scene.bins
     begin, end = columns_between(x - radius, x + radius, bins)
-    low, high = _rows(y - radius, y + radius, bins)
+    low, high = rows_near(y - radius, y + radius, bins)
     for column in range(begin, end + 1):
         for place in range(column * bins.rows + low, column * bins.rows + high + 1):
             for k in bins.members[bins.first[place] : bins.first[place + 1]]:
@@ -306,14 +306,6 @@ def _free_sweep(side: int, angle: float, scene: Scene) -> float:
                 half = _half_covered(distance, radius, scene.radii[k])
                 free = min(free, _before(sense * math.atan2(dy, dx) - angle, half))
     return free
-
-
-@allocation_free
-def _rows(low: float, high: float, bins: Bins) -> tuple[int, int]:
-    """The first and the last row of bins between two ordinates."""
-    begin = int((low - bins.low[1]) // bins.side)
-    end = int((high - bins.low[1]) // bins.side)
-    return max(begin, 0), min(end, bins.rows - 1)
 
 
 @allocation_free
@@ -345,7 +337,7 @@ def _look(side: int, scene: Scene, scratch: _Scratch, sights: _Sights) -> None:
     x, y = scene.centres[circle]
     waiting = 0
     begin, end = columns_between(x - radius, x + radius, bins)
-    low, high = _rows(y - radius, y + radius, bins)
+    low, high = rows_near(y - radius, y + radius, bins)
     for column in range(begin, end + 1):
         for row in range(low, high + 1):
             waiting = _wait(column * bins.rows + row, side, scratch, waiting)

@@ -9,6 +9,9 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 
+# Bins are no smaller, in units, so that their margins are wider than the checker's tolerance.
+_LEAST_SIDE = 1e-4
+
 
 class Bins(NamedTuple):
     """Edges by the bins that they pass through, or discs by those that their bounding boxes touch.
@@ -28,7 +31,8 @@ class Bins(NamedTuple):
 
 def bins_of(edges: np.ndarray) -> Bins:
     """The bins of edges (n, 4), about as many as there are edges."""
-    low, high = edges.reshape(-1, 2).min(axis=0), edges.reshape(-1, 2).max(axis=0)
+    ends = edges.reshape(-1, 2) if len(edges) else np.zeros((1, 2))
+    low, high = ends.min(axis=0), ends.max(axis=0)
     return _filled(low, high, edges, np.zeros(len(edges)))
 
 
@@ -45,7 +49,7 @@ def bins_of_discs(centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) ->
 def _filled(low: np.ndarray, high: np.ndarray, edges: np.ndarray, reach: np.ndarray) -> Bins:
     """The bins between two corners (2,) of edges (n, 4) that reach (n,) to both sides."""
     width, height = (high - low).tolist()
-    side = math.sqrt(width * height / max(1, len(edges)))
+    side = max(math.sqrt(width * height / max(1, len(edges))), _LEAST_SIDE)
     empty = np.zeros(0, dtype=np.int64)
     bins = Bins(low, side, math.ceil(width / side) + 1, math.ceil(height / side) + 1, empty, empty)
     first, members = _sort(edges, reach, bins)
@@ -87,6 +91,14 @@ def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
 
 
 @allocation_free
+def rows_near(low: float, high: float, bins: Bins) -> tuple[int, int]:
+    """The first and the last row of bins between two ordinates, the smaller one first."""
+    begin = int((low - bins.low[1]) // bins.side)
+    end = int((high - bins.low[1]) // bins.side)
+    return max(begin, 0), min(end, bins.rows - 1)
+
+
+@allocation_free
 def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple[int, int]:
     """The first and the last row of bins that a segment passes within a column, a little more
     rather than less.
@@ -99,6 +111,4 @@ def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple
         enter, leave = (left - a[0]) / step, (left + bins.side - a[0]) / step
         y, other = a[1] + enter * (b[1] - a[1]), a[1] + leave * (b[1] - a[1])
         low, high = max(low, min(y, other)), min(high, max(y, other))
-    begin = int((low - margin - bins.low[1]) // bins.side)
-    end = int((high + margin - bins.low[1]) // bins.side)
-    return max(begin, 0), min(end, bins.rows - 1)
+    return rows_near(low - margin, high + margin, bins)
