@@ -102,7 +102,11 @@ class _Nodes(NamedTuple):
 
 def _nodes(circles: np.ndarray, scene: Scene) -> _Nodes:
     """The nodes at some circles (m,), ascending; the first two are start and target."""
-    parts = [_nodes_at(circle, scene) for circle in circles[circles > 1].tolist()]
+    parts = []
+    for circle in circles[circles > 1].tolist():
+        # Python's own `hypot` is a last bit more exact than that of kernels.
+        step = (scene.centres - scene.centres[circle]).T.tolist()
+        parts.append(_nodes_at(circle, np.array(list(map(math.hypot, *step))), scene))
     angles = np.concatenate([[0.0, 0.0], *(part[0] for part in parts)])
     names = np.concatenate([[0, 1], *(part[1] for part in parts)])
     circles = names // (4 * len(scene.radii))
@@ -119,8 +123,10 @@ def _name(circle: int, other: int, crossing: bool, side: int, count: int) -> int
 
 
 @compiled
-def _nodes_at(circle: int, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """The ends of all tangents at a circle: angles (n,) and names (n,)."""
+def _nodes_at(circle: int, distances: np.ndarray, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """The ends of all tangents at a circle: angles (n,) and names (n,). distances: of the other
+    circles' centres, (m,).
+    """
     centres, radii = scene.centres, scene.radii
     count = 0
     angles, names = np.empty(4 * len(radii)), np.empty(4 * len(radii), dtype=np.int64)
@@ -130,7 +136,7 @@ def _nodes_at(circle: int, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         # Of two circles, the tangents are computed from the first: rounding may depend on it.
         i, j = (circle, other) if circle < other or other < 2 else (other, circle)
         dx, dy = centres[j, 0] - centres[i, 0], centres[j, 1] - centres[i, 1]
-        distance = math.hypot(dx, dy)
+        distance = distances[other]
         towards = math.atan2(dy, dx)
         for crossing in range(1 if other < 2 else 2):
             opposite = 0.0
