@@ -21,8 +21,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry import checker, curves, shortest_paths
-from bezierplan.geometry.checker import TOLERANCE, first_collision
-from bezierplan.geometry.checker.certificates import is_free
+from bezierplan.geometry.checker import TOLERANCE, first_collision, is_free
 from bezierplan.geometry.region import GridRegion, Region, from_origin, region
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
