@@ -286,11 +286,10 @@ def _is_blocked_in_polygons(x, y, region):
     """As `_depth_in_polygons`, where only edges near the point and its ray are looked at."""
     bins, edges = region.bins, region.edges
     row = int((y - bins.low[1]) // bins.side)
-    if not 0 <= row < bins.rows:
-        return True
-    inside_free = False
     begin, _ = columns_between(x, x, bins)
-    for column in range(begin, bins.columns):
+    inside_free = False
+    # Below and above all edges, as by rounding on the border, the ray meets none.
+    for column in range(begin, bins.columns if 0 <= row < bins.rows else 0):
         place = column * bins.rows + row
         for e in bins.members[bins.first[place] : bins.first[place + 1]]:
             ax, ay, bx, by = edges[e]
