@@ -267,11 +267,11 @@ def _obstacles() -> Iterator[Series]:
             lambda n, blocked=blocked: _check(math.isqrt(n), blocked[n]),
         )
     reasons = {
-        "circles": "tangents join pairs of circles",
+        "circles": "a search that may reach any circle",
         "polygons": "lines of sight join pairs of corners",
     }
     for name, draw in rooms:
-        sizes = [side**2 for side in sides[:6]]
+        sizes = [side**2 for side in sides]
         yield Series(
             "obstacles",
             f"exact bound, {name}",

@@ -6,7 +6,7 @@ border. A path may touch its boundary. The union is formed before any test, beca
 seam of two touching obstacles enters neither of them and yet is deep inside their union.
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Workspace
+
+if TYPE_CHECKING:
+    from bezierplan.geometry.bins import Bins
 
 # Unit vectors whose cross product is at most this count as collinear: a vertex between them is a
 # rounding artefact of the union, not a corner.
@@ -90,6 +93,8 @@ class PolygonRegion(NamedTuple):
         Its inverse.
     convex : (n,) array of bool
         Whether the blocked region is convex at the end of an edge.
+    bins : Bins
+        The edges by place.
     """
 
     edges: np.ndarray
@@ -97,6 +102,7 @@ class PolygonRegion(NamedTuple):
     following: np.ndarray
     preceding: np.ndarray
     convex: np.ndarray
+    bins: "Bins"
 
 
 Region = GridRegion | CircleRegion | PolygonRegion
@@ -285,6 +291,8 @@ def _circle_region(circles: Circles) -> CircleRegion:
 def _polygon_region(polygons: Polygons) -> PolygonRegion:
     import shapely
 
+    from bezierplan.geometry.bins import bins_of
+
     left, right, bottom, top = polygons.bounds
     obstacles = [shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles]
     free = shapely.box(left, bottom, right, top).difference(shapely.union_all(obstacles))
@@ -308,7 +316,8 @@ def _polygon_region(polygons: Polygons) -> PolygonRegion:
     direction = _unit(end - begin)
     normals = np.column_stack([-direction[:, 1], direction[:, 0]])
     convex = _cross(direction, direction[following]) < 0
-    return PolygonRegion(np.hstack([begin, end]), normals, following, preceding, convex)
+    edges = np.hstack([begin, end])
+    return PolygonRegion(edges, normals, following, preceding, convex, bins_of(edges))
 
 
 def _corners(ring: np.ndarray) -> np.ndarray:

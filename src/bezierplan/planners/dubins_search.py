@@ -21,7 +21,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.geometry import checker, curves, shortest_paths
-from bezierplan.geometry.checker import first_collision
+from bezierplan.geometry.checker import TOLERANCE, first_collision, is_free
 from bezierplan.geometry.region import GridRegion, Region, from_origin, region
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
@@ -57,6 +57,9 @@ _TRIED = 16
 
 # Nodes of the lattice over which distances around obstacles are counted, about.
 _NODES = 40_000
+
+# Squares of the lattice are tested for obstacles so many times so many at once, then one by one.
+_AT_ONCE = 8
 
 # Where the lattice knows no way, the distance ahead is this many times the straight line.
 _DETOUR = 2.0
@@ -217,6 +220,7 @@ def _distances(low, side, shape, known, blocked):
     ahead = np.full((rows, columns), np.inf)
     settled = np.zeros((rows, columns), dtype=np.bool_)
     link = np.empty((1, 2, 2))
+    clear = _clear_squares(low, side, shape, blocked)
     heap = [(np.inf, 0, 0)]
     for k in range(len(known)):
         column, row = round((known[k, 0] - low[0]) / side), round((known[k, 1] - low[1]) / side)
@@ -244,10 +248,50 @@ def _distances(low, side, shape, known, blocked):
                     low[0] + side * other_column,
                     low[1] + side * other_row,
                 )
-                if first_collision(link, blocked)[0] == np.inf:
+                if (
+                    _is_clear(row, column, up, right, clear)
+                    or first_collision(link, blocked)[0] == np.inf
+                ):
                     ahead[other_row, other_column] = so_far
                     heapq.heappush(heap, (so_far, other_row, other_column))
     return ahead
+
+
+@compiled
+def _clear_squares(low, side, shape, blocked):
+    """Which squares between four nodes are certified free, with a margin: bool (rows + 1, columns +
+    1), one ring of squares more than there are. First many are tried at once.
+    """
+    clear = np.zeros((shape[0] + 1, shape[1] + 1), dtype=np.bool_)
+    hull = np.empty((4, 2))
+    for row in range(0, shape[0] - 1, _AT_ONCE):
+        for column in range(0, shape[1] - 1, _AT_ONCE):
+            top = min(row + _AT_ONCE, shape[0] - 1)
+            right = min(column + _AT_ONCE, shape[1] - 1)
+            _square(low, side, row, top, column, right, hull)
+            all_free = is_free(hull, blocked)
+            for i in range(row, top):
+                for j in range(column, right):
+                    if not all_free:
+                        _square(low, side, i, i + 1, j, j + 1, hull)
+                    clear[i + 1, j + 1] = all_free or is_free(hull, blocked)
+    return clear
+
+
+@allocation_free
+def _square(low, side, bottom, top, left, right, hull):
+    """Write the corners (4, 2) of some squares of the lattice with a margin around them."""
+    margin = 0.01 * side + 10.0 * TOLERANCE
+    for k in range(4):
+        hull[k, 0] = low[0] + (side * right + margin if k % 2 else side * left - margin)
+        hull[k, 1] = low[1] + (side * top + margin if k // 2 else side * bottom - margin)
+
+
+@allocation_free
+def _is_clear(row, column, up, right, clear):
+    """Whether a link to a neighbour lies in a clear square, or between two of which one is."""
+    i, j = row + min(up, 0) + 1, column + min(right, 0) + 1
+    return clear[i, j] or (up == 0 and clear[i - 1, j]) or (right == 0 and clear[i, j - 1])
 
 
 @allocation_free

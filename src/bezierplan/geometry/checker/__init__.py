@@ -17,6 +17,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry.checker.certificates import is_free
 from bezierplan.geometry.checker.collision import first_collision
 from bezierplan.geometry.checker.corner_cutting import CONTACT_RADIUS, first_corner_cut
 from bezierplan.geometry.checker.distances import (
@@ -33,7 +34,7 @@ from bezierplan.geometry.checker.hulls import (
 )
 from bezierplan.geometry.region import CircleRegion, GridRegion, Region, from_origin
 
-__all__ = ["TOLERANCE", "Check", "check", "first_collision", "refuse_unfit"]
+__all__ = ["TOLERANCE", "Check", "check", "first_collision", "is_free", "refuse_unfit"]
 
 # Each halving accumulates as many rounding errors as the degree. Above this degree coordinates must
 # be smaller, so that the sum of the errors does not grow further.

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numba.extending import overload
 
+from bezierplan.geometry.bins import columns_between, rows_between, rows_near
 from bezierplan.geometry.checker.hulls import (
     LARGEST_COORDINATE,
     LARGEST_DEGREE,
@@ -282,7 +283,35 @@ def _depth_in_polygons(x, y, region):
 
 
 def _is_blocked_in_polygons(x, y, region):
-    return depth_at(x, y, region) > TOLERANCE
+    """As `_depth_in_polygons`, where only edges near the point and its ray are looked at."""
+    bins, edges = region.bins, region.edges
+    row = int((y - bins.low[1]) // bins.side)
+    begin, _ = columns_between(x, x, bins)
+    inside_free = False
+    # Below and above all edges, as by rounding on the border, the ray meets none.
+    for column in range(begin, bins.columns if 0 <= row < bins.rows else 0):
+        place = column * bins.rows + row
+        for e in bins.members[bins.first[place] : bins.first[place + 1]]:
+            ax, ay, bx, by = edges[e]
+            if (ay > y) != (by > y):
+                at = ax + (y - ay) / (by - ay) * (bx - ax)
+                # An edge lies in several bins; it counts in the one of the crossing.
+                first, last = columns_between(ax, bx, bins)
+                crossed, _ = columns_between(at, at, bins)
+                if x < at and min(max(crossed, first), last) == column:
+                    inside_free = not inside_free
+    if inside_free:
+        return False
+    reach = 2.0 * TOLERANCE
+    begin, end = columns_between(x - reach, x + reach, bins)
+    low, high = rows_near(y - reach, y + reach, bins)
+    for column in range(begin, end + 1):
+        for place in range(column * bins.rows + low, column * bins.rows + high + 1):
+            for e in bins.members[bins.first[place] : bins.first[place + 1]]:
+                ax, ay, bx, by = edges[e]
+                if distance_to_segment(x, y, ax, ay, bx, by) <= TOLERANCE:
+                    return False
+    return True
 
 
 @allocation_free
@@ -305,35 +334,33 @@ def _is_free_in_polygons(points, region):
     Edges away from the hull do not matter, whichever side it is on. The others form chains of
     consecutive edges: see `_passes_chain`.
     """
-    x_low, x_high, y_low, y_high = box(points)
+    x_low, x_high, y_low, y_high = hull_box = box(points)
     along_x, along_y = direction(points)
     across_low, across_high = range_along(points, -along_y, along_x)
     touched = np.zeros(len(region.edges), dtype=np.bool_)
-    remaining = 0
-    for e in range(len(region.edges)):
-        ax, ay, bx, by = region.edges[e]
-        if (
-            max(ax, bx) < x_low - _APART
-            or min(ax, bx) > x_high + _APART
-            or max(ay, by) < y_low - _APART
-            or min(ay, by) > y_high + _APART
-        ):
-            continue
-        across_a = along_x * (ay - points[0, 1]) - along_y * (ax - points[0, 0])
-        across_b = along_x * (by - points[0, 1]) - along_y * (bx - points[0, 0])
-        if (
-            max(across_a, across_b) < across_low - _APART
-            or min(across_a, across_b) > across_high + _APART
-        ):
-            continue
-        low, high = _sides_of_edge(points, region.edges[e], region.normals[e])
-        if low > _APART or high < -_APART:
-            continue
-        touched[e] = True
-        remaining += 1
+    near = np.empty(len(region.edges), dtype=np.int64)
+    count = 0
+    bins = region.bins
+    is_straight = bulge_of(points) <= _APART
+    first, last = columns_between(x_low, x_high, bins)
+    begin, end = columns_between(x_low - 2.0 * _APART, x_high + 2.0 * _APART, bins)
+    low, high = rows_near(y_low - 2.0 * _APART, y_high + 2.0 * _APART, bins)
+    for column in range(begin, end + 1):
+        if is_straight:
+            within = min(max(column, first), last)
+            low, high = rows_between(points[0], points[-1], within, bins)
+        for place in range(column * bins.rows + low, column * bins.rows + high + 1):
+            for e in bins.members[bins.first[place] : bins.first[place + 1]]:
+                if not touched[e] and _touches(
+                    points, hull_box, along_x, along_y, across_low, across_high, region, e
+                ):
+                    touched[e] = True
+                    near[count] = e
+                    count += 1
 
-    for e in range(len(region.edges)):
-        if touched[e] and not touched[region.preceding[e]]:
+    remaining = count
+    for e in near[:count]:
+        if not touched[region.preceding[e]]:
             length = _passes_chain(
                 points, region, touched, e, along_x, along_y, across_low, across_high
             )
@@ -342,6 +369,29 @@ def _is_free_in_polygons(points, region):
             remaining -= length
     # Only rings that the hull touches all around remain: undecided.
     return remaining == 0 and not is_blocked(points[0, 0], points[0, 1], region)
+
+
+@allocation_free
+def _touches(points, hull_box, along_x, along_y, across_low, across_high, region, e) -> bool:
+    """Whether an edge may touch a hull with a bounding box, and a range across its direction."""
+    x_low, x_high, y_low, y_high = hull_box
+    ax, ay, bx, by = region.edges[e]
+    if (
+        max(ax, bx) < x_low - _APART
+        or min(ax, bx) > x_high + _APART
+        or max(ay, by) < y_low - _APART
+        or min(ay, by) > y_high + _APART
+    ):
+        return False
+    across_a = along_x * (ay - points[0, 1]) - along_y * (ax - points[0, 0])
+    across_b = along_x * (by - points[0, 1]) - along_y * (bx - points[0, 0])
+    if (
+        max(across_a, across_b) < across_low - _APART
+        or min(across_a, across_b) > across_high + _APART
+    ):
+        return False
+    low, high = _sides_of_edge(points, region.edges[e], region.normals[e])
+    return low <= _APART and high >= -_APART
 
 
 @allocation_free

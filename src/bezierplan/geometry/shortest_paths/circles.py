@@ -1,21 +1,23 @@
-"""Shortest paths around circles: the tangent graph."""
+"""Shortest paths around circles: the tangent graph, or what of it a shortest path can need."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.checker import TOLERANCE, check
+from bezierplan.geometry.bins import Bins, bins_of_discs
+from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import CircleRegion
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
-from bezierplan.kernels import compiled
+from bezierplan.geometry.shortest_paths.tangents import SAME_ANGLE, Scene, met, search
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.problem import Problem
 
 # The polyline along arcs is at most this much longer than they are, in units.
 POLYLINE_EXCESS = 1e-6
 
-# Arcs that overlap by less than this angle count as touching.
-_SAME_ANGLE = 1e-8
+# What lies within this angle of an arc's ends is counted as part of it.
+_END_OF_ARC = 1e-6
 
 # A polyline around an arc is refined at most this many times to keep clear of a neighbouring
 # circle.
@@ -25,62 +27,199 @@ _REFINEMENTS = 20
 def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
     """The tangent graph: start, target, and the ends of all common tangents, joined by tangents and
     by the arcs between them.
+
+    A search finds what of it a shortest path can need, and the rest is left out. But the ends of
+    all tangents cut the arcs, so that the sum of their lengths has the bits of the whole graph.
     """
     from scipy.sparse import coo_array
 
-    centres, radii = _outer_circles(blocked)
-    tangents = _tangents(problem, centres, radii)
-    points, on_circle = np.array(tangents.points), np.array(tangents.circles)
-    pairs = np.array(tangents.pairs)
-    pairs = pairs[
-        _straight_is_free(points[pairs[:, 0]], points[pairs[:, 1]], centres, radii, blocked.bounds)
-    ]
-    arcs, angles = _free_arcs(tangents, centres, radii, blocked.bounds)
+    bins = bins_of_discs(blocked.centres, blocked.radii, blocked.bounds)
+    outer = _is_outer(blocked.centres, blocked.radii, bins)
+    centres = np.concatenate([[problem.start, problem.target], blocked.centres[outer]])
+    radii = np.concatenate([np.zeros(2), blocked.radii[outer]])
+    scene = Scene(centres, radii, blocked.bounds, bins_of_discs(centres, radii, blocked.bounds))
+    tangents, ways = search(scene)
+    if not len(tangents):
+        return no_path()
+    nodes = _nodes(np.unique(tangents[:, [0, 2]]), scene)
+    pairs = _pairs(tangents, nodes, scene)
+    arcs, angles = _free_arcs(nodes, ways, scene)
 
-    tail, head = np.concatenate([pairs, arcs]).T
+    # The nodes of the graph, start and target first, and the ends of its edges among them.
+    used, ends = np.unique(np.concatenate([[[0, 1]], pairs, arcs]), return_inverse=True)
+    tail, head = ends.reshape(-1, 2)[1:].T
+    on_circle = nodes.circles[used]
+    points = _points(on_circle, nodes.angles[used], scene)
     sweep = np.concatenate([np.zeros(len(pairs)), angles])
-    straight = np.hypot(*(points[pairs[:, 1]] - points[pairs[:, 0]]).T)
-    length = np.concatenate([straight, radii[on_circle[arcs[:, 0]]] * angles])
+    straight = np.hypot(*(points[head[: len(pairs)]] - points[tail[: len(pairs)]]).T)
+    length = np.concatenate([straight, radii[on_circle[tail[len(pairs) :]]] * angles])
     kept = _shortest_between(tail, head, length)
     tail, head, sweep, length = tail[kept], head[kept], sweep[kept], length[kept]
     graph = coo_array(
         (np.maximum(length, NO_LENGTH), (tail, head)), shape=(len(points), len(points))
     ).tocsr()
-    _, nodes = dijkstra_path(graph, 0, 1)
-    if not len(nodes):
-        return no_path()
+    _, path = dijkstra_path(graph, 0, 1)
 
     edge_of = {pair: edge for edge, pair in enumerate(zip(tail.tolist(), head.tolist()))}
-    steps = list(zip(nodes[:-1].tolist(), nodes[1:].tolist()))
-    used = [edge_of.get((a, b), edge_of.get((b, a))) for a, b in steps]
+    steps = list(zip(path[:-1].tolist(), path[1:].tolist()))
+    taken = [edge_of.get((a, b), edge_of.get((b, a))) for a, b in steps]
     # An arc is stored counterclockwise.
-    sweeps = [sweep[edge] if tail[edge] == a else -sweep[edge] for edge, (a, _) in zip(used, steps)]
+    sweeps = [
+        sweep[edge] if tail[edge] == a else -sweep[edge] for edge, (a, _) in zip(taken, steps)
+    ]
     return Bound(
-        math.fsum(length[used]),
-        _circumscribed(points[nodes], on_circle[nodes], sweeps, centres, radii, blocked),
+        math.fsum(length[taken]),
+        _circumscribed(points[path], on_circle[path], sweeps, scene, blocked, bins),
     )
 
 
-class _Tangents(NamedTuple):
-    """Nodes of a tangent graph and the pairs joined by a straight line, not yet tested.
+@compiled
+def _is_outer(centres: np.ndarray, radii: np.ndarray, bins: Bins) -> np.ndarray:
+    """Which circles do not lie inside another; of equal circles only the first: bool (n,)."""
+    outer = np.ones(len(radii), dtype=np.bool_)
+    for i in range(len(radii)):
+        column = int((centres[i, 0] - bins.low[0]) // bins.side)
+        row = int((centres[i, 1] - bins.low[1]) // bins.side)
+        place = column * bins.rows + row
+        for j in bins.members[bins.first[place] : bins.first[place + 1]]:
+            distance = math.hypot(centres[i, 0] - centres[j, 0], centres[i, 1] - centres[j, 1])
+            if i != j and distance + radii[i] <= radii[j]:
+                outer[i] &= distance + radii[j] <= radii[i] and i < j
+    return outer
 
-    points: positions (x, y). circles: the circle that a node lies on, -1 for start and target.
-    angles: its angle there. pairs: two nodes.
+
+class _Nodes(NamedTuple):
+    """Start, target, and the ends of all tangents at some circles, each with a name.
+
+    circles: (n,) the circle of the scene that a node lies on. angles: (n,) its angle there. names:
+    (n,) ascending numbers.
     """
 
-    points: list[tuple[float, float]]
-    circles: list[int]
-    angles: list[float]
-    pairs: list[tuple[int, int]]
+    circles: np.ndarray
+    angles: np.ndarray
+    names: np.ndarray
 
-    def add(self, centre: np.ndarray, radius: float, circle: int, angle: float) -> int:
-        """Add a node on a circle and return its number."""
-        self.points.append(
-            (centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle))
+
+def _nodes(circles: np.ndarray, scene: Scene) -> _Nodes:
+    """The nodes at some circles (m,), ascending; the first two are start and target."""
+    parts = []
+    for circle in circles[circles > 1].tolist():
+        # Python's own `hypot` is a last bit more exact than that of kernels.
+        step = (scene.centres - scene.centres[circle]).T.tolist()
+        parts.append(_nodes_at(circle, np.array(list(map(math.hypot, *step))), scene))
+    angles = np.concatenate([[0.0, 0.0], *(part[0] for part in parts)])
+    names = np.concatenate([[0, 1], *(part[1] for part in parts)])
+    circles = names // (4 * len(scene.radii))
+    circles[1] = 1
+    return _Nodes(circles, angles, names)
+
+
+@allocation_free
+def _name(circle: int, other: int, crossing: bool, side: int, count: int) -> int:
+    """The name of a node at one of `count` circles: the end of a tangent to another, or to an end,
+    that is `crossing` the line between their centres or not, and on one side of it (1 or -1).
+    """
+    return ((circle * count + other) * 2 + int(crossing)) * 2 + int(side > 0)
+
+
+@compiled
+def _nodes_at(circle: int, distances: np.ndarray, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """The ends of all tangents at a circle: angles (n,) and names (n,). distances: of the other
+    circles' centres, (m,).
+    """
+    centres, radii = scene.centres, scene.radii
+    count = 0
+    angles, names = np.empty(4 * len(radii)), np.empty(4 * len(radii), dtype=np.int64)
+    for other in range(len(radii)):
+        if other == circle:
+            continue
+        # Of two circles, the tangents are computed from the first: rounding may depend on it.
+        i, j = (circle, other) if circle < other or other < 2 else (other, circle)
+        dx, dy = centres[j, 0] - centres[i, 0], centres[j, 1] - centres[i, 1]
+        distance = distances[other]
+        towards = math.atan2(dy, dx)
+        for crossing in range(1 if other < 2 else 2):
+            opposite = 0.0
+            if other < 2:
+                half = 0.0
+                if distance > radii[i] + TOLERANCE:
+                    half = math.acos(radii[i] / distance)
+            elif crossing:
+                if distance < radii[i] + radii[j] - TOLERANCE:
+                    continue
+                half = math.acos(min(1.0, (radii[i] + radii[j]) / distance))
+                opposite = math.pi if circle == j else 0.0
+            else:
+                if distance <= abs(radii[i] - radii[j]):
+                    continue
+                half = math.acos((radii[i] - radii[j]) / distance)
+            for side in range(-1, 2, 2):
+                if other < 2 and half == 0.0 and side < 0:
+                    continue
+                angles[count] = towards + side * half + opposite
+                names[count] = _name(circle, other, crossing == 1, side, len(radii))
+                count += 1
+    return angles[:count], names[:count]
+
+
+@compiled
+def _points(circles: np.ndarray, angles: np.ndarray, scene: Scene) -> np.ndarray:
+    """The points (n, 2) at some angles of circles."""
+    points = np.empty((len(circles), 2))
+    for i in range(len(circles)):
+        k = circles[i]
+        points[i, 0] = scene.centres[k, 0] + scene.radii[k] * math.cos(angles[i])
+        points[i, 1] = scene.centres[k, 1] + scene.radii[k] * math.sin(angles[i])
+    return points
+
+
+def _pairs(tangents: np.ndarray, nodes: _Nodes, scene: Scene) -> np.ndarray:
+    """The two nodes that each tangent (t, 4) joins, as `search` gives it: (p, 2)."""
+    names = []
+    for a, sense, b, other_sense in tangents.tolist():
+        crossing = sense != other_sense and min(a, b) > 1
+        # A path leaves a circle to the right of the line to the other centre if it turns left.
+        seen_from = min(a, b) if min(a, b) > 1 else max(a, b)
+        side = -sense if seen_from == a else other_sense
+        names.append(
+            [
+                one if one < 2 else _name(one, other, crossing, side, len(scene.radii))
+                for one, other in sorted([(a, b), (b, a)])
+            ]
         )
-        self.circles.append(circle)
-        self.angles.append(angle % math.tau)
-        return len(self.points) - 1
+    # An end on a circle has one node there, whichever side was asked for.
+    return np.unique(np.searchsorted(nodes.names, names), axis=0)
+
+
+def _free_arcs(nodes: _Nodes, ways: np.ndarray, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Free arcs between neighbouring nodes of a circle, counterclockwise, that some ways (w, 3)
+    around circles need, as `search` gives them: node pairs (n, 2) and angles (n,).
+    """
+    pairs, sweeps = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
+    for circle in np.unique(ways[:, 0]).astype(int).tolist():
+        if circle < 2:
+            continue
+        first, end = np.searchsorted(nodes.circles, [circle, circle + 1])
+        angles = nodes.angles[first:end] % math.tau
+        order = np.argsort(angles)
+        number, begin = order + first, angles[order]
+        sweep = np.diff(begin, append=begin[0] + math.tau)
+        _, way_begin, way_sweep = ways[ways[:, 0] == circle, :, None].transpose(1, 0, 2)
+        needed = ((begin - way_begin + _END_OF_ARC) % math.tau <= way_sweep + 2 * _END_OF_ARC).any(
+            axis=0
+        )
+        middle, half = _covered_angles(circle, scene)
+        after = (middle - begin[needed, None]) % math.tau
+        overlap = np.full(after.shape, -math.inf)
+        for turn in (-math.tau, 0.0, math.tau):
+            shared = np.minimum(sweep[needed, None], after + turn + half) - np.maximum(
+                0, after + turn - half
+            )
+            overlap = np.maximum(overlap, shared)
+        needed[needed] = (overlap <= SAME_ANGLE).all(axis=1)
+        pairs.append(np.column_stack([number, np.roll(number, -1)])[needed])
+        sweeps.append(sweep[needed])
+    return np.concatenate(pairs), np.concatenate(sweeps)
 
 
 def _shortest_between(tail: np.ndarray, head: np.ndarray, length: np.ndarray) -> np.ndarray:
@@ -93,127 +232,19 @@ def _shortest_between(tail: np.ndarray, head: np.ndarray, length: np.ndarray) ->
     return order[first]
 
 
-def _outer_circles(blocked: CircleRegion) -> tuple[np.ndarray, np.ndarray]:
-    """Centres and radii of the circles that do not lie inside another; of equal circles only the
-    first.
-    """
-    centres, radii = blocked.centres, blocked.radii
-    distance = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
-    inside = distance + radii[:, None] <= radii[None]
-    number = np.arange(len(radii))
-    dropped = (inside & (~inside.T | (number[:, None] > number[None]))).any(axis=1)
-    return centres[~dropped], radii[~dropped]
-
-
-def _tangents(problem: Problem, centres: np.ndarray, radii: np.ndarray) -> _Tangents:
-    """Nodes 0 and 1 are start and target. Where one of them lies on a circle, a node of the circle
-    has the same position.
-    """
-    graph = _Tangents([problem.start, problem.target], [-1, -1], [math.nan, math.nan], [(0, 1)])
-    for end, (x, y) in enumerate((problem.start, problem.target)):
-        for k, (centre, radius) in enumerate(zip(centres, radii)):
-            distance = math.hypot(x - centre[0], y - centre[1])
-            towards = math.atan2(y - centre[1], x - centre[0])
-            half = 0.0 if distance <= radius + TOLERANCE else math.acos(radius / distance)
-            for side in (-1, 1) if half else (1,):
-                graph.pairs.append((end, graph.add(centre, radius, k, towards + side * half)))
-    for i in range(len(radii)):
-        for j in range(i + 1, len(radii)):
-            dx, dy = centres[j] - centres[i]
-            distance = math.hypot(dx, dy)
-            towards = math.atan2(dy, dx)
-            tangents = []
-            if distance > abs(radii[i] - radii[j]):
-                tangents.append((math.acos((radii[i] - radii[j]) / distance), 0.0))
-            if distance >= radii[i] + radii[j] - TOLERANCE:
-                tangents.append((math.acos(min(1.0, (radii[i] + radii[j]) / distance)), math.pi))
-            for half, opposite in tangents:
-                for side in (-1, 1):
-                    a = graph.add(centres[i], radii[i], i, towards + side * half)
-                    b = graph.add(centres[j], radii[j], j, towards + side * half + opposite)
-                    graph.pairs.append((a, b))
-    return graph
-
-
-@compiled
-def _straight_is_free(
-    a: np.ndarray, b: np.ndarray, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray
-) -> np.ndarray:
-    """Which segments from a to b, both (n, 2), are free: bool (n,). Most are blocked by one of the
-    first circles that are looked at.
-    """
-    free = np.empty(len(a), dtype=np.bool_)
-    left, right, bottom, top = (
-        bounds[0] - TOLERANCE,
-        bounds[1] + TOLERANCE,
-        bounds[2] - TOLERANCE,
-        bounds[3] + TOLERANCE,
-    )
-    for i in range(len(a)):
-        (x, y), (end_x, end_y) = a[i], b[i]
-        step_x, step_y = end_x - x, end_y - y
-        square = max(step_x * step_x + step_y * step_y, NO_LENGTH)
-        free[i] = (
-            min(x, end_x) >= left
-            and max(x, end_x) <= right
-            and min(y, end_y) >= bottom
-            and max(y, end_y) <= top
-        )
-        for k in range(len(radii)):
-            if not free[i]:
-                break
-            share = ((centres[k, 0] - x) * step_x + (centres[k, 1] - y) * step_y) / square
-            share = min(max(share, 0.0), 1.0)
-            distance = math.hypot(
-                x + share * step_x - centres[k, 0], y + share * step_y - centres[k, 1]
-            )
-            free[i] = distance >= radii[k] - TOLERANCE
-    return free
-
-
-def _free_arcs(
-    tangents: _Tangents, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Arcs between neighbouring nodes of a circle, counterclockwise: node pairs (n, 2) and angles
-    (n,).
-    """
-    circles, angles = np.array(tangents.circles), np.array(tangents.angles)
-    pairs, sweeps = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
-    for k in range(len(radii)):
-        nodes = np.flatnonzero(circles == k)
-        nodes = nodes[np.argsort(angles[nodes])]
-        if len(nodes) < 2:
-            continue
-        begin = angles[nodes]
-        sweep = np.diff(begin, append=begin[0] + math.tau)
-        middle, half = _covered_angles(k, centres, radii, bounds)
-        after = (middle[None] - begin[:, None]) % math.tau
-        overlap = np.full(after.shape, -math.inf)
-        for turn in (-math.tau, 0.0, math.tau):
-            shared = np.minimum(sweep[:, None], after + turn + half) - np.maximum(
-                0, after + turn - half
-            )
-            overlap = np.maximum(overlap, shared)
-        free = (overlap <= _SAME_ANGLE).all(axis=1)
-        pairs.append(np.column_stack([nodes, np.roll(nodes, -1)])[free])
-        sweeps.append(sweep[free])
-    return np.concatenate(pairs), np.concatenate(sweeps)
-
-
-def _covered_angles(
-    k: int, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _covered_angles(k: int, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Parts of a circle that lie in other circles or outside the border: middle and half-width of
     each angular interval.
     """
+    centres, radii = scene.centres, scene.radii
     radius = radii[k]
-    step = np.delete(centres - centres[k], k, axis=0)
-    other = np.delete(radii, k)
+    others = np.delete(np.arange(2, len(radii)), k - 2)
+    step, other = centres[others] - centres[k], radii[others]
     distance = np.hypot(step[:, 0], step[:, 1])
     meets = distance < radius + other - TOLERANCE
     step, other, distance = step[meets], other[meets], distance[meets]
     cosine = (distance**2 + radius**2 - other**2) / (2 * distance * radius)
-    left, right, bottom, top = bounds
+    left, right, bottom, top = scene.bounds
     margin = (
         np.array(
             [
@@ -234,13 +265,16 @@ def _circumscribed(
     points: np.ndarray,
     circles: np.ndarray,
     sweeps: list[float],
-    centres: np.ndarray,
-    radii: np.ndarray,
+    scene: Scene,
     blocked: CircleRegion,
+    bins: Bins,
 ) -> np.ndarray:
     """The polyline (n, 2) along a path of straight pieces (sweep 0) and arcs: around the arcs, fine
     enough to be free.
+
+    bins: those of the blocked circles.
     """
+    centres, radii = scene.centres, scene.radii
     runs: list[tuple[int, float, int]] = []
     for node, sweep in enumerate(sweeps):
         if runs and sweep * runs[-1][1] > 0:
@@ -265,7 +299,9 @@ def _circumscribed(
                 )
             polyline.append(points[end : end + 1])
         line = np.concatenate(polyline)
-        if check(np.stack([line[:-1], line[1:]], axis=1), blocked).feasible:
+        near = met(line, bins, len(blocked.radii))
+        nearby = blocked._replace(centres=blocked.centres[near], radii=blocked.radii[near])
+        if first_collision(np.stack([line[:-1], line[1:]], axis=1), nearby)[0] == math.inf:
             break
         step *= 0.5
     return line

@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 
+from bezierplan.geometry.bins import Bins, columns_between, rows_between
 from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import PolygonRegion
-from bezierplan.geometry.shortest_paths.bins import Bins, bins_of, columns_between, rows_between
 from bezierplan.geometry.shortest_paths.graph import Bound, along, shortest_in_graph, way_back
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.problem import Problem
@@ -27,7 +27,7 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
-    bins = bins_of(blocked.edges)
+    bins = blocked.bins
     if len(nodes) > MOST_POLYGON_NODES:
         return along(nodes, _search_polygons(nodes, before, after, blocked, bins))
     return shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked, bins))
@@ -88,11 +88,11 @@ def _search_polygons(
             return way_back(came_by, length)
         turn = _turn_at(nodes, tail, i, before, after)
         for j in range(len(nodes)):
-            if settled[j] or (
-                turn and turn * _offset(nodes[tail], nodes[i], nodes[j]) < -TOLERANCE
-            ):
+            if settled[j]:
                 continue
             if not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
+                continue
+            if turn and turn * _offset(nodes[tail], nodes[i], nodes[j]) < -TOLERANCE:
                 continue
             so_far = length + math.hypot(nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1])
             heapq.heappush(heap, (so_far + ahead[j], so_far, i, j))
@@ -117,12 +117,14 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
     """
     x, y = nodes[i, 0], nodes[i, 1]
     dx, dy = nodes[j, 0] - x, nodes[j, 1] - y
+    one = dx * (before[i, 1] - y) - dy * (before[i, 0] - x)
+    other = dx * (after[i, 1] - y) - dy * (after[i, 0] - x)
+    # Most corners are refused here, without a root or a division.
+    clearly = 2.0 * TOLERANCE * (abs(dx) + abs(dy))
+    if min(one, other) < -clearly and max(one, other) > clearly:
+        return False
     length = math.hypot(dx, dy)
-    if length == 0.0:
-        return True
-    one = (dx * (before[i, 1] - y) - dy * (before[i, 0] - x)) / length
-    other = (dx * (after[i, 1] - y) - dy * (after[i, 0] - x)) / length
-    return not _apart(one, other)
+    return length == 0.0 or not _apart(one / length, other / length)
 
 
 @allocation_free
@@ -138,7 +140,7 @@ def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) ->
         for step_y in range(high - low + 1):
             row = low + step_y if b[1] >= a[1] else high - step_y
             place = column * bins.rows + row
-            for e in bins.edges[bins.first[place] : bins.first[place + 1]]:
+            for e in bins.members[bins.first[place] : bins.first[place + 1]]:
                 beside = (
                     max(edges[e, 0], edges[e, 2]) < left or min(edges[e, 0], edges[e, 2]) > right
                 )

@@ -1,5 +1,5 @@
-"""Edges by place: a raster of square bins, so that a segment is compared with the edges near it and
-not with all.
+"""Edges or discs by place: a raster of square bins, so that a segment is compared with what is near
+it and not with all.
 """
 
 import math
@@ -9,13 +9,16 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 
+# Bins are no smaller, in units, so that their margins are wider than the checker's tolerance.
+_LEAST_SIDE = 1e-4
+
 
 class Bins(NamedTuple):
-    """Edges by the bins that they pass through.
+    """Edges by the bins that they pass through, or discs by those that their bounding boxes touch.
 
     low: (2,) the lower left corner of all bins, side: of a bin, in units. columns, rows: number of
-    bins. first: (columns rows + 1,) where the edges of each bin, column by column, begin in
-    `edges`.
+    bins. first: (columns rows + 1,) where the members of each bin, column by column, begin in
+    `members`.
     """
 
     low: np.ndarray
@@ -23,26 +26,43 @@ class Bins(NamedTuple):
     columns: int
     rows: int
     first: np.ndarray
-    edges: np.ndarray
+    members: np.ndarray
 
 
 def bins_of(edges: np.ndarray) -> Bins:
     """The bins of edges (n, 4), about as many as there are edges."""
-    low, high = edges.reshape(-1, 2).min(axis=0), edges.reshape(-1, 2).max(axis=0)
+    ends = edges.reshape(-1, 2) if len(edges) else np.zeros((1, 2))
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    return _filled(low, high, edges, np.zeros(len(edges)))
+
+
+def bins_of_discs(centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> Bins:
+    """The bins of discs, (n, 2) and (n,), and of all between bounds (4,); about as many as there
+    are discs.
+    """
+    up = np.column_stack([np.zeros(len(radii)), radii])
+    low = np.minimum(bounds[::2], (centres - radii[:, None]).min(axis=0, initial=math.inf))
+    high = np.maximum(bounds[1::2], (centres + radii[:, None]).max(axis=0, initial=-math.inf))
+    return _filled(low, high, np.hstack([centres - up, centres + up]), radii)
+
+
+def _filled(low: np.ndarray, high: np.ndarray, edges: np.ndarray, reach: np.ndarray) -> Bins:
+    """The bins between two corners (2,) of edges (n, 4) that reach (n,) to both sides."""
     width, height = (high - low).tolist()
-    side = math.sqrt(width * height / len(edges))
+    side = max(math.sqrt(width * height / max(1, len(edges))), _LEAST_SIDE)
     empty = np.zeros(0, dtype=np.int64)
     bins = Bins(low, side, math.ceil(width / side) + 1, math.ceil(height / side) + 1, empty, empty)
-    first, sorted_edges = _sort(edges, bins)
-    return bins._replace(first=first, edges=sorted_edges)
+    first, members = _sort(edges, reach, bins)
+    return bins._replace(first=first, members=members)
 
 
 @compiled
-def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
+def _sort(edges: np.ndarray, reach: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     """The numbers of the edges of each bin: counted first, then put in their places."""
     first = np.zeros(bins.columns * bins.rows + 1, dtype=np.int64)
     for e in range(len(edges)):
-        begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
+        left, right = min(edges[e, 0], edges[e, 2]), max(edges[e, 0], edges[e, 2])
+        begin, end = columns_between(left - reach[e], right + reach[e], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
             # += on a slice takes seconds to compile.
@@ -52,7 +72,8 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     slot = first[:-1].copy()
     members = np.empty(first[-1], dtype=np.int64)
     for e in range(len(edges)):
-        begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
+        left, right = min(edges[e, 0], edges[e, 2]), max(edges[e, 0], edges[e, 2])
+        begin, end = columns_between(left - reach[e], right + reach[e], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
             for number in range(column * bins.rows + low, column * bins.rows + high + 1):
@@ -70,6 +91,14 @@ def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
 
 
 @allocation_free
+def rows_near(low: float, high: float, bins: Bins) -> tuple[int, int]:
+    """The first and the last row of bins between two ordinates, the smaller one first."""
+    begin = int((low - bins.low[1]) // bins.side)
+    end = int((high - bins.low[1]) // bins.side)
+    return max(begin, 0), min(end, bins.rows - 1)
+
+
+@allocation_free
 def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple[int, int]:
     """The first and the last row of bins that a segment passes within a column, a little more
     rather than less.
@@ -82,6 +111,4 @@ def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple
         enter, leave = (left - a[0]) / step, (left + bins.side - a[0]) / step
         y, other = a[1] + enter * (b[1] - a[1]), a[1] + leave * (b[1] - a[1])
         low, high = max(low, min(y, other)), min(high, max(y, other))
-    begin = int((low - margin - bins.low[1]) // bins.side)
-    end = int((high + margin - bins.low[1]) // bins.side)
-    return max(begin, 0), min(end, bins.rows - 1)
+    return rows_near(low - margin, high + margin, bins)
