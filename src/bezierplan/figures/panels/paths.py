@@ -218,7 +218,7 @@ class Options(RunsPanel):
     )
     letters: list[Label] = Field(
         None,
-        description="what is written beside start and target: a list of two",
+        description="what is written next to start and target: a list of two",
         min_length=2,
         max_length=2,
     )
@@ -239,7 +239,8 @@ class Options(RunsPanel):
     )
     printed: PrintedTable = Field(
         None,
-        description="the name of a published table whose shortest length is given beside the run's",
+        description="the name of a published table whose shortest length is given next to the "
+        "run's",
     )
     view: View = Field(
         None,
