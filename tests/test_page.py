@@ -484,7 +484,7 @@ def test_search_finds_every_published_number_and_every_run_shown_by_its_words():
         == "a: objective, mean: 10.51 → 10.71 inconclusive"
     )
     assert found["one/circles/p/a/0"].text.startswith("best feasible run of ")
-    assert found["one/baseline_comparison/a"].more == "one a"
+    assert found["one/baseline_comparison/a"].more == "one baseline a"
     assert "one/table1/c/length/mean" not in found
 
 

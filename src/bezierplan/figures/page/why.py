@@ -142,8 +142,8 @@ def _share(row: pd.Series, check: share.Options, name: str) -> str:
     if check.pick:
         picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
         return (
-            f"in {picked}, {happens if row['effect'] else f'it is not so that {happens}'}; the "
-            "claim needs it there"
+            f"the claim needs that, in {picked}, {happens}; "
+            f"{'this holds' if row['effect'] else 'this does not hold'}"
         )
     needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
     needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
