@@ -885,6 +885,13 @@ def test_workspace_numbers(numbers, printed):
         assert (centre["x"].item(), centre["y"].item()) == grid().centre(7)
 
 
+def test_wide_grids_number_every_third_column():
+    frame = workspace.data(
+        from_lines(["." * 16], 1.0, "cell"), options_of(workspace, numbers="all")
+    )
+    assert frame["number"].dropna().tolist() == [0, 3, 6, 9, 12, 15]
+
+
 def test_embedding_marks_surplus_cells():
     frame = workspace.data(
         from_lines(["..."] * 3, 10.0, "unit"), options_of(workspace, numbers="all", embed=True)

@@ -85,6 +85,10 @@ def main(words: list[str]) -> None:
     if not words:
         parser.print_help()
         return
+    if words[0] not in COMMANDS and not words[0].startswith("-"):
+        from bezierplan.schema.checked import closest
+
+        parser.error(f"{words[0]!r}: unknown{closest(words[0], COMMANDS)}")
     name = parser.parse_args(words[:1]).command
     examples = "\n".join(f"    {PROGRAM} {example}" for example in EXAMPLES.get(name, ()))
     own = _Parser(

@@ -34,6 +34,7 @@ from bezierplan.schema.model import (
     at_most,
     wrong,
 )
+from bezierplan.schema.words import amount
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.limits import LARGEST
@@ -595,11 +596,13 @@ def _note(frame: pd.DataFrame, unit: str) -> Note:
     )
     clauses += [*_clear(row), feasible_note(frame)]
     if "printed" in frame and np.isfinite(row["printed"]):
-        clauses.append(f"shortest printed {row['printed']:.2f} {unit}")
+        printed = f"{row['printed']:.2f}"
+        clauses.append(f"shortest printed {amount(printed, unit)}")
     if (frame["part"] == "optimum").any():
         cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
         clauses.append(f"shortest between cell centres {cells:.2f}, at any angle {bound:.2f}")
-    return Note(f"length {row['length']:.2f} {unit}", run_note(frame, *clauses))
+    length = f"{row['length']:.2f}"
+    return Note(f"length {amount(length, unit)}", run_note(frame, *clauses))
 
 
 def _clear(row: pd.Series) -> list[str]:

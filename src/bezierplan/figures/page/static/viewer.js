@@ -151,6 +151,9 @@ function drawHistory(history) {
 
 const number = (value) => (value === null ? "–" : String(Number(value.toPrecision(5))));
 
+// A number with its unit: 1 cell, 2.5 cells; abbreviations such as m have no plural.
+const amount = (value, unit) => `${number(value)} ${unit}${["unit", "cell"].includes(unit) && value !== 1 ? "s" : ""}`;
+
 function showFacts(id, run, problem) {
   const { unit } = data.workspaces[problem.workspace], drive = run.steps !== null;
   const gap = !run.feasible || !problem.bound ? "" : `, ${(100 * (run.length / problem.bound - 1)).toFixed(1)} % above the bound`;
@@ -158,9 +161,9 @@ function showFacts(id, run, problem) {
     ["Verdict", run.feasible ? "feasible by the certified check" : `not feasible: it ${run.collision ? "collides" : "does not arrive"}`],
     drive ? ["Drive", `${run.claimed ? "arrives" : "stops"} after ${number(run.steps)} steps` +
       (run.collision ? `; first collision at step ${number(run.collision_step)}` : "")] : ["Planner's own check", run.claimed ? "feasible" : "not feasible"],
-    ["Length", run.length === null ? "no path" : `${number(run.length)} ${unit}${gap}`],
-    ["Exact shortest path", problem.bound === null ? "no free path" : `${number(problem.bound)} ${unit}`],
-    run.feasible ? ["Clearance", `${number(run.clearance !== null && Math.abs(run.clearance) < 1e-6 ? 0 : run.clearance)} ${unit}`] : ["Collision depth", `${number(run.depth)} ${unit}`],
+    ["Length", run.length === null ? "no path" : `${amount(run.length, unit)}${gap}`],
+    ["Exact shortest path", problem.bound === null ? "no free path" : amount(problem.bound, unit)],
+    run.feasible ? ["Clearance", amount(run.clearance !== null && Math.abs(run.clearance) < 1e-6 ? 0 : run.clearance, unit)] : ["Collision depth", amount(run.depth, unit)],
     ["Curve", run.curve.replaceAll("_", " ") || "none"],
     ["Evaluations", `${run.evaluations.toLocaleString("en")}; stopped by: ${run.stop.replaceAll("_", " ")}`],
   ];
