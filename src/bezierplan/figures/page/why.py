@@ -13,6 +13,7 @@ import pandas as pd
 
 from bezierplan.analysis.claims.kinds import Check, OfRuns, PublishedMargin, share
 from bezierplan.analysis.metrics import METRICS
+from bezierplan.schema.words import amount
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds import (
@@ -236,7 +237,9 @@ def _unit(row: pd.Series) -> str:
 
 def _amount(value: float, row: pd.Series, check: Check) -> str:
     """An effect with its unit; a relative one in per cent."""
-    return f"{_printed(100 * value)} %" if check.relative else f"{_printed(value)}{_unit(row)}"
+    if check.relative:
+        return f"{_printed(100 * value)} %"
+    return amount(_printed(value), _unit(row).strip()).strip()
 
 
 def _printed(value: float) -> str:

@@ -81,8 +81,8 @@ class Options(Panel):
     workspace: Described = Field(description="the name of a workspace")
     numbers: Literal["all", "free", "none"] = Field(
         "none",
-        description="which cells show their number (of a wide grid in every third column): all, free "
-        "or none (left out: this)",
+        description="which cells show their number, of a wide grid in every third column: all, "
+        "free or none (left out: this)",
     )
     embed: Flag = Field(
         False,
