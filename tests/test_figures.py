@@ -448,7 +448,7 @@ def test_a_path_stands_beside_the_shortest_one_printed(tmp_path):
         44.125
     }
     assert any(
-        "shortest printed 44.12 unit" in text for text in words(drawn(found, [panel], 1, tmp_path))
+        "shortest printed 44.12 units" in text for text in words(drawn(found, [panel], 1, tmp_path))
     )
 
 
@@ -690,7 +690,7 @@ def test_boxes_show_published_ends_and_a_limit(tmp_path):
     assert frame.loc[frame["part"] == "limit", "value"].tolist() == [33.5]
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
     figure = drawn(comparison(ends), [panel], 1, tmp_path)
-    assert {"published minimum and maximum", "published limit: 33.5 unit"} <= set(words(figure))
+    assert {"published minimum and maximum", "published limit: 33.5 units"} <= set(words(figure))
 
 
 def test_boxes_end_at_the_last_value_within_reach():
