@@ -91,7 +91,7 @@ def test_a_run_is_told_in_words_with_units_and_four_digits():
     assert "note" not in feasible
     colliding = told("song2016/routes/0_15/straight_line/99999")
     assert re.fullmatch(
-        r"no: enters an obstacle at [0-9.]+,[0-9.]+, at most [0-9.]+ unit deep",
+        r"no: enters an obstacle at [0-9.]+,[0-9.]+, at most [0-9.]+ units deep",
         colliding["feasible"],
     )
     assert colliding["note"].startswith("no table has this repeat: this experiment has ")
