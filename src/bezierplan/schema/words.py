@@ -15,7 +15,8 @@ def amount(number: str, unit: str) -> str:
     >>> amount("1", "cell"), amount("21.83", "cell"), amount("0.5", "m")
     ('1 cell', '21.83 cells', '0.5 m')
     """
-    return f"{number} {unit}{'s' if unit in _WORDS and abs(float(number.replace(',', ''))) != 1 else ''}"
+    one = abs(float(number.replace(",", ""))) == 1
+    return f"{number} {unit}{'s' if unit in _WORDS and not one else ''}"
 
 
 def plain(text: str, most: int | None = None) -> str:
