@@ -377,7 +377,7 @@ def _plan(arguments: Namespace) -> None:
 
 
 class _Task(NamedTuple):
-    """What to plan with: a planner with its settings in force, way points, how smooth, and the
+    """What to plan with: a planner with its settings, way points, how smooth, and the
     blocked regions of maps.
     """
 
