@@ -91,7 +91,7 @@ def main(words: list[str]) -> None:
         parser.error(f"{words[0]!r}: unknown{closest(words[0], COMMANDS)}")
     name = parser.parse_args(words[:1]).command
     examples = "\n".join(f"    {PROGRAM} {example}" for example in EXAMPLES.get(name, ()))
-    own = _Parser(
+    command_parser = _Parser(
         prog=f"{PROGRAM} {name}",
         description=COMMANDS[name],
         epilog=f"examples:\n{examples}" if examples else None,
@@ -99,7 +99,7 @@ def main(words: list[str]) -> None:
     )
     try:
         importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}").main(
-            own, words[1:]
+            command_parser, words[1:]
         )
         if sys.stdout:  # which a process without one does not have
             sys.stdout.flush()
