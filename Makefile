@@ -21,9 +21,9 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: help reproduce smoke extended test lint docs wheel image benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
 
 help: ## list these targets
-	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-19s %s\n", $$1, $$2 }'
 
-reproduce: .venv/ready ## every table and figure at the papers' own numbers of repeats, into results/full
+reproduce: .venv/ready ## every table and figure, with as many runs as the papers used, into results/full
 	@$(UNLOCK)
 	$(SNAKEMAKE) $(ARGS)
 
@@ -31,7 +31,7 @@ smoke: .venv/ready ## a small subset in about a minute, into results/smoke
 	@$(UNLOCK)
 	$(SNAKEMAKE) smoke $(ARGS)
 
-extended: .venv/ready ## everything with hundreds to thousands of repeats, into results/extended
+extended: .venv/ready ## everything, with hundreds to thousands of runs per method, into results/extended
 	@$(UNLOCK)
 	$(SNAKEMAKE) extended $(ARGS)
 
@@ -40,7 +40,7 @@ test: lint ## lint, the smoke subset, and all tests (ARGS go to pytest)
 	$(SNAKEMAKE) smoke
 	$(RUN) -m pytest -n auto --dist loadfile $(ARGS)
 
-lint: .venv/ready ## style of Python, Snakemake and JavaScript files, who may import whom, and types
+lint: .venv/ready ## code style, import layers and types
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m snakefmt --check Snakefile workflow
@@ -59,13 +59,13 @@ wheel: .venv/ready ## a wheel for pip, into dist
 image: ## an image for Docker with the workflow and its environment, named bezierplan
 	docker build --tag bezierplan .
 
-benchmark: .venv/ready ## speed of the inner loops, beside the bare minimum
+benchmark: .venv/ready ## speed of the inner loops, compared with a lower bound
 	$(RUN) tests/benchmark/run.py $(ARGS)
 
-mutants: .venv/ready ## plant each fault of tests/mutants, and see that its test catches it (ARGS: --jobs N, words of some faults)
+mutants: .venv/ready ## mutation tests: each fault of tests/mutants must make its test fail (ARGS: --jobs N, words of some faults)
 	$(RUN) tests/mutants/run.py $(ARGS)
 
-compare: .cache/comparison/ready ## our swarm beside other libraries, and all studies' planners beside OMPL, into results/comparison
+compare: .cache/comparison/ready ## our swarm compared with other libraries, all studies' planners with OMPL, into results/comparison
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_robots.py'
@@ -84,12 +84,12 @@ outcome: .venv/ready ## everything at scales full and extended, alternatives and
 	$(SNAKEMAKE) all extended $(ARGS)
 	$(RUN) -m bezierplan outcome
 
-verify-outcome: .venv/ready ## is this installation sound? minutes of runs, tested against docs/outcome
+verify-outcome: .venv/ready ## check this installation: minutes of runs, tested against docs/outcome
 	@$(UNLOCK)
 	$(SNAKEMAKE) $$($(RUN) -m bezierplan verify-outcome --targets) $(ARGS)
 	$(RUN) -m bezierplan verify-outcome
 
-lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
+lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --extra workflow --group dev pyproject.toml -o environment.txt
 	$(LOCK) $(ARGS) --group build -c environment.txt -o environment-build.txt
 	sed -i '/- pip:$$/q' workflow/envs/bezierplan.yaml
@@ -99,7 +99,7 @@ lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions:
 	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
 
-newest: .venv/ready ## does a library's newest version change a bit, or fail a test? which one? (ARGS: other flags of `make lock`)
+newest: .venv/ready ## check whether newer libraries change a result or fail a test, and which (ARGS: other flags of `make lock`)
 	$(RUN) tests/newest/run.py $(ARGS)
 
 clean: ## remove results and caches

@@ -123,16 +123,20 @@ def described(**changes):
 @pytest.mark.parametrize(
     ("changes", "verdict"),
     [
-        ({}, "Of the 1 feasible as often as the baseline, none is shorter or curves less."),
+        (
+            {},
+            "The one method that is feasible as often as the baseline is neither shorter nor less "
+            "curved.",
+        ),
         ({"feasible": 0.5}, "No method is feasible as often as the baseline."),
         (
             {"length": 0.9995},
-            "Of the 1 feasible as often as the baseline, none is shorter or curves less.",
+            "The one method that is feasible as often as the baseline is neither shorter nor less "
+            "curved.",
         ),
         (
             {"curvature": 0.5},
-            "Of the 1 feasible as often as the baseline, 1 is shorter or curves less; the least "
-            "curved, tried, has 0.5 times the "
+            "The one method that is feasible as often as the baseline, tried, has 0.5 times the "
             "curvature, 1.25 times the length and 8 times the CPU time.",
         ),
         (
@@ -159,7 +163,7 @@ def test_the_section_has_a_sentence_for_each_study():
     )
     assert "2 methods" in paragraphs[3]
     assert "at 8 to 1,230 times the baseline's CPU time" in paragraphs[3]
-    assert "those of 1 have corners" in paragraphs[3]
+    assert "1 gives paths with corners" in paragraphs[3]
     assert baseline_comparison.section(table[:0], {}) == []
 
 
@@ -220,4 +224,4 @@ def test_equal_curvature_is_not_less():
     own = pd.DataFrame(
         [described(curvature=1.0), described(curvature=0.9995), described(curvature=0.9)]
     )
-    assert "those of 1 of 3 methods curve less" in baseline_comparison.sentence(own)
+    assert "Of 3 methods, 1 has a lower maximum curvature" in baseline_comparison.sentence(own)

@@ -153,7 +153,7 @@ def test_every_rule_with_a_script_has_its_row():
 
 def test_without_a_start(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(FileNotFoundError, match="run `snakemake` first"):
+    with pytest.raises(FileNotFoundError, match="start `snakemake` first"):
         command.main(ArgumentParser(), [])
 
 

@@ -461,7 +461,7 @@ def test_a_path_stands_beside_the_shortest_one_printed(tmp_path):
         44.125
     }
     assert any(
-        "shortest printed 44.12 unit" in text for text in words(drawn(found, [panel], 1, tmp_path))
+        "shortest printed 44.12 units" in text for text in words(drawn(found, [panel], 1, tmp_path))
     )
 
 
@@ -703,7 +703,7 @@ def test_boxes_show_published_ends_and_a_limit(tmp_path):
     assert frame.loc[frame["part"] == "limit", "value"].tolist() == [33.5]
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
     figure = drawn(comparison(ends), [panel], 1, tmp_path)
-    assert {"published minimum and maximum", "published limit: 33.5 unit"} <= set(words(figure))
+    assert {"published minimum and maximum", "published limit: 33.5 units"} <= set(words(figure))
 
 
 def test_boxes_end_at_the_last_value_within_reach():
@@ -907,6 +907,13 @@ def test_every_height_is_named_unless_there_are_many(heights, named):
     workspace._draw_heights(axes, cells)
     labels = [each.get_label() for each in axes.collections]
     assert sum(label.startswith("height ") for label in labels) == named
+
+
+def test_wide_grids_number_every_third_column():
+    frame = workspace.data(
+        from_lines(["." * 16], 1.0, "cell"), options_of(workspace, numbers="all")
+    )
+    assert frame["number"].dropna().tolist() == [0, 3, 6, 9, 12, 15]
 
 
 def test_embedding_marks_surplus_cells():

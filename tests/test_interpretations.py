@@ -687,10 +687,10 @@ def test_a_row_for_each_study_says_which_interpretation_is_most_likely(tmp_path)
     (row,) = explained.brief(pd.read_csv(tmp_path / "found.csv")).reset_index().to_dict("records")
     assert row == {
         "study": "one",
-        "most likely interpretation": "O1=2",
+        "most likely interpretation": "1 choice differs from the default",
         "numbers in range": "2 of 2",
-        "by other runs": "2",
-        "by exchange": "0",
+        "with new seeds": "2",
+        "by chance": "0",
         "default in range": "1",
         "likelihood over the default's": "10^4 times",
     }
@@ -715,7 +715,7 @@ def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
     )
     assert "log-likelihood ratio against the default +5.0 (10^2 times as likely)" in text
     assert (
-        "Judged anew by runs with other seeds, it has 3 of 4 in range and a log-likelihood of "
+        "Judged again by runs with new seeds, it has 3 of 4 in range and a log-likelihood of "
         "-1.0 (by the runs" in text
     )
     assert "No interpretation explains 1 of the numbers: 1 of table2 for d." in text
@@ -732,10 +732,7 @@ def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
         better.numbers.assign(low=-10.0, high=10.0, in_range=True, method="a"),
         better.likelihoods,
     )
-    assert (
-        "4 of 4 numbers in range (4 if those of one kind in one table were exchanged): it "
-        "explains their level" in told(default, wide)
-    )
+    assert "4 of 4 numbers in range (4 by chance): it explains their level" in told(default, wide)
 
 
 def test_summary_does_not_follow_an_interpretation_that_other_tables_refuse():

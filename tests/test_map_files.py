@@ -166,6 +166,8 @@ def test_an_image_without_a_yaml_file(tmp_path):
         r"expected the length of a pixel's side, or the YAML file of .*room\.PNG",
     ):
         bp.read_map(tmp_path / "room.PNG")
+    with pytest.raises(ValueError, match=r"nowhere\.png: no such file"):
+        bp.read_map(tmp_path / "nowhere.png")
     with pytest.raises(ValueError, match=r"nowhere\.png: cannot be read"):
         bp.read_map(tmp_path / "nowhere.png", resolution=1.0)
 

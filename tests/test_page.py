@@ -215,7 +215,7 @@ def test_claims_that_fail_are_named_with_the_comparison_that_decides():
         words[0]
         == "exact arc length, a lower than b: effect -1 unit (95\u00a0% interval -2 to -0.2)"
     )
-    assert words[1] == "exact arc length, a lower than b: effect 0.4 unit"
+    assert words[1] == "exact arc length, a lower than b: effect 0.4 units"
     assert build.evidence(own.claims[0].model_copy(update={"decisive": None})) == ""
     failed = comparison(None, None, None, "-").model_copy(update={"counted": "0 of 10, 10 of 10"})
     claim = own.claims[0].model_copy(update={"comparisons": [failed], "decisive": 0})
@@ -485,7 +485,7 @@ def test_search_finds_every_published_number_and_every_run_shown_by_its_words():
         == "a: objective, mean: 10.51 → 10.71 inconclusive"
     )
     assert found["one/circles/p/a/0"].text.startswith("best feasible run of ")
-    assert found["one/baseline_comparison/a"].more == "one a"
+    assert found["one/baseline_comparison/a"].more == "one baseline a"
     assert "one/table1/c/length/mean" not in found
 
 

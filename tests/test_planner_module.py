@@ -117,6 +117,24 @@ COMMANDS = {
 }
 
 
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [("plna", "'plna': unknown; did you mean plan? known: "), ("plot", "'plot': unknown; known: ")],
+)
+def test_unknown_command_is_told_with_those_that_are_known(word, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        __main__.main([word])
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", __main__.EXAMPLES)
+def test_help_shows_examples(command, capsys):
+    with pytest.raises(SystemExit):
+        __main__.main([command, "--help"])
+    assert all(example in capsys.readouterr().out for example in __main__.EXAMPLES[command][:1])
+
+
 @linux
 @pytest.mark.parametrize(
     ("command", "place"), [("plan", "import"), ("plan", "plan"), ("check-planner", "plan")]

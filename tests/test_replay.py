@@ -82,16 +82,16 @@ def told(name):
 
 def test_a_run_is_told_in_words_with_units_and_four_digits():
     feasible = told("song2016/routes/0_15/rounded/0")
-    assert re.fullmatch(r"[0-9.]{4,6} unit, [0-9.]+ % above the shortest path", feasible["length"])
+    assert re.fullmatch(r"[0-9.]{4,6} units, [0-9.]+ % above the shortest path", feasible["length"])
     assert (feasible["feasible"], feasible["planner's check"], feasible["clearance"]) == (
         "yes",
         "feasible",
-        "0 unit",
+        "0 units",
     )
     assert "note" not in feasible
     colliding = told("song2016/routes/0_15/straight_line/99999")
     assert re.fullmatch(
-        r"no: enters an obstacle at [0-9.]+,[0-9.]+, at most [0-9.]+ unit deep",
+        r"no: enters an obstacle at [0-9.]+,[0-9.]+, at most [0-9.]+ units deep",
         colliding["feasible"],
     )
     assert colliding["note"].startswith("no table has this repeat: this experiment has ")

@@ -34,8 +34,8 @@ SENTENCES = {
         {},
         {"direction": "lower"},
         "mga lower than ga",
-        "Case 1: in exact arc length (mean), mga is 3 cell higher than ga (95 % interval 1 to 5); "
-        "the claim says lower; " + OURS.format("0.5 cell"),
+        "Case 1: in exact arc length (mean), mga is 3 cells higher than ga (95 % interval 1 to 5); "
+        "the claim says lower; " + OURS.format("0.5 cells"),
     ),
     "many times as high, in counted work": (
         {
@@ -58,9 +58,9 @@ SENTENCES = {
         {"statistic": "rank"},
         {"direction": "lower"},
         "all 3 together",
-        "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cell higher (95 % "
+        "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cells higher (95 % "
         "interval 1 to 5); "
-        "the claim says lower in all of them; " + OURS.format("0.5 cell"),
+        "the claim says lower in all of them; " + OURS.format("0.5 cells"),
     ),
     "a stated difference": (
         {"test": "equal_within", "effect": -0.000331, "low95": math.nan, "margin": 0.01},
@@ -88,9 +88,9 @@ SENTENCES = {
         {"test": "trend", "statistic": "rank", "effect": -3.0, "low95": -5.0, "high95": -1.0},
         {"x": "obstacles", "direction": "up"},
         "obstacles up",
-        "Case 1: exact arc length falls by 3 cell (95 % interval -5 to -1) from the least to the "
+        "Case 1: exact arc length falls by 3 cells (95 % interval -5 to -1) from the least to the "
         "largest obstacles; "
-        "the claim says that it rises; " + OURS.format("0.5 cell"),
+        "the claim says that it rises; " + OURS.format("0.5 cells"),
     ),
     "a function": (
         {

@@ -19,30 +19,48 @@ PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m
 """How the command was called."""
 
 COMMANDS = {
-    "list": "studies, their artefacts, methods, workspaces and numbers of repeats",
-    "replay": "one run again, bit-equal, with its picture",
-    "digest": "one hash per run table, over sorted rows without times: what `same content` means",
-    "verify": "every stored path and bound of a scale's results judged again, in processes that "
-    "no planner was in",
-    "check-planner": "the contract tests of a planner, on small and degenerate problems",
-    "plan": "one path on a map, checked by exact geometry",
-    "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",
-    "needed": "runs that scale extended has, beside those that claims and numbers need",
-    "effort": "where the CPU time of the last start of the workflow went, by what it was for",
-    "new": "a study of your own, which runs at once",
-    "run": "targets of the workflow, from any folder",
-    "completion": "what a shell evaluates to complete these words",
-    "verify-outcome": "numbers made here beside those of docs/outcome: is this installation sound?",
+    "list": "list studies: their tables, figures, methods, workspaces, experiments and claims",
+    "replay": "rerun one run, bit-identical, and plot it",
+    "digest": "print a checksum of each run table; the order of rows does not matter, and timings "
+    "are left out",
+    "verify": "check every stored path and bound of a scale's results again, in fresh processes",
+    "check-planner": "run the contract tests of a planner on small and degenerate problems",
+    "plan": "plan one path on a map and check it by exact geometry",
+    "forecast": "estimate run time, disk use and longest jobs of a target",
+    "needed": "list the runs that claims and published numbers need, next to those of scale "
+    "extended",
+    "effort": "profile the last run of the workflow: CPU time by kind of work",
+    "new": "make a study of your own, which runs at once",
+    "run": "run targets of the workflow, from any folder",
+    "completion": "print what a shell evaluates to complete commands and names",
+    "verify-outcome": "compare numbers made here with docs/outcome: is this installation sound?",
     "outcome": "copy the outcome of results/extended and "
     "results/full to docs/outcome and into the README",
 }
+
+EXAMPLES = {
+    "list": ("list", "list methods song2016", "list --settings --studies tharwat2018"),
+    "replay": (
+        "replay song2016/routes/15_240/smooth/3",
+        "replay elhoseny2017/moving/moving_slow_0_10/mga_replans/0",
+    ),
+    "digest": ("digest results/full",),
+    "verify": ("verify results/full --cores 2",),
+    "check-planner": (
+        "check-planner bca --study ma2020",
+        "check-planner mystudy/walk.py --settings '{tries: 200}'",
+    ),
+    "forecast": ("forecast song2016_table1", "forecast extended --cores 100"),
+    "new": ("new mystudy", "new mystudy --from map.yaml --start 1,1 --target 9,9"),
+}
+"""Examples that the help of a command shows, where the command does not write its own."""
 
 
 class _Parser(argparse.ArgumentParser):
     """A parser that tells what is wrong in one line, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` tells what is expected\n")
+        self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` shows what is expected\n")
 
 
 def main(words: list[str]) -> None:
@@ -59,7 +77,7 @@ def main(words: list[str]) -> None:
         "command",
         choices=COMMANDS,
         metavar="COMMAND",
-        help="what to do; `COMMAND --help` tells its arguments",
+        help="what to do; `COMMAND --help` shows its arguments",
     )
     parser.add_argument(
         "--version", action="version", version=f"bezierplan {bezierplan.__version__}"
@@ -67,11 +85,21 @@ def main(words: list[str]) -> None:
     if not words:
         parser.print_help()
         return
+    if words[0] not in COMMANDS and not words[0].startswith("-"):
+        from bezierplan.schema.checked import closest
+
+        parser.error(f"{words[0]!r}: unknown{closest(words[0], COMMANDS)}")
     name = parser.parse_args(words[:1]).command
-    own = _Parser(prog=f"{PROGRAM} {name}", description=COMMANDS[name])
+    examples = "\n".join(f"    {PROGRAM} {example}" for example in EXAMPLES.get(name, ()))
+    command_parser = _Parser(
+        prog=f"{PROGRAM} {name}",
+        description=COMMANDS[name],
+        epilog=f"examples:\n{examples}" if examples else None,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     try:
         importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}").main(
-            own, words[1:]
+            command_parser, words[1:]
         )
         if sys.stdout:  # which a process without one does not have
             sys.stdout.flush()

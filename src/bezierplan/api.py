@@ -246,7 +246,7 @@ class Answer(Judged):
     method : str
         Name of the method or the planner.
     settings : dict
-        All settings in force.
+        All settings that were used.
     claimed_feasible : bool
         The planner's own verdict.
     objective : float

@@ -1,6 +1,6 @@
-"""What Snakemake shows while it works: in a terminal a bar a rule with jobs done, jobs in all, and
-time left; without one a line every 15 seconds or less often; at the end where the results are, how
-long it took and what came out, or the one line in which each job that failed says why.
+"""Output of Snakemake while it works: in a terminal, one progress bar per rule with jobs done, jobs
+in all and time left; without one, a line every 15 seconds or less often. At the end: the place of
+the results, the time taken and the outcome, or for each failed job one line with the reason.
 
 Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this
 one. It is the rich logger with other columns.

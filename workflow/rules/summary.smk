@@ -10,7 +10,7 @@ rule baseline_comparison:
             category="summary",
             labels={
                 "item": "comparison with the baseline",
-                "shows": "each method beside the exact shortest path with rounded corners",
+                "shows": "each method compared with the exact shortest path with rounded corners",
             },
             caption="../report/summary.rst",
         ),

@@ -15,7 +15,7 @@ rule table:
         comparison=report(
             f"{RESULTS}/tables/{{table}}.comparison.csv",
             category="{study}",
-            labels={"item": "{table}", "shows": "published numbers beside ours"},
+            labels={"item": "{table}", "shows": "published numbers next to ours"},
             caption="../report/artefact.rst",
         ),
     log:

@@ -1,5 +1,5 @@
-"""Comparison with the baseline: each method beside what anyone could use, the exact shortest path
-with rounded corners.
+"""Comparison of each method with the baseline that anyone could use, the exact shortest path with
+rounded corners.
 
 A method is measured under the conditions of some experiments, a condition being a problem with the
 values of the varied settings. Under each, the median of its runs is divided by the median of the
@@ -128,9 +128,9 @@ def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
         return []
     return [
         f"## Comparison with {BASELINE}",
-        "The baseline is what a practitioner could drive without any of these planners. "
-        "`baseline_comparison.csv` has the numbers: medians over "
-        "conditions of a method's median over the baseline's.",
+        "The baseline is what a practitioner would use without any of these planners. Under each "
+        "condition, the median of a method's runs is divided by the median of the baseline's; "
+        "`baseline_comparison.csv` has the median of these ratios.",
         *(
             f"**{titles[study]}** {sentence(own)}"
             for study, own in rows.groupby("study", sort=False)
@@ -150,9 +150,9 @@ def sentence(rows: pd.DataFrame) -> str:
     if rows["length"].notna().any():
         cornered, less = np.isinf(rows["curvature"]).sum(), (rows["curvature"] < 1 - EQUAL).sum()
         parts.append(
-            f"Feasible paths are {span(rows['length'])} times as long; those of {less} of "
-            f"{_counted(count, 'method')} curve less, those of "
-            f"{cornered} have corners."
+            f"Feasible paths are {span(rows['length'])} times as long. Of "
+            f"{_counted(count, 'method')}, {less} {'has' if less == 1 else 'have'} a lower maximum "
+            f"curvature, {cornered} {'gives' if cornered == 1 else 'give'} paths with corners."
         )
     return " ".join([*parts, _verdict(rows)])
 
@@ -163,19 +163,29 @@ def _verdict(own: pd.DataFrame) -> str:
     better = reliable[(reliable["length"] < 1 - EQUAL) | (reliable["curvature"] < 1 - EQUAL)]
     if reliable.empty:
         return "No method is feasible as often as the baseline."
+    if better.empty and len(reliable) == 1:
+        return (
+            "The one method that is feasible as often as the baseline is neither shorter nor less "
+            "curved."
+        )
     if better.empty:
         return (
-            f"Of the {len(reliable)} feasible as often as the baseline, "
-            "none is shorter or curves less."
+            f"Of the {len(reliable)} methods feasible as often as the baseline, "
+            "none is shorter or less curved."
         )
     best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
-    found = "is shorter or curves less" if len(better) == 1 else "are shorter or curve less"
+    ratios = (
+        f"has {number(best['curvature'])} times the curvature, {number(best['length'])} times the "
+        f"length and {number(best['cpu'])} times the CPU time."
+    )
+    if len(reliable) == 1:
+        return (
+            f"The one method that is feasible as often as the baseline, {best['method']}, {ratios}"
+        )
+    found = "is shorter or less curved" if len(better) == 1 else "are shorter or less curved"
     return (
-        f"Of the {len(reliable)} feasible as often as the baseline, {len(better)} {found}; the "
-        f"least curved, {best['method']}, has "
-        f"{number(best['curvature'])} times the curvature, {number(best['length'])} times the "
-        f"length and {number(best['cpu'])} "
-        "times the CPU time."
+        f"Of the {len(reliable)} methods feasible as often as the baseline, {len(better)} {found}; "
+        f"the least curved, {best['method']}, {ratios}"
     )
 
 

@@ -309,18 +309,15 @@ def section(
         return []
     parts = [
         "## Interpretations that explain the printed numbers",
-        "What a paper leaves open is varied together, and each such interpretation is scored by "
-        "the joint likelihood of "
-        "the printed numbers among "
-        "what experiments of the paper's size would print. A search judges many by few runs; those "
-        "that may be the best, given the error of their scores, are finalists, among which 1,000 "
-        "runs with other seeds choose, and the chosen one is judged anew by 1,000 runs that chose "
-        "nothing. A number is in range if it "
-        "lies in the central 95 % of these; but an interpretation whose runs vary widely refuses "
-        "nothing, so beside the "
-        "count stands how many "
-        "would be in range if printed numbers were exchanged. Numbers of a quantity that the "
-        "paper does not define have no vote. "
+        "An interpretation fills in the details that a paper leaves open. Each one is scored by "
+        "the joint likelihood of the printed numbers among what experiments of the paper's size "
+        "would print. A search judges many by few runs. Those that may be the best, given the "
+        "error of their scores, are finalists: 1,000 runs with new seeds choose among them, and "
+        "the chosen one is judged again by 1,000 runs that chose nothing. A number is in range if "
+        "it lies in the central 95 % of these. An interpretation whose runs vary widely excludes "
+        "nothing, so each count is given with the one expected by chance, if printed numbers of "
+        "one kind are permuted within their table. Numbers of a quantity that the paper does not "
+        "define have no vote. "
         "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` "
         "for each printed "
         "number, `<study>_held_out.csv` for each table.",
@@ -342,17 +339,27 @@ def brief(interpretations: pd.DataFrame) -> pd.DataFrame:
     rows = {}
     for study, own in interpretations.groupby("study", sort=False):
         best, default = own.iloc[0], own[own["interpretation"] == DEFAULT].iloc[0]
-        named = "none is possible" if best["impossible"] else best["interpretation"]
+        named = _named(best)
         ratio = "impossible" if default["impossible"] else _times(best["score"] - default["score"])
         rows[study] = {
-            "most likely interpretation": "the default" if named == DEFAULT else named,
+            "most likely interpretation": named,
             "numbers in range": f"{best['in_range']} of {best['numbers']}",
-            "by other runs": f"{best['fresh_in_range']:.0f}",
-            "by exchange": f"{best['by_chance']:.0f}",
+            "with new seeds": f"{best['fresh_in_range']:.0f}",
+            "by chance": f"{best['by_chance']:.0f}",
             "default in range": f"{default['in_range']}",
-            "likelihood over the default's": "1" if named == DEFAULT else ratio,
+            "likelihood over the default's": "1" if named == "the default" else ratio,
         }
     return pd.DataFrame.from_dict(rows, orient="index").rename_axis("study")
+
+
+def _named(best: pd.Series) -> str:
+    """The most likely interpretation, by its distance from the default."""
+    if best["impossible"]:
+        return "none is possible"
+    if best["interpretation"] == DEFAULT:
+        return "the default"
+    choices = len(best["interpretation"].split(", "))
+    return f"{choices} {'choice differs' if choices == 1 else 'choices differ'} from the default"
 
 
 def sentences(
@@ -415,7 +422,7 @@ def _judged_anew(best: pd.Series) -> str:
     if best["impossible"]:
         return ""
     return (
-        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']:.0f} of "
+        f"Judged again by runs with new seeds, it has {best['fresh_in_range']:.0f} of "
         f"{best['numbers']} in range and a log-likelihood of "
         f"{best['fresh_score']:.1f} (by the runs that chose it, {best['score']:.1f})."
     )
@@ -433,8 +440,7 @@ def _ratio(best: pd.Series, default: pd.Series) -> str:
 def _counted(row: pd.Series) -> str:
     """How many numbers are in range under an interpretation."""
     return (
-        f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} if "
-        "those of one kind in one table were exchanged)"
+        f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} by chance)"
     )
 
 
@@ -488,7 +494,7 @@ def _searched(explained: pd.DataFrame) -> str:
     if settings.nunique() == 1:
         return f"Each method was tried under {settings.iloc[0]} different settings of its own."
     return (
-        "Different settings tried of each method alone: "
+        "Number of settings tried for each method alone: "
         f"{', '.join(f'{method} {count}' for method, count in settings.items())}."
     )
 

@@ -24,16 +24,13 @@ COLUMNS = {
 """Columns of the table -> their headings; the name of the study stands before them."""
 
 LEGEND = (
-    "*agree*: the published number lies in the range (95 %) of what an experiment of the paper's "
-    "size would print, judging by our runs, "
-    "and the range excludes most of what the paper prints of other methods. *identified*: it is "
-    "to the last digit the length of a path "
-    "that we can name. *disagree*: it lies outside. *inconclusive*: the range is too wide or has "
-    "no end on that side, or the paper "
-    "does not define the quantity. *typical deviation*: median of |ours - published| / "
-    "|published|. *partly*: holds in some of the "
-    "comparisons. The baseline is the exact shortest "
-    "path with rounded corners, which needs no search."
+    "*agree*: the published number lies in our 95 % prediction interval for an experiment of the "
+    "paper's size, and the interval is narrow enough to exclude most of the values published for "
+    "competing methods. *identified*: it is to the last digit the length of a path that we can "
+    "name. *disagree*: it lies outside. *inconclusive*: the interval is too wide or has no end on "
+    "that side, or the paper does not define the quantity. *typical deviation*: median of "
+    "|ours - published| / |published|. *partly*: the claim holds in some of its comparisons. The "
+    "baseline is the exact shortest path with rounded corners, which needs no search."
 )
 
 _NUMBERS = {
@@ -193,8 +190,8 @@ def _by_our_criterion(claims: pd.DataFrame) -> str:
     ]
     count = int(deciding["verdict"].isin(["contradicted", "no effect"]).sum())
     return (
-        f" {count} of them {'fails' if count == 1 else 'fail'} by our criterion alone, where the "
-        "paper gives no number."
+        f" {count} {'claim fails' if count == 1 else 'claims fail'} only by our own criterion, "
+        "because the paper gives no number."
         if count
         else ""
     )

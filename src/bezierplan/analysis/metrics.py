@@ -145,7 +145,7 @@ _CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
 _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 
 METRICS: dict[str, Metric] = {
-    "objective": Metric("u", "the planner's own final value, in its own rule", False),
+    "objective": Metric("u", "final value of the planner's objective", False),
     "length": Metric("u", "exact arc length", True, least="bound"),
     "polygon_length": Metric(
         "u",
@@ -219,7 +219,7 @@ METRICS: dict[str, Metric] = {
         least=0.0,
         step=1.0,
     ),
-    "generations": Metric("-", "generations really done", False, step=1.0),
+    "generations": Metric("-", "generations made", False, step=1.0),
     "rank": Metric(
         "-",
         "rank of the objective among the rows of the table, within one unit",
@@ -519,13 +519,13 @@ METRICS: dict[str, Metric] = {
     ),
     "collisions_a": Metric(
         "particles",
-        "colliding particles an iteration, of 20, the first swarm included",
+        "colliding particles per iteration, of 20, the first swarm included",
         False,
         least=0.0,
         most=20.0,
     ),
     "collisions_b": Metric(
-        "samples", "colliding samples a path that was evaluated, summed over circles", False
+        "samples", "colliding samples per evaluated path, summed over circles", False
     ),
     "collisions_c": Metric(
         "samples", "colliding samples of the best path, added over iterations", False, step=1.0
@@ -535,8 +535,8 @@ METRICS: dict[str, Metric] = {
         "-", "whether the final path collides, by the planner's own test", False, step=1.0
     ),
     "collisions_f": Metric("-", "paths evaluated that collide", False, step=1.0),
-    "bad_samples": Metric("-", "samples of the path that the planner punished", False, step=1.0),
-    # Of drives in worlds that move.
+    "bad_samples": Metric("-", "samples of the path that the planner penalised", False, step=1.0),
+    # Of drives in dynamic environments.
     "arrival": Metric("steps", "when the robot arrives", True, least=0.0),
     "steps": Metric("steps", "how long the robot drives and waits", False, least=0.0),
     "travelled": Metric("u", "distance travelled, whether or not it is free", False, least=0.0),
@@ -556,7 +556,7 @@ METRICS: dict[str, Metric] = {
     "collided": Metric(
         "-", "whether the robot is in an obstacle at any time", False, measures.collided, step=1.0
     ),
-    "hit_waiting": Metric("-", "whether the robot stands when it first collides", False, step=1.0),
+    "hit_waiting": Metric("-", "whether the robot waits when it first collides", False, step=1.0),
     "avoidable": Metric(
         "-",
         "whether the robot could have escaped its first collision when it could know of it",
@@ -565,7 +565,7 @@ METRICS: dict[str, Metric] = {
     ),
     "avoidable_waiting": Metric(
         "-",
-        "whether it stands at a first collision that it could have escaped",
+        "whether it waits at a first collision that it could have escaped",
         False,
         measures.avoidable_waiting,
         step=1.0,
@@ -595,14 +595,14 @@ METRICS: dict[str, Metric] = {
     ),
     "gap_arrival": Metric(
         "-",
-        "arrival / earliest arrival of all drives and of the search that knows the future - 1",
+        "arrival / earliest arrival of all drives and of the clairvoyant search - 1",
         True,
         measures.gap_arrival,
         needs=("arrival",),
     ),
     "gap_least_arrival": Metric(
         "-",
-        "arrival / time before which no robot arrives - 1",
+        "arrival / lower bound on the arrival - 1",
         True,
         measures.gap_least_arrival,
         least=0.0,
@@ -627,20 +627,20 @@ METRICS: dict[str, Metric] = {
     ),
     "least_arrival": Metric(
         "steps",
-        "time before which no robot arrives: its shortest way among what stands still",
+        "lower bound on the arrival: time for the shortest path among what stands still",
         False,
     ),
     "best_arrival": Metric(
         "steps",
-        "earliest arrival of all drives of the experiment and of the search that knows the future",
+        "earliest arrival of all drives of the experiment and of the clairvoyant search",
         False,
     ),
     "clairvoyant_arrival": Metric(
-        "steps", "earliest arrival found by a search that knows the future", False
+        "steps", "earliest arrival found by the clairvoyant search, which knows the future", False
     ),
     "clairvoyant_length": Metric(
         "u",
-        "length of the way with the earliest arrival found by a search that knows the future",
+        "distance travelled with the earliest arrival that the clairvoyant search found",
         False,
     ),
     "replan_mean_s": Metric(

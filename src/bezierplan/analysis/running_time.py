@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 TARGETS = (0.01, 0.02, 0.05, 0.1)
 """Shares above the exact bound that count as solved."""
 
-COSTS = ("evaluations", "cpu_s")
-"""Columns of the runs table that measure work."""
-
 _GROUP = ("experiment", "condition", "method")
 
 

@@ -161,8 +161,8 @@ def report(
     scale: str,
     interpretations: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
 ) -> str:
-    """The summary of a scale as markdown: the headline, the methods beside the baseline, then the
-    claims of each study with their verdicts.
+    """The summary of a scale as markdown: the headline, the methods compared with the baseline,
+    then the claims of each study with their verdicts.
 
     measured: rows with the columns `baseline_comparison.COLUMNS`. interpretations: the tables of
     `explained`, if the search for interpretations has been made.
@@ -170,18 +170,17 @@ def report(
     parts = [
         f"{HEADING}{scale}",
         headline.markdown(headline.headline(numbers, claims, measured, titles)),
-        "Numbers count if they can be judged and say something new; our own findings are not "
-        "among the claims. `audit.csv` names the paths "
-        "of identified numbers. The verdict is the same under every interpretation of what the "
-        "paper leaves open for so many of the claims "
-        "on which others were tried, at the paper's number of runs. `verdict_papers_size`: the "
-        "verdict from as many runs as the paper "
-        "made; `replication_probability`: how often an experiment of that size shows what the "
-        "claim says. Comparisons of a claim are corrected by the procedure of Benjamini and "
-        "Hochberg: it bounds the share of false discoveries, a weaker promise than Holm's, which "
-        "bounds the chance of a single one. Margins, the smallest effects that count, are ours; "
-        "no paper gives one. Interpretations that do not "
-        "decide are left out here; `numbers.csv` and `claims.csv` have them.",
+        "A published number counts if it can be tested and is not derivable from other published "
+        "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
+        "identified numbers. *same verdict under every interpretation*: of the claims tested "
+        "under alternative interpretations, at the paper's number of runs, how many never change "
+        "their verdict. `verdict_papers_size`: the verdict from as many runs as the paper made; "
+        "`replication_probability`: how often an experiment of that size shows what the claim "
+        "says. Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: it "
+        "bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
+        "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
+        "gives one. Here each claim has its verdict under the default interpretation; "
+        "`numbers.csv` and `claims.csv` have the others too.",
         *baseline_comparison.section(measured, titles),
         *(explained.section(*interpretations, titles) if interpretations else []),
     ]
@@ -191,7 +190,7 @@ def report(
         if not primary.empty:
             parts += [f"## {title}", _listed(primary[~found])]
         if found.any():
-            parts += ["Our own findings, no sentences of the paper:", _listed(primary[found])]
+            parts += ["Additional findings, not claimed by the paper:", _listed(primary[found])]
     return "\n\n".join(parts) + "\n"
 
 

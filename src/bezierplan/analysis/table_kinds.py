@@ -76,7 +76,7 @@ class TableValue(Model):
     defined: Flag = Field(
         True,
         description="whether the paper says what it counts here; if not, its numbers are shown "
-        "beside ours, but are all inconclusive, and "
+        "next to ours, but are all inconclusive, and "
         "`snakemake interpretations` leaves them out; left out: true",
     )
     label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")

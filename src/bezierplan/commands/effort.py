@@ -1,5 +1,5 @@
-"""Where the time of the last start of the workflow in this folder went, from what its jobs and
-Snakemake noted.
+"""A profile of the last run of the workflow in this folder, from what its jobs and Snakemake noted:
+CPU time by kind of work.
 """
 
 import json
@@ -48,7 +48,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         session = effort.last(Path())
     except FileNotFoundError:
         raise FileNotFoundError(
-            f"{effort.SESSION}: no start of the workflow ended well in this folder; run "
+            f"{effort.SESSION}: no run of the workflow has succeeded in this folder; start "
             "`snakemake` first"
         ) from None
     print("\n".join(lines(session, *spent(session, Path()))))
@@ -103,7 +103,7 @@ def lines(session: Session, parts: Counter[str], jobs: int, waited: float) -> li
         f"{jobs} jobs in {clock:.0f} s on {session.cores} cores; jobs waited {waited:.0f} s for "
         "kernels that another job compiled",
         "",
-        "| what | seconds of a core | share |",
+        "| work | core-seconds | share |",
         "| --- | --- | --- |",
         *(f"| {name} | {seconds:.1f} | {seconds / whole:.1%} |" for name, seconds in rows),
     ]

@@ -55,9 +55,9 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         type=int,
         default=os.cpu_count(),
         metavar="N",
-        help="how many jobs run at once (default: those here)",
+        help="how many jobs run at once (default: all cores of this machine)",
     )
-    parser.add_argument("--anew", action="store_true", help="count what is there already as well")
+    parser.add_argument("--anew", action="store_true", help="include outputs that already exist")
     arguments = parser.parse_args(words)
     if arguments.cores < 1:
         raise Fault(f"--cores: {arguments.cores}; expected a whole number of at least 1")

@@ -30,11 +30,11 @@ SENSITIVITY, INTERPRETATIONS = (
     ("interpretations.csv", "explained.csv", "held_out.csv"),
 )
 LIKELY = (
-    "Which experiment was it? What each paper leaves open was varied together; these "
-    "interpretations make its printed numbers most likely. "
-    "The paper's page of the documentation says what each choice means, and which numbers no "
-    "interpretation explains. *by exchange*: how "
-    "many would be in range if printed numbers of one kind were exchanged with each other."
+    "Which experiment was it? All details that a paper leaves open were varied together; these "
+    "interpretations make its printed numbers most likely. docs/outcome/summary.md names their "
+    "choices, and the numbers that no interpretation explains. *with new seeds*: judged again by "
+    "runs that did not choose the interpretation. *by chance*: expected if printed numbers of one "
+    "kind are permuted within their table."
 )
 BASELINE_COMPARISON = "baseline_comparison.csv"
 NUMBERS_FULL = "numbers_papers_size.csv"

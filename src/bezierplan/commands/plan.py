@@ -55,10 +55,9 @@ _FROM_MAPS = (
 """What messages about a map or a problem may begin with: here these are options."""
 
 MANUAL = f"""
-Plans one path on a map and checks it by exact geometry. Prints its length, how far that lies above
-the exact shortest path, its largest curvature, its clearance from the map's own obstacles and
-border, whether it is free of obstacles and if not where it enters one, and the CPU time of the
-planner.
+Plans one path on a map and checks it by exact geometry. Prints its length, its excess over the
+exact shortest path, its largest curvature, its clearance from the map's own obstacles and border,
+whether it is feasible and if not where it enters an obstacle, and the CPU time of the planner.
 
 the robot:
   --robot-radius R  every path keeps the distance R from the obstacles and the border of the map, on
@@ -73,7 +72,7 @@ the robot:
                     spot. With --strict a path along which it is not free is refused
   turning radius    a setting of the default planner. Where rounding has no room for it, a path that
                     keeps it is searched; if none is found, the radius that is kept is printed
-                    beside it. With --strict such a path is refused
+                    next to it. With --strict such a path is refused
   --smooth continuous
                     transitions between lines and arcs, along which the curvature rises and falls,
                     wherever there is room for them. The largest curvature that is printed is
@@ -82,9 +81,10 @@ the robot:
                     radians, counterclockwise from the x-axis. The path turns no tighter than the
                     turning radius: the shortest one without obstacles, if it is free (Dubins), or
                     else one by a search (hybrid A*), pulled tight
-  --via X,Y         way points in their order, or with --via-order shortest in that of the exact
-                    shortest path through all of them, at most {tours.MOST_POINTS}; the path turns
-                    no tighter there than elsewhere, if the search finds one that does not
+  --via X,Y         way points in the given order, or with --via-order shortest in the order of
+                    the exact shortest path through all of them, at most {tours.MOST_POINTS}. At a
+                    way point the path turns no tighter than elsewhere, if the search finds such a
+                    path; otherwise it has a corner there
 
 maps:
   .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what
@@ -109,9 +109,9 @@ planners:
 files:
   .svg, .png       a picture
   .csv             distance, x, y, heading and curvature at equal distances along the path, at most
-                   --step apart; with --speed also speed and time. Speed is at most V and, with
-                   --lateral-acceleration A, the root of A over the curvature; with --acceleration
-                   the path begins and ends at rest
+                   --step apart; with --speed V also speed and time. The speed is at most V and,
+                   with --lateral-acceleration A, the square root of A / curvature; with
+                   --acceleration the robot begins and ends at rest
   .geojson         the same points as a line; .yaml  as a nav_msgs/Path message of ROS
 """
 
@@ -121,11 +121,11 @@ examples:
     python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
         --start 2,10 --target 18,10 --settings '{turning_radius: 0.3}' --out path.svg
 
-  The same way by the genetic algorithm of song2016, on cells of 0.5 m, as points:
+  The same problem by the genetic algorithm of song2016, on cells of 0.5 m, as points:
     python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
         --start 2,10 --target 18,10 --like song2016/smooth --cell 0.5 --out path.csv
 
-  The way of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points
+  The path of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points
   0.1 m apart:
     python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
         --start 2,10 --target 18,10 --robot-radius 0.4 --settings '{turning_radius: 0.5}' \\
@@ -376,7 +376,7 @@ def _plan(arguments: Namespace) -> None:
 
 
 class _Task(NamedTuple):
-    """What to plan with: a planner with its settings in force, way points, how smooth, and the
+    """What to plan with: a planner with its settings, way points, how smooth, and the
     blocked regions of maps.
     """
 

@@ -1,4 +1,4 @@
-"""Rerun one run from its name alone: bit-equal, with its picture."""
+"""Rerun one run from its name alone: bit-identical, with its picture."""
 
 from argparse import ArgumentParser
 from pathlib import Path
@@ -14,6 +14,7 @@ from bezierplan.figures import animation, sheet
 from bezierplan.figures.panels import Sources, panel_of
 from bezierplan.geometry import checker, curves
 from bezierplan.running import rides
+from bezierplan.schema.words import amount
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES, Experiment
@@ -61,12 +62,14 @@ def described(run: pd.Series, problem: Problem, experiment: Experiment) -> list[
             if 0 < run["bound"] < np.inf
             else ""
         )
-        lines.append(("length", f"{run['length']:.4g} {unit}{excess}"))
+        lines.append(("length", amount(f"{run['length']:.4g}", unit) + excess))
         lines.append(
             (
                 "clearance",
-                f"{0 if abs(run['clearance']) <= checker.TOLERANCE else run['clearance']:.4g} "
-                f"{unit}",
+                amount(
+                    f"{0 if abs(run['clearance']) <= checker.TOLERANCE else run['clearance']:.4g}",
+                    unit,
+                ),
             )
         )
     lines.append(("feasible", _verdict(run, unit)))
@@ -90,16 +93,11 @@ def _verdict(run: pd.Series, unit: str) -> str:
         return "yes"
     if not np.isfinite(run["collision_at"]):
         return "no: no path from start to target"
+    deep = f"at most {amount(format(run['collision_depth'], '.4g'), unit)} deep"
     if "steps" in run:  # of a drive: when, not where
-        return (
-            f"no: first collision at step {run['collision_at']:.4g}, at most "
-            f"{run['collision_depth']:.4g} {unit} deep"
-        )
+        return f"no: first collision at step {run['collision_at']:.4g}, {deep}"
     x, y = curves.point_at(results.path_of(run), run["collision_at"])
-    return (
-        f"no: enters an obstacle at {x:.4g},{y:.4g}, "
-        f"at most {run['collision_depth']:.4g} {unit} deep"
-    )
+    return f"no: enters an obstacle at {x:.4g},{y:.4g}, {deep}"
 
 
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:

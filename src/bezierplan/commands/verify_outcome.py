@@ -1,4 +1,4 @@
-"""Numbers made here beside those of docs/outcome: is this installation sound? `make verify-outcome`
+"""Numbers made here compared with docs/outcome: is this installation sound? `make verify-outcome`
 makes the tables first.
 
 These are the tables that are compared with published numbers: minutes, where the whole outcome

@@ -69,7 +69,7 @@ class Outcome(NamedTuple):
     claimed_feasible: Annotated[
         bool,
         Column(
-            "the planner's own test of the path: part of its method, recorded but never repaired",
+            "the planner's own verdict on its path, recorded as it is",
             drive="did the robot arrive?",
         ),
     ]
@@ -132,7 +132,7 @@ class DriveOutcome(NamedTuple):
         float,
         Column(
             "among cells: the least length that a last plan from cell centre to cell centre could "
-            "have, with the way to the first centre",
+            "have, with the distance to the first centre",
             UNITS,
         ),
     ]
@@ -143,9 +143,8 @@ class DriveOutcome(NamedTuple):
     known_at: Annotated[
         float,
         Column(
-            "first step from which on the robot could know of its first collision, by what its "
-            "policy lets it see; "
-            "not a number if it never could",
+            "first step at which the information that its policy gives the robot showed its first "
+            "collision; not a number if it never did",
             STEPS,
         ),
     ]
@@ -153,7 +152,7 @@ class DriveOutcome(NamedTuple):
         bool,
         Column(
             "could it have arrived without a collision from where it was then? True is certain; "
-            "the clairvoyant search can miss a way"
+            "where it is false, the clairvoyant search may have missed a path"
         ),
     ]
     clearance_least: Annotated[
@@ -171,7 +170,7 @@ class Bound(NamedTuple):
         Column(
             "length of the exact shortest path; infinite without a free one",
             UNITS,
-            "length of the shortest way through places that are free at some time, in units",
+            "length of the shortest path through places that are free at some time, in units",
         ),
     ]
     least_length: Annotated[
@@ -189,15 +188,16 @@ class Bound(NamedTuple):
 
 
 class DriveBound(NamedTuple):
-    """The rest of that row where a world moves."""
+    """The rest of that row in a dynamic environment."""
 
     least_arrival: Annotated[
         float, Column("no robot arrives earlier; `bound` over the pace", STEPS)
     ]
     clairvoyant_arrival: Annotated[
-        float, Column("earliest arrival found by a search that knows the future", STEPS)
+        float,
+        Column("earliest arrival found by a clairvoyant search, which knows the future", STEPS),
     ]
-    clairvoyant_length: Annotated[float, Column("length of its way", UNITS)]
+    clairvoyant_length: Annotated[float, Column("length of its path", UNITS)]
     best_arrival: Annotated[
         float,
         Column(
@@ -209,7 +209,7 @@ class DriveBound(NamedTuple):
 
 
 class Times(NamedTuple):
-    """A row of a file of times, which never repeat."""
+    """A row of a file of times, which are not reproducible."""
 
     id: Annotated[RunName, Column("the run")]
     cpu_s: Annotated[float, Column("its CPU time", SECONDS)]
@@ -220,7 +220,7 @@ class DriveTimes(NamedTuple):
     """The rest of that row for a drive."""
 
     replan_mean_s: Annotated[float, Column("mean CPU time of the replans", SECONDS)]
-    replan_95_s: Annotated[float, Column("the quantile of 95 % of these", SECONDS)]
+    replan_95_s: Annotated[float, Column("their 95th percentile", SECONDS)]
     replan_max_s: Annotated[float, Column("the longest of these", SECONDS)]
     replans_late: Annotated[int, Column("how many took longer than a step")]
 

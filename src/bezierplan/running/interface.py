@@ -27,6 +27,9 @@ LIMIT = 60.0
 `serves`.
 """
 
+MOST_EXPLAINED = 4
+"""Missing settings that a message explains; of more it gives the names."""
+
 _EXPECTED = "expected bool, int, float, Literal, or Annotated with a Range"
 
 
@@ -135,13 +138,18 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
     with a location.
     """
     declared = planner_settings(module)
-    missing = [
-        ", ".join(filter(None, [f"{name}: {each}", each.meaning]))
-        for name, each in declared.items()
-        if name not in settings
-    ]
+    missing = {name: each for name, each in declared.items() if name not in settings}
+    if len(missing) > MOST_EXPLAINED:
+        raise Fault(
+            f"{location} are missing: {', '.join(missing)}; `list --settings` explains those of "
+            "studies' planners, and --study or --like takes the settings of a study's method"
+        )
     if missing:
-        raise Fault(f"{location} are missing: {'; '.join(missing)}")
+        explained = [
+            ", ".join(filter(None, [f"{name}: {each}", each.meaning]))
+            for name, each in missing.items()
+        ]
+        raise Fault(f"{location} are missing: {'; '.join(explained)}")
     for name, each in declared.items():
         if wanted := setting_fault(each, settings[name]):
             raise Fault(f"{location}: {name}: {settings[name]!r}; expected {wanted}")

@@ -131,7 +131,7 @@ class ConfigFile(Model):
     )
     settings: dict[Name, dict[Name, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
         {},
-        description="study → settings that take the place of those of the same name in its "
+        description="study → settings that override those of the same name in its "
         "`experiments.yaml`",
     )
 

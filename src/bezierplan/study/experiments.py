@@ -66,10 +66,12 @@ class Method(Model):
         "study's folder"
     )
     settings: Settings = Field(
-        {}, description="settings of this method alone, by name; the strongest"
+        {}, description="settings of this method alone, by name; they take precedence"
     )
     policy: Name = Field(
-        None, description="the name of a policy, in experiments in worlds that move and only there"
+        None,
+        description="the name of a policy: needed in experiments in dynamic environments, refused "
+        "in others",
     )
     variant_of: Name = Field(
         None, description="the method whose published numbers this one is compared with"
@@ -90,17 +92,16 @@ Margins = Annotated[
 
 
 class Policy(Model):
-    """What a robot does when its world changes."""
+    """When a robot in a dynamic environment replans, and what it knows."""
 
     replan: Literal["never", "every_step", "when_blocked", "when_changed"] = Field(
-        description="when the robot plans again: never, at every `every`-th step, when_blocked, "
-        "that is when the rest of its way is, or "
-        "when_changed, that is when the world has changed: cells at some moments, circles that "
-        "move at every step"
+        description="when the robot replans: never; every_step, that is at every `every`-th one; "
+        "when_blocked, that is when the rest of its path is blocked; or when_changed, that is "
+        "when the environment has changed (cells at some moments, circles that move at every step)"
     )
     every: Count = Field(
         1,
-        description="of every_step: after how many steps, "
+        description="of every_step: the number of steps between plans, "
         "a whole number of at least 1; left out: 1",
     )
     warm: Flag = Field(
@@ -110,7 +111,7 @@ class Policy(Model):
     )
     waits: Flag = Field(
         True,
-        description="whether the robot stops in front of what is in its way, "
+        description="whether the robot stops in front of an obstacle on its path, "
         "true or false; left out: true",
     )
     sees: Literal["before", "after"] = Field(
@@ -125,8 +126,8 @@ class Policy(Model):
     )
     check_margin: NotNegative = Field(
         0.0,
-        description="how far circles must stay away from the "
-        "rest of its way, in units; left out: 0",
+        description="the distance that circles must keep from the rest of its path, in units; "
+        "left out: 0",
     )
     plan_margins: Margins = Field(
         [0.0],
@@ -134,15 +135,19 @@ class Policy(Model):
         "until there is a plan; left out: [0]",
     )
     brake: NotNegative = Field(
-        0.0, description="how far ahead its way must be clear for it to move, in units; left out: 0"
+        0.0,
+        description="the look-ahead distance along its path that must be free before it moves, in "
+        "units; left out: 0",
     )
     horizon: Positive = Field(
-        math.inf, description="how far ahead along its way it checks, in units; left out: all of it"
+        math.inf,
+        description="the distance ahead along its path that it checks, in units; left out: all "
+        "of it",
     )
     evades: Flag = Field(
         False,
-        description="among circles, whether it steps aside where it would stop and one is about "
-        "to come there; left out: false",
+        description="among circles, whether it makes an evasive manoeuvre where it would stop and "
+        "a circle is about to arrive; left out: false",
     )
     spacing: Positive = Field(
         0.5,
@@ -176,8 +181,8 @@ class Problem(Model):
     )
     settings: Settings = Field(
         {},
-        description="settings that go with this problem, stronger than the study's and weaker "
-        "than a method's own",
+        description="settings for this problem; they take precedence over the study's, a method's "
+        "own over them",
     )
     reference: Positive = Field(
         None,
@@ -300,7 +305,7 @@ class Experiment(Model):
 
 
 class BaselineComparison(Model):
-    """What the summary measures the study's methods against."""
+    """The baseline with which the summary compares the study's methods."""
 
     baseline: Name = Field(description="a baseline")
     experiments: listed(Name) = Field(
@@ -327,8 +332,8 @@ class ExperimentsFile(Model):
         description="settings of all methods. A planner's settings are the keyword-only arguments "
         "of its function `plan`; each "
         "needs a value, there "
-        "are no defaults. The name of a planner holds settings of its methods alone, stronger "
-        "than the others: `prm: {samples: 50}`"
+        "are no defaults. Under the name of a planner: settings of its methods alone, which take "
+        "precedence over the others, such as `prm: {samples: 50}`"
     )
     presets: dict[Name, dict[Annotated[str, matching(PART, PART_EXPECTED)], Settings]] = Field(
         {},
@@ -337,7 +342,7 @@ class ExperimentsFile(Model):
         "`profile: {default: {}, tuned: {...}}`",
     )
     policies: dict[Name, Policy] = Field(
-        {}, description="name → what a robot does in a world that moves"
+        {}, description="name → replanning policy of a robot in a dynamic environment"
     )
     workspaces: Annotated[
         dict[Name, Annotated[Workspace, one_of("kind", kinds())]], at_most(MOST_ENTRIES)
@@ -350,16 +355,17 @@ class ExperimentsFile(Model):
     )
     baseline_comparison: BaselineComparison = Field(
         None,
-        description="what the summary measures the study's methods against: a row of "
+        description="the baseline with which the summary compares the study's methods: a row of "
         "`baseline_comparison.csv` for each method",
     )
     interpretations_tried: Count = Field(
         60,
-        description="how many interpretations `snakemake interpretations` tries of each method at "
-        "most; of methods whose numbers are compared with each other, together",
+        description="maximum number of interpretations of each method that "
+        "`snakemake interpretations` tries; of methods whose numbers are compared with each "
+        "other, together",
     )
     interpretations_finalists: Count = Field(
         10,
-        description="how many of them it judges by 1,000 runs at most: those whose likelihood is "
-        "within reach of the best",
+        description="maximum number of them that it judges by 1,000 runs: those whose likelihood "
+        "is within reach of the best",
     )

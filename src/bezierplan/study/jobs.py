@@ -139,7 +139,7 @@ def looks(study: Study) -> dict[str, str]:
 
 
 def _planned(study: Study, panel: Panel) -> Panel:
-    """A panel with all settings in force, if it plans by itself."""
+    """A panel with all its settings, if it plans by itself."""
     return (
         panel.but(settings=study.resolved(panel.method) | panel.settings) if panel.plans else panel
     )

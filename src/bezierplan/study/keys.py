@@ -27,7 +27,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     "experiments": [
         ("The file", experiments.ExperimentsFile),
         ("A method or baseline", experiments.Method),
-        ("A policy, for experiments in worlds that move", experiments.Policy),
+        ("A policy, for experiments in dynamic environments", experiments.Policy),
         ("A workspace has `kind`, and by kind", workspace_kinds.kinds()),
         ("A change of `changing_cells`", changing_cells.Change),
         ("A problem", experiments.Problem),

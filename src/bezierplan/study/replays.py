@@ -24,7 +24,8 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     parts = name.split("/")
     if len(parts) != 5:
         raise Fault(
-            f"{name}: not the name of a run; expected study/experiment/condition/method/repeat"
+            f"{name}: not the name of a run; expected study/experiment/condition/method/repeat, "
+            "such as song2016/routes/15_240/smooth/3"
         )
     key, experiment, condition_name, method, repeat = parts
     study = _named(key, studies, f"{name}: study")

@@ -112,6 +112,8 @@ def described(
             raise ValueError(
                 f"{name}: only for {wanted}; {file} is {_KIND_NAMES['raster' if drawn else kind]}"
             )
+    if kind == "image" and resolution is None and not file.is_file():
+        raise ValueError(f"{file}: no such file; expected an image or another map")
     if kind == "image" and resolution is None:
         raise ValueError(
             "resolution: missing; expected the length of a pixel's side, or the YAML file of "

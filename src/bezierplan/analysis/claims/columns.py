@@ -43,7 +43,7 @@ class Sentence(NamedTuple):
     ]
     published: Annotated[
         str,
-        Column("how many of those with printed numbers hold in these, by value alone"),
+        Column("of the comparisons with printed numbers, how many agree with these, by value"),
     ]
 
 
@@ -102,16 +102,16 @@ class Judged(NamedTuple):
     units_to_decide: Annotated[
         int,
         Column(
-            "of an undecided claim: about how many units would decide every comparison marked ? "
-            "with a power of 0.8, were our effects the true ones; empty if that cannot be known"
+            "of an undecided claim: approximate sample size (units) that decides every comparison "
+            "marked ? with a power of 0.8, if our effects are the true ones; empty if unknown"
         ),
     ]
     replication_probability: Annotated[
         float,
         Column(
-            "share of experiments of the paper's size, drawn from our runs, in which the claim "
-            "holds by value alone; of a claim about one picked run of each condition, the chance "
-            "that runs drawn at random among those that count do in its place"
+            "share of simulated experiments of the paper's size, drawn from our runs, in which the "
+            "point estimates agree with the claim; if the claim is about one picked run of each "
+            "condition, the probability that randomly drawn runs agree with it instead"
         ),
     ]
     size: Annotated[
@@ -135,8 +135,8 @@ class Limits(NamedTuple):
     units_needed: Annotated[
         int,
         Column(
-            "about how many units decide it in the family with a power of 0.8, if our effect is "
-            "the true one; empty for secondary checks and where that cannot be known"
+            "approximate sample size (units) that decides it in the family with a power of 0.8, "
+            "if our effect is the true one; empty for secondary checks and if unknown"
         ),
     ]
     rho: Annotated[float, Column("of trends: Spearman's rho of the conditions' means over x")]

@@ -324,7 +324,7 @@ def bowl_with_local_minima(
 
 
 def fitness_landscape(results: Results) -> pd.DataFrame:
-    """Figures 10 to 12: `landscape` of the problem of runs, with the settings in force.
+    """Figures 10 to 12: `landscape` of the problem of runs, with the settings of the run.
 
     Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node),
     fixed (control points that do not move).

@@ -22,6 +22,7 @@ from bezierplan.figures.page import (
     search,
 )
 from bezierplan.figures.page.gather import printed_key
+from bezierplan.schema.words import amount
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
 LOOKS = {
@@ -282,18 +283,15 @@ def evidence(claim: content.Claim) -> str:
             if comparison.counted
             else what
         )
-    unit = (
-        "" if comparison.unit in ("", "-") or comparison.test == "share" else f" {comparison.unit}"
-    )
+    effect = short(comparison.effect, 3)
+    if comparison.unit not in ("", "-") and comparison.test != "share":
+        effect = amount(effect, comparison.unit)
     interval = (
         ""
         if low is None or high is None
         else f" (95\u00a0% interval {short(low, 3)} to {short(high, 3)})"
     )
-    return (
-        f"{what}: {'share' if comparison.test == 'share' else 'effect'} "
-        f"{short(comparison.effect, 3)}{unit}{interval}"
-    )
+    return f"{what}: {'share' if comparison.test == 'share' else 'effect'} {effect}{interval}"
 
 
 def meaning(metric: str) -> str:

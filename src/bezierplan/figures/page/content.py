@@ -32,7 +32,7 @@ class Part(Record):
 
 
 class Number(Record):
-    """A cell of a table: a published number beside ours."""
+    """A cell of a table: a published number and ours."""
 
     address: Address
     keys: dict[str, Cell] = Field(
@@ -74,7 +74,7 @@ class Number(Record):
 
     @property
     def beside(self) -> float | None:
-        """Our number that stands beside the published one."""
+        """Our number that is shown next to the published one."""
         return self.ours if self.scaled is None else self.scaled
 
 
@@ -86,7 +86,7 @@ class Table(Record):
     address: Address
     name: str
     title: str
-    caption: str = Field(description="title, methods, settings in force and repeats")
+    caption: str = Field(description="title, methods, their settings and repeats")
     csv: str = Field(description="its csv file, relative to the page")
     numbers: list[Number] = []
     columns: list[str] = []
@@ -99,7 +99,7 @@ class Figure(Record):
     address: Address
     name: str
     title: str
-    caption: str = Field(description="title, methods, settings in force and repeats")
+    caption: str = Field(description="title, methods, their settings and repeats")
     told: str = Field(
         "", description="by panel, the run that it shows, and the runs that it counts"
     )
@@ -239,8 +239,8 @@ class Method(Record):
 
 
 class BaselineComparison(Record):
-    """A method beside a baseline that needs no search: medians over conditions of its median over
-    the baseline's.
+    """A method compared with a baseline that needs no search: medians over conditions of its median
+    over the baseline's.
     """
 
     address: Address
@@ -271,7 +271,7 @@ class Explanation(Record):
     )
     numbers: int = Field(description="of how many")
     by_chance: float | None = Field(
-        description="how many would be on average if each were exchanged with another of its kind"
+        description="expected number if those of one kind are permuted within their table"
     )
 
 
@@ -369,7 +369,7 @@ class Problem(Record):
     workspace: str = Field(
         description="key in `workspaces`; of a world that moves, the workspace at its beginning"
     )
-    world: World | None = Field(None, description="how the obstacles move, if they do")
+    world: World | None = Field(None, description="motion of the obstacles; null if they stand")
     start: tuple[float, float]
     target: tuple[float, float]
     bound: float | None = Field(description="length of the exact shortest path")
@@ -383,7 +383,7 @@ class Run(Record):
 
     problem: str = Field(description="key in `problems`")
     feasible: bool
-    claimed: bool = Field(description="the planner's own opinion")
+    claimed: bool = Field(description="the planner's own verdict")
     length: float | None
     clearance: float | None
     collision: tuple[float, float] | None = Field(
@@ -401,7 +401,7 @@ class Run(Record):
     steps: float | None = Field(None, description="of a drive: time until its end, in steps")
     driven: list[float] = Field(
         [],
-        description="of a drive: length of the way along `path` at step 0, 1, ... and at the end",
+        description="of a drive: distance along `path` at step 0, 1, ... and at the end",
     )
     collision_step: float | None = Field(
         None, description="of a drive: time of the first collision, in steps"

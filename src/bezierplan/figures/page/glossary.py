@@ -1,17 +1,15 @@
 """What the words of verdicts mean, as the page says it where they stand."""
 
 WORDS = {
-    "agrees": "The published number lies in the range (95 %) of what an experiment of the paper's "
-    "size would print, judging by our runs, "
-    "and this range excludes most of what the paper prints of other methods. "
-    "It need not be near ours.",
+    "agrees": "The published number lies in our 95 % prediction interval for an experiment of the "
+    "paper's size, and the interval is narrow enough to exclude most of the values that the paper "
+    "prints for competing methods. It need not be near ours.",
     "identified": "The published number is to the last digit the length of a path that an "
     "enumeration finds.",
-    "disagrees": "The published number lies outside the range (95 %) of what an experiment of the "
-    "paper's size would print.",
-    "inconclusive": "The published number lies in the range, but so would most others: the range "
-    "is too wide, or has no end on that side. "
-    "Or the paper does not define the quantity.",
+    "disagrees": "The published number lies outside our 95 % prediction interval for an "
+    "experiment of the paper's size.",
+    "inconclusive": "The published number lies in the interval, but so would most others: the "
+    "interval is too wide, or has no end on that side. Or the paper does not define the quantity.",
     "supported": "Every comparison of the claim holds (p < 0.05, and a difference that matters).",
     "partly": "Some comparisons of the claim hold, k of n.",
     "contradicted": "No comparison of the claim holds, and in at least one the opposite does.",

@@ -1,5 +1,5 @@
-"""What the search of the page finds: an entry for each paper, claim, number, table, figure, open
-choice and run shown.
+"""What the search of the page finds: an entry for each paper, claim, number, table, figure,
+underspecified detail and run shown.
 """
 
 from collections.abc import Iterator
@@ -33,7 +33,7 @@ SECTIONS = (
     Entry(
         "section",
         "page-paths",
-        "Path viewer: look at a run, and replay it",
+        "Path viewer: inspect a single run, and replay it",
         "rerun repeat again reproduce drive path command one single",
     ),
     Entry(
@@ -95,12 +95,15 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
             f"{study.labels.get(row.method, _words(row.method))} compared with the exact "
             "shortest path with rounded corners"
         )
-        yield Entry("baseline_comparison", row.address, text, f"{key} {row.method}", True)
+        yield Entry("comparison", row.address, text, f"{key} baseline {row.method}", True)
     for figure in study.figures:
         yield Entry("figure", figure.address, f"{heading(figure.name)}: {figure.title}", key)
     for choice in study.assumptions:
         yield Entry(
-            "open choice", choice.address, f"{choice.id} {choice.detail}", f"{key} {choice.setting}"
+            "underspecified detail",
+            choice.address,
+            f"{choice.id} {choice.detail}",
+            f"{key} open choice {choice.setting}",
         )
     for shown in study.shown:
         yield from _of_runs(key, shown, study.labels)

@@ -13,6 +13,7 @@ import pandas as pd
 
 from bezierplan.analysis.claims.kinds import Check, OfRuns, PublishedMargin, share
 from bezierplan.analysis.metrics import METRICS
+from bezierplan.schema.words import amount
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds import (
@@ -142,8 +143,8 @@ def _share(row: pd.Series, check: share.Options, name: str) -> str:
     if check.pick:
         picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
         return (
-            f"in {picked}, {happens if row['effect'] else f'it is not so that {happens}'}; the "
-            "claim needs it there"
+            f"the claim needs that, in {picked}, {happens}; "
+            f"{'this holds' if row['effect'] else 'this does not hold'}"
         )
     needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
     needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
@@ -236,7 +237,9 @@ def _unit(row: pd.Series) -> str:
 
 def _amount(value: float, row: pd.Series, check: Check) -> str:
     """An effect with its unit; a relative one in per cent."""
-    return f"{_printed(100 * value)} %" if check.relative else f"{_printed(value)}{_unit(row)}"
+    if check.relative:
+        return f"{_printed(100 * value)} %"
+    return amount(_printed(value), _unit(row).strip()).strip()
 
 
 def _printed(value: float) -> str:

@@ -201,7 +201,7 @@ class Pick(Model):
     repeat: Repeat = Field(None, description="a whole number: the run of that repeat")
     having: Metric = Field(
         None,
-        description="beside one of these, the name of a metric: "
+        description="in addition to one of these, the name of a metric: "
         "only runs that have more than 0 of it count",
     )
 

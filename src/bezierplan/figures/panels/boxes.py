@@ -19,6 +19,7 @@ from bezierplan.figures.panels.lines import (
     shared_limits,
 )
 from bezierplan.schema.model import Column, Flag, Metric, Number
+from bezierplan.schema.words import amount
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -133,7 +134,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             axes.axvline(value, zorder=1.5, **look)
     for value in frame.loc[frame["part"] == "limit", "value"]:
         axes.axvline(
-            value, zorder=1.5, label=f"published limit: {value:g} {scene.unit}", **style.PUBLISHED
+            value,
+            zorder=1.5,
+            label=f"published limit: {amount(format(value, 'g'), scene.unit)}",
+            **style.PUBLISHED,
         )
     axes.set_xlabel(axis_label(options.metric, scene))
     medians = frame.loc[frame["part"] == "median", "value"]

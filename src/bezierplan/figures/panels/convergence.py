@@ -71,7 +71,7 @@ class Options(RunsPanel):
     printed: PrintedTable = Field(
         None,
         description="with hue, the name of a published table "
-        "whose means are marked beside the last values",
+        "whose means are marked next to the last values",
     )
 
     @property

@@ -41,7 +41,7 @@ class Options(RunsPanel):
         "objective", description="what is ranked, the name of a metric; left out: objective"
     )
     printed: PrintedTable = Field(
-        None, description="the name of a published table whose mean ranks are shown besides"
+        None, description="the name of a published table whose mean ranks are shown as well"
     )
     unit: Literal["repeat", "problem"] = Field(
         "repeat",

@@ -66,7 +66,7 @@ class Options(TablePanel):
         "mean", description="of runs: mean (left out: this), median or share"
     )
     repeats: listed(Repeat) = Field(
-        (), description="a list of whole numbers: single runs that are drawn besides"
+        (), description="a list of whole numbers: single runs that are drawn in addition"
     )
     printed: PrintedTable = Field(
         None,

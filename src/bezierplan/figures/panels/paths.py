@@ -34,6 +34,7 @@ from bezierplan.schema.model import (
     at_most,
     wrong,
 )
+from bezierplan.schema.words import amount
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.limits import LARGEST
@@ -219,7 +220,7 @@ class Options(RunsPanel):
     )
     letters: list[Label] = Field(
         None,
-        description="what is written beside start and target: a list of two",
+        description="what is written next to start and target: a list of two",
         min_length=2,
         max_length=2,
     )
@@ -240,7 +241,8 @@ class Options(RunsPanel):
     )
     printed: PrintedTable = Field(
         None,
-        description="the name of a published table whose shortest length is given beside the run's",
+        description="the name of a published table whose shortest length is given next to the "
+        "run's",
     )
     view: View = Field(
         None,
@@ -596,11 +598,13 @@ def _note(frame: pd.DataFrame, unit: str) -> Note:
     )
     clauses += [*_clear(row), feasible_note(frame)]
     if "printed" in frame and np.isfinite(row["printed"]):
-        clauses.append(f"shortest printed {row['printed']:.2f} {unit}")
+        printed = f"{row['printed']:.2f}"
+        clauses.append(f"shortest printed {amount(printed, unit)}")
     if (frame["part"] == "optimum").any():
         cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
         clauses.append(f"shortest between cell centres {cells:.2f}, at any angle {bound:.2f}")
-    return Note(f"length {row['length']:.2f} {unit}", run_note(frame, *clauses))
+    length = f"{row['length']:.2f}"
+    return Note(f"length {amount(length, unit)}", run_note(frame, *clauses))
 
 
 def _clear(row: pd.Series) -> list[str]:

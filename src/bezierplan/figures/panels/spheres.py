@@ -17,6 +17,7 @@ from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
 from bezierplan.schema.model import Count, Name, Number, Setting
 from bezierplan.schema.model import Workspace as Described
+from bezierplan.schema.words import amount
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
@@ -197,11 +198,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             axes.plot(own["x"], own["y"], **look)
     runs, row = frame[frame["part"] == "run"], frame.iloc[0]
     free, claimed = runs[runs["feasible"].astype(bool)], runs["claimed_feasible"].astype(bool).sum()
-    shortest = f"{free['length'].min():.3f} {unit}" if len(free) else "none"
+    shortest = amount(f"{free['length'].min():.3f}", unit) if len(free) else "none"
+    straight, bound = (amount(f"{row[name]:.3f}", unit) for name in ("straight_line", "bound"))
     return Note(
         f"shortest free path: {shortest}",
         f"{len(free)} of {len(runs)} runs are free, {claimed} by their own test; "
-        f"straight line {row['straight_line']:.3f} {unit}, lower bound {row['bound']:.3f} {unit}",
+        f"straight line {straight}, lower bound {bound}",
     )
 
 

@@ -12,6 +12,7 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.schema.model import Flag
 from bezierplan.schema.model import Workspace as Described
+from bezierplan.schema.words import amount
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells
@@ -71,6 +72,9 @@ _MOST_OUTLINES = 10_000
 # Up to so many heights are named in the legend.
 _MOST_HEIGHTS = 5
 
+# Of a grid with more columns only every third shows its numbers, the last one among them: more
+# would not be legible on a sheet of one text column.
+_MOST_COLUMNS = 12
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
@@ -79,7 +83,9 @@ class Options(Panel):
 
     workspace: Described = Field(description="the name of a workspace")
     numbers: Literal["all", "free", "none"] = Field(
-        "none", description="which cells show their number: all, free or none (left out: this)"
+        "none",
+        description="which cells show their number, of a wide grid in every third column: all, "
+        "free or none (left out: this)",
     )
     embed: Flag = Field(
         False,
@@ -170,7 +176,10 @@ def _cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
     shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
     x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
     cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
-    cells["number"] = pd.Series(row * whole.occupied.shape[1] + column, dtype="Int64").where(shown)
+    columns = whole.occupied.shape[1]
+    if columns > _MOST_COLUMNS:
+        shown &= (columns - 1 - column) % 3 == 0
+    cells["number"] = pd.Series(row * columns + column, dtype="Int64").where(shown)
     if whole.heights is not None and whole is grid:
         cells["height"] = whole.heights.ravel()
     return cells
@@ -214,10 +223,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     side = numbered["size"].iloc[0]
     if (side, unit) == (1, "cell"):
         return Note()
-    return Note(
-        f"cells of {side:g} x {side:g} "
-        f"{unit}{'s' if side != 1 and unit in ('unit', 'cell') else ''}"
-    )
+    return Note(f"cells of {side:g} x {amount(f'{side:g}', unit)}")
 
 
 def scale(axes: Axes, unit: str) -> None:

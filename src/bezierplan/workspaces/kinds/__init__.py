@@ -141,7 +141,7 @@ class World(Workspace):
     )
     steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = (
         Field(
-            description="when a world ends and with it every drive, "
+            description="the moment at which every drive in this world ends, "
             "in steps, a whole number from 1 to 10000"
         )
     )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class Change(Model):
     """A moment at which the cells of a map change."""
 
-    file: File = Field(description="the map file that is in force from then on")
+    file: File = Field(description="the map file that is valid from then on")
     after: Positive | None = Field(
         None,
         description="when: the share of its way that a robot on the shortest path from cell to "

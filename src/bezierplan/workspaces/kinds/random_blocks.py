@@ -22,7 +22,7 @@ class Options(Workspace):
         description="a whole number of at least 1: 1 keeps the cells of start and target free"
     )
     corners: Literal["free", "one", "none"] = Field(
-        description="how many of the cells beside a diagonal step may be occupied"
+        description="how many of the two cells that a diagonal step passes between may be occupied"
     )
     lattice_length: Positive | None = Field(
         None, description="the length that the shortest lattice path must have, a number above 0"

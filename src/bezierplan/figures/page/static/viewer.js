@@ -144,12 +144,15 @@ function drawHistory(history) {
   const low = Math.min(...values), high = Math.max(...values), span = high - low || 1;
   const x = (generation) => left + (right - left) * generation / last, y = (value) => bottom - (bottom - top) * (value - low) / span;
   const steps = history.map(([generation, value], n) => (n ? `H${x(generation)}V${y(value)}` : `M${x(generation)} ${y(value)}`)).join("");
-  chart.append(draw("path", { d: steps }), draw("text", { x: left, y: 12 }, `${number(high)} at first`),
-    draw("text", { x: right, y: bottom - 6, "text-anchor": "end" }, `${number(values.at(-1))} at last`),
+  chart.append(draw("path", { d: steps }), draw("text", { x: left, y: 12 }, `first: ${number(high)}`),
+    draw("text", { x: right, y: bottom - 6, "text-anchor": "end" }, `last: ${number(values.at(-1))}`),
     draw("text", { x: left, y: 147 }, "generation 0"), draw("text", { x: right, y: 147, "text-anchor": "end" }, String(last)));
 }
 
 const number = (value) => (value === null ? "–" : String(Number(value.toPrecision(5))));
+
+// A number with its unit: 1 cell, 2.5 cells; abbreviations such as m have no plural.
+const amount = (value, unit) => `${number(value)} ${unit}${["unit", "cell"].includes(unit) && value !== 1 ? "s" : ""}`;
 
 function showFacts(id, run, problem) {
   const { unit } = data.workspaces[problem.workspace], drive = run.steps !== null;
@@ -158,9 +161,9 @@ function showFacts(id, run, problem) {
     ["Verdict", run.feasible ? "feasible by the certified check" : `not feasible: it ${run.collision ? "collides" : "does not arrive"}`],
     drive ? ["Drive", `${run.claimed ? "arrives" : "stops"} after ${number(run.steps)} steps` +
       (run.collision ? `; first collision at step ${number(run.collision_step)}` : "")] : ["Planner's own check", run.claimed ? "feasible" : "not feasible"],
-    ["Length", run.length === null ? "no path" : `${number(run.length)} ${unit}${gap}`],
-    ["Exact shortest", problem.bound === null ? "no free path" : `${number(problem.bound)} ${unit}`],
-    run.feasible ? ["Clearance", `${number(run.clearance)} ${unit}`] : ["Collision depth", `${number(run.depth)} ${unit}`],
+    ["Length", run.length === null ? "no path" : `${amount(run.length, unit)}${gap}`],
+    ["Exact shortest path", problem.bound === null ? "no free path" : amount(problem.bound, unit)],
+    run.feasible ? ["Clearance", amount(run.clearance !== null && Math.abs(run.clearance) < 1e-6 ? 0 : run.clearance, unit)] : ["Collision depth", amount(run.depth, unit)],
     ["Curve", run.curve.replaceAll("_", " ") || "none"],
     ["Evaluations", `${run.evaluations.toLocaleString("en")}; stopped by: ${run.stop.replaceAll("_", " ")}`],
   ];
@@ -169,7 +172,7 @@ function showFacts(id, run, problem) {
   ]));
   document.getElementById("viewer-hit").hidden = !run.collision;
   document.getElementById("viewer-history-caption").textContent = drive
-    ? "The way so far and the plan, replan by replan" : "Best objective, generation by generation";
+    ? "Distance travelled plus length of the plan, at each replan" : "Best objective per generation";
   document.getElementById("viewer-command").textContent = `python -m bezierplan replay ${id}`;
   document.getElementById("viewer-link").href = `#${encodeURI(id)}`;
 }
