@@ -345,7 +345,10 @@ def most_likely(key: str) -> str:
     """
     from bezierplan.analysis import explained
 
-    files = [OUTCOME / f"{key}_{name}.csv" for name in ("interpretations", "explained", "held_out")]
+    files = [
+        OUTCOME / f"{key}_{name}.csv"
+        for name in ("interpretations", "explained", "leave_one_table_out")
+    ]
     if not all(file.is_file() for file in files):
         return ""
     return f"## Which experiment was it?\n\n{explained.sentences(*map(pd.read_csv, files))}\n"

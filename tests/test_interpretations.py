@@ -640,9 +640,13 @@ def test_tables_of_interpretations_numbers_and_tables_left_out():
     assert numbers_found["interpretations"].to_list() == [1, 1, 2]
     assert numbers_found["default"].to_list() == [False, True, True]
     assert numbers_found["missed_by"].to_list() == [0.0, 0.0, 0.0]
-    held_out = explained.held_out_table("study", [default, other], {}).set_index("table")
+    leave_one_table_out = explained.leave_one_table_out_table(
+        "study", [default, other], {}
+    ).set_index("table")
     # The other one is best on the first table, and is wrong on the second.
-    assert held_out.loc["table2", ["interpretation", "chosen", "default", "most"]].to_list() == [
+    assert leave_one_table_out.loc[
+        "table2", ["interpretation", "chosen", "default", "most"]
+    ].to_list() == [
         "O1=2",
         0,
         1,
@@ -669,11 +673,11 @@ def test_a_number_that_nothing_explains_has_the_interpretation_that_comes_neares
 def told(*tried, lines=None):
     confirmed = list(tried)
     numbers_found = explained.explained_table("one", confirmed, [confirmed], set())
-    held_out = explained.held_out_table("one", confirmed, lines or {})
+    leave_one_table_out = explained.leave_one_table_out_table("one", confirmed, lines or {})
     (*_, text) = explained.section(
         explained.interpretations_table("one", confirmed, [], confirmed[-1], CHOICES),
         numbers_found,
-        held_out,
+        leave_one_table_out,
         {"one": "The first"},
     )
     return text
@@ -721,7 +725,7 @@ def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
     assert "No interpretation explains 1 of the numbers: 1 of table2 for d." in text
     assert text.endswith(
         "interpretations bring 3 into range, the default 1: "
-        "the tables held out agree with a change."
+        "the tables left out agree with a change."
     )
     assert "none of 1 interpretations is more likely" in told(default)
     assert "explains their level" not in text
@@ -743,7 +747,7 @@ def test_summary_does_not_follow_an_interpretation_that_other_tables_refuse():
     )
     text = told(default, fitted)
     assert "Each number is in range under some interpretation." in text
-    assert text.endswith("held out, table2 (0 instead of 1) speaks against a change.")
+    assert text.endswith("left out, table2 (0 instead of 1) speaks against a change.")
     assert explained.section(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), {}) == []
 
 

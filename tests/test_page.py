@@ -443,8 +443,8 @@ def test_best_interpretations_and_the_one_in_force_are_shown_with_what_they_expl
             "interpretations": [9, 2, 0],
         }
     ).assign(missed_by=[0.0, 0.0, 1.0], value_published=10.0)
-    held_out = pd.DataFrame({"table": ["a"], "score_line": [np.nan]})
-    found = other.of_interpretations(tried, explained, held_out)
+    leave_one_table_out = pd.DataFrame({"table": ["a"], "score_line": [np.nan]})
+    found = other.of_interpretations(tried, explained, leave_one_table_out)
     assert [each.interpretation for each in found["explanations"]] == [
         *(f"O1={n}" for n in range(10)),
         "default",

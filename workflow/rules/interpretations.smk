@@ -18,7 +18,7 @@ rule interpretations_of:
             caption="../report/claims.rst",
         ),
         explained=f"{RESULTS}/explained.csv",
-        held_out=f"{RESULTS}/held_out.csv",
+        leave_one_table_out=f"{RESULTS}/leave_one_table_out.csv",
         svg=report(
             f"{RESULTS}/interpretations.svg",
             category="{study}",

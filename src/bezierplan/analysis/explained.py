@@ -9,8 +9,8 @@ Columns of interpretations.csv, one row per interpretation, the best first:
   are compared in what follows
 - one column per choice: its value, empty for the default
 - in_range, numbers: how many of the published numbers lie in range, and of how many
-- by_chance: how many would if each printed number were exchanged with another of its kind in the
-  same table (expected value)
+- by_chance: how many would if the printed numbers of one kind were permuted within their table
+  (expected value)
 - impossible: printed means and extremes below the exact bound of their map under this
   interpretation; with one, it is ruled out
 - score: sum of the logarithms of the tables' likelihoods, by which interpretations that are not
@@ -27,12 +27,12 @@ it is in range; settings, how many different settings of its methods alone were 
 missed_by, how far it lies out of range under the interpretation that comes nearest, which is named
 by nearest, and so what it would take to explain the number.
 
-Columns of held_out.csv, one row per table: the interpretation that is best on all other tables, and
-how many of this table's numbers lie in range under that interpretation (`chosen`), under the
-default (`default`) and at most (`most`), of how many (`numbers`); the logarithm of the likelihood
-of the table under the best interpretation (`score_best`) and under the default (`score_default`);
-and, where the paper says that its numbers rise or fall along a column, that of a straight line
-there (`score_line`, along `line_along`; see `yardstick`).
+Columns of leave_one_table_out.csv, one row per table: the interpretation that is best on all other
+tables, and how many of this table's numbers lie in range under that interpretation (`chosen`),
+under the default (`default`) and at most (`most`), of how many (`numbers`); the logarithm of the
+likelihood of the table under the best interpretation (`score_best`) and under the default
+(`score_default`); and, where the paper says that its numbers rise or fall along a column, that of a
+straight line there (`score_line`, along `line_along`; see `yardstick`).
 """
 
 import itertools
@@ -148,8 +148,8 @@ def interpretations_table(
 
 
 def by_chance(numbers: pd.DataFrame) -> float:
-    """Expected count of numbers in range if each were exchanged with another of the same table,
-    metric and statistic.
+    """Expected count of numbers in range if those of the same table, metric and statistic were
+    permuted.
     """
     expected = 0.0
     for _, group in numbers.groupby(["table", "metric", "statistic"], sort=False):
@@ -222,11 +222,11 @@ def _missed(numbers: pd.DataFrame) -> np.ndarray:
     return np.where(np.isnan(missed), np.inf, missed)
 
 
-def held_out_table(
+def leave_one_table_out_table(
     study: str, confirmed: list[Evaluated], lines: dict[str, tuple[str, float]]
 ) -> pd.DataFrame:
-    """held_out.csv. confirmed: the default first. lines: of some tables, along which column a line
-    is laid, and how likely it makes them (`yardstick`).
+    """leave_one_table_out.csv. confirmed: the default first. lines: of some tables, along which
+    column a line is laid, and how likely it makes them (`yardstick`).
     """
     rows, best = [], max(confirmed, key=lambda each: each.rank)
     for table in confirmed[0].likelihoods:
@@ -296,14 +296,14 @@ def yardstick(published: pd.DataFrame, along: str) -> float:
 def section(
     interpretations: pd.DataFrame,
     explained: pd.DataFrame,
-    held_out: pd.DataFrame,
+    leave_one_table_out: pd.DataFrame,
     titles: dict[str, str],
 ) -> list[str]:
     """Paragraphs of the summary: a heading, what is compared, and a few sentences for each study;
     none without rows.
 
-    interpretations, explained, held_out: the three tables, of all studies. titles: of the studies,
-    by name.
+    interpretations, explained, leave_one_table_out: the three tables, of all studies. titles: of
+    the studies, by name.
     """
     if interpretations.empty:
         return []
@@ -320,13 +320,11 @@ def section(
         "define have no vote. "
         "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` "
         "for each printed "
-        "number, `<study>_held_out.csv` for each table.",
+        "number, `<study>_leave_one_table_out.csv` for each table.",
     ]
     for study, own in interpretations.groupby("study", sort=False):
-        parts.append(
-            f"**{titles[study]}.** "
-            f"{sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}"
-        )
+        others = (table[table["study"] == study] for table in (explained, leave_one_table_out))
+        parts.append(f"**{titles[study]}.** {sentences(own, *others)}")
     return parts
 
 
@@ -363,7 +361,7 @@ def _named(best: pd.Series) -> str:
 
 
 def sentences(
-    interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame
+    interpretations: pd.DataFrame, explained: pd.DataFrame, leave_one_table_out: pd.DataFrame
 ) -> str:
     """The verdict, from the tables of one study."""
     best, default = (
@@ -376,11 +374,11 @@ def sentences(
             [
                 _most_likely(best, default, len(interpretations)),
                 _judged_anew(best),
-                _beside_a_line(held_out),
+                _beside_a_line(leave_one_table_out),
                 _never(explained),
                 _searched(explained),
                 _ruled_out(interpretations),
-                _held_out(held_out),
+                _leave_one_table_out(leave_one_table_out),
             ],
         )
     )
@@ -444,9 +442,9 @@ def _counted(row: pd.Series) -> str:
     )
 
 
-def _beside_a_line(held_out: pd.DataFrame) -> str:
+def _beside_a_line(leave_one_table_out: pd.DataFrame) -> str:
     """The best interpretation beside a description that explains nothing."""
-    told = held_out[held_out["score_line"].notna()]
+    told = leave_one_table_out[leave_one_table_out["score_line"].notna()]
     if told.empty:
         return ""
     along = " and ".join(dict.fromkeys(told["line_along"]))
@@ -512,14 +510,14 @@ def _ruled_out(interpretations: pd.DataFrame) -> str:
     )
 
 
-def _held_out(held_out: pd.DataFrame) -> str:
+def _leave_one_table_out(leave_one_table_out: pd.DataFrame) -> str:
     """Whether the tables that an interpretation was not chosen on agree with it."""
-    if len(held_out) < 2:
+    if len(leave_one_table_out) < 2:
         return ""
     return (
         "Chosen for each table on the others alone, interpretations bring "
-        f"{held_out['chosen'].sum()} into range, the default "
-        f"{held_out['default'].sum()}: {_advice(held_out)}."
+        f"{leave_one_table_out['chosen'].sum()} into range, the default "
+        f"{leave_one_table_out['default'].sum()}: {_advice(leave_one_table_out)}."
     )
 
 
@@ -529,15 +527,15 @@ def _times(difference: float) -> str:
     return f"{10**power:.1f} times" if power < 2 else f"10^{power:.0f} times"
 
 
-def _advice(held_out: pd.DataFrame) -> str:
+def _advice(leave_one_table_out: pd.DataFrame) -> str:
     """Whether the tables that an interpretation was not chosen on speak for a change of the
     default.
     """
-    worse = held_out[held_out["chosen"] < held_out["default"]]
+    worse = leave_one_table_out[leave_one_table_out["chosen"] < leave_one_table_out["default"]]
     against = ", ".join(
         f"{row.table} ({row.chosen} instead of {row.default})" for row in worse.itertuples()
     )
     if len(worse):
-        return f"held out, {against} {'speaks' if len(worse) == 1 else 'speak'} against a change"
-    better = (held_out["chosen"] > held_out["default"]).any()
-    return f"the tables held out {'agree with a change' if better else 'do not tell them apart'}"
+        return f"left out, {against} {'speaks' if len(worse) == 1 else 'speak'} against a change"
+    better = (leave_one_table_out["chosen"] > leave_one_table_out["default"]).any()
+    return f"the tables left out {'agree with a change' if better else 'do not tell them apart'}"

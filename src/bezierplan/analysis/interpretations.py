@@ -565,7 +565,7 @@ def found_by(
             study, confirmed, tried.interpretations, fresh, choices
         ),
         "explained": explained.explained_table(study, confirmed, tried.of_parts, shared),
-        "held_out": explained.held_out_table(study, confirmed, lines),
+        "leave_one_table_out": explained.leave_one_table_out_table(study, confirmed, lines),
     }
 
 

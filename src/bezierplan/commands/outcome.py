@@ -27,7 +27,7 @@ BLOCK = "outcome"
 # Tables of each study at scale full.
 SENSITIVITY, INTERPRETATIONS = (
     "sensitivity.csv",
-    ("interpretations.csv", "explained.csv", "held_out.csv"),
+    ("interpretations.csv", "explained.csv", "leave_one_table_out.csv"),
 )
 LIKELY = (
     "Which experiment was it? All details that a paper leaves open were varied together; these "

@@ -16,7 +16,7 @@ from bezierplan.study.targets import Studies
 
 _END = b"</html>"
 
-SEARCHED = ("interpretations", "explained", "held_out")
+SEARCHED = ("interpretations", "explained", "leave_one_table_out")
 """Tables of what the search for an interpretation found."""
 
 

@@ -148,7 +148,7 @@ def _study(
         **(other.of_baseline_comparison(key, measured) if measured is not None else {}),
         **(
             other.of_interpretations(
-                files["interpretations"], files["explained"], files["held_out"]
+                files["interpretations"], files["explained"], files["leave_one_table_out"]
             )
             if "interpretations" in files
             else {}

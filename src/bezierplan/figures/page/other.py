@@ -69,7 +69,7 @@ def of_baseline_comparison(study: str, measured: pd.DataFrame) -> dict[str, Any]
 
 
 def of_interpretations(
-    tried: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame
+    tried: pd.DataFrame, explained: pd.DataFrame, leave_one_table_out: pd.DataFrame
 ) -> dict[str, Any]:
     """Fields `explanations`, `interpretations_in_words` and `explained` of a study, from the tables
     of `analysis.explained`.
@@ -95,7 +95,7 @@ def of_interpretations(
     ]
     return {
         "explanations": rows,
-        "interpretations_in_words": sentences(tried, explained, held_out),
+        "interpretations_in_words": sentences(tried, explained, leave_one_table_out),
         "explained": tables,
     }
 
