@@ -224,7 +224,7 @@ def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
         (
             "What does inconclusive mean?",
             ["page-word/inconclusive", "one/table1/a/objective/mean"],
-            "the range is too wide",
+            "the interval is too wide",
         ),
         ("Which claims of one hold", ["one/C1"], "claim, supported"),
         ("the path of a's worst feasible run", ["one/first/p/a/1"], "worst feasible run"),

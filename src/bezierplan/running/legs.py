@@ -99,14 +99,14 @@ def legs(
     places = [near.start]
     for point in via:
         try:
-            place = problems.build(
+            way_point = problems.build(
                 "", {"start": point, "target": point}, near.workspace, regions, problem.frame
             ).start
         except ValueError as error:
             raise ValueError(f"via{str(error).removeprefix('start')}") from None
-        if place == places[-1]:
+        if way_point == places[-1]:
             raise ValueError(f"via: {point}: the same place as the one before; expected another")
-        places.append(place)
+        places.append(way_point)
     if via and places[-1] == near.target:
         raise ValueError(f"via: {via[-1]}: the same place as the target; expected another")
     ends = [*places, near.target]

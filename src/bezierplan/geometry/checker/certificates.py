@@ -290,8 +290,8 @@ def _is_blocked_in_polygons(x, y, region):
     inside_free = False
     # Below and above all edges, as by rounding on the border, the ray meets none.
     for column in range(begin, bins.columns if 0 <= row < bins.rows else 0):
-        place = column * bins.rows + row
-        for e in bins.members[bins.first[place] : bins.first[place + 1]]:
+        number = column * bins.rows + row
+        for e in bins.members[bins.first[number] : bins.first[number + 1]]:
             ax, ay, bx, by = edges[e]
             if (ay > y) != (by > y):
                 at = ax + (y - ay) / (by - ay) * (bx - ax)
@@ -306,8 +306,8 @@ def _is_blocked_in_polygons(x, y, region):
     begin, end = columns_between(x - reach, x + reach, bins)
     low, high = rows_near(y - reach, y + reach, bins)
     for column in range(begin, end + 1):
-        for place in range(column * bins.rows + low, column * bins.rows + high + 1):
-            for e in bins.members[bins.first[place] : bins.first[place + 1]]:
+        for number in range(column * bins.rows + low, column * bins.rows + high + 1):
+            for e in bins.members[bins.first[number] : bins.first[number + 1]]:
                 ax, ay, bx, by = edges[e]
                 if distance_to_segment(x, y, ax, ay, bx, by) <= TOLERANCE:
                     return False

@@ -124,23 +124,23 @@ def _name(circle: int, other: int, crossing: bool, side: int, count: int) -> int
 
 @compiled
 def _nodes_at(circle: int, distances: np.ndarray, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """The ends of all tangents at a circle: angles (n,) and names (n,). distances: of the other
+    """The ends of all tangents at a circle: angles (n,) and names (n,). distances: of all
     circles' centres, (m,).
     """
     centres, radii = scene.centres, scene.radii
     count = 0
     angles, names = np.empty(4 * len(radii)), np.empty(4 * len(radii), dtype=np.int64)
-    for other in range(len(radii)):
-        if other == circle:
+    for neighbour in range(len(radii)):
+        if neighbour == circle:
             continue
         # Of two circles, the tangents are computed from the first: rounding may depend on it.
-        i, j = (circle, other) if circle < other or other < 2 else (other, circle)
+        i, j = (circle, neighbour) if circle < neighbour or neighbour < 2 else (neighbour, circle)
         dx, dy = centres[j, 0] - centres[i, 0], centres[j, 1] - centres[i, 1]
-        distance = distances[other]
+        distance = distances[neighbour]
         towards = math.atan2(dy, dx)
-        for crossing in range(1 if other < 2 else 2):
+        for crossing in range(1 if neighbour < 2 else 2):
             opposite = 0.0
-            if other < 2:
+            if neighbour < 2:
                 half = 0.0
                 if distance > radii[i] + TOLERANCE:
                     half = math.acos(radii[i] / distance)
@@ -154,10 +154,10 @@ def _nodes_at(circle: int, distances: np.ndarray, scene: Scene) -> tuple[np.ndar
                     continue
                 half = math.acos((radii[i] - radii[j]) / distance)
             for side in range(-1, 2, 2):
-                if other < 2 and half == 0.0 and side < 0:
+                if neighbour < 2 and half == 0.0 and side < 0:
                     continue
                 angles[count] = towards + side * half + opposite
-                names[count] = _name(circle, other, crossing == 1, side, len(radii))
+                names[count] = _name(circle, neighbour, crossing == 1, side, len(radii))
                 count += 1
     return angles[:count], names[:count]
 

@@ -117,14 +117,14 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
     """
     x, y = nodes[i, 0], nodes[i, 1]
     dx, dy = nodes[j, 0] - x, nodes[j, 1] - y
-    one = dx * (before[i, 1] - y) - dy * (before[i, 0] - x)
-    other = dx * (after[i, 1] - y) - dy * (after[i, 0] - x)
+    turn_before = dx * (before[i, 1] - y) - dy * (before[i, 0] - x)
+    turn_after = dx * (after[i, 1] - y) - dy * (after[i, 0] - x)
     # Most corners are refused here, without a root or a division.
     clearly = 2.0 * TOLERANCE * (abs(dx) + abs(dy))
-    if min(one, other) < -clearly and max(one, other) > clearly:
+    if min(turn_before, turn_after) < -clearly and max(turn_before, turn_after) > clearly:
         return False
     length = math.hypot(dx, dy)
-    return length == 0.0 or not _apart(one / length, other / length)
+    return length == 0.0 or not _apart(turn_before / length, turn_after / length)
 
 
 @allocation_free

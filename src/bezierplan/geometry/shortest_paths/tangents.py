@@ -399,12 +399,12 @@ def _is_hidden(side: int, column: int, row: int, scene: Scene, hidden: np.ndarra
 
 
 @allocation_free
-def _look_at(side: int, other: int, scene: Scene, scratch: _Scratch, count: int) -> int:
+def _look_at(side: int, seen: int, scene: Scene, scratch: _Scratch, count: int) -> int:
     """Add the free tangents from a side to a circle to those found; their number."""
     circle, sense = side // 2, _sense(side)
-    radius, size = scene.radii[circle], scene.radii[other]
-    dx = scene.centres[other, 0] - scene.centres[circle, 0]
-    dy = scene.centres[other, 1] - scene.centres[circle, 1]
+    radius, size = scene.radii[circle], scene.radii[seen]
+    dx = scene.centres[seen, 0] - scene.centres[circle, 0]
+    dy = scene.centres[seen, 1] - scene.centres[circle, 1]
     distance = math.hypot(dx, dy)
     towards = sense * math.atan2(dy, dx)
     segment = scratch.segment
@@ -421,13 +421,13 @@ def _look_at(side: int, other: int, scene: Scene, scratch: _Scratch, count: int)
         leave = (towards - half) % math.tau
         if scratch.hidden[_sector(leave)] <= length:
             continue
-        there = 2 * other + (side % 2 if turn > 0 else 1 - side % 2)
+        there = 2 * seen + (side % 2 if turn > 0 else 1 - side % 2)
         arrive = leave if turn > 0 else (math.pi - leave) % math.tau
         segment[0, 0], segment[0, 1] = _x_at(side, leave, scene), _y_at(side, leave, scene)
         segment[1, 0], segment[1, 1] = _x_at(there, arrive, scene), _y_at(there, arrive, scene)
         if is_free(segment[0], segment[1], scene):
             found = scratch.found[count]
-            found[0], found[1], found[2] = leave, 2 if other == 1 else there, arrive
+            found[0], found[1], found[2] = leave, 2 if seen == 1 else there, arrive
             found[3] = math.hypot(segment[1, 0] - segment[0, 0], segment[1, 1] - segment[0, 1])
             count += 1
     return count
