@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -190,11 +191,13 @@ def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
     spread = (group - reference).std() if paired else group.std() + reference.std()
     if spread <= 1e-12 * max(np.abs(group).max(), np.abs(reference).max(), 1e-300):
         return rank_test(group, reference, paired)[0]
-    test = (
-        stats.ttest_rel(group, reference)
-        if paired
-        else stats.ttest_ind(group, reference, equal_var=False)
-    )
+    # scipy warns of a sample that is constant, as a count that settings fix: its variance is 0.
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):
+        test = (
+            stats.ttest_rel(group, reference)
+            if paired
+            else stats.ttest_ind(group, reference, equal_var=False)
+        )
     return float(test.pvalue)
 
 
