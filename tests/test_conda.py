@@ -10,7 +10,6 @@ import sys
 import tomllib
 from pathlib import Path
 
-import pytest
 import yaml
 from test_module import ARTEFACTS, CLAIMS, EXPERIMENTS
 
@@ -71,7 +70,6 @@ def test_every_rule_with_a_script_names_the_environment():
         assert 'conda:\n        "../envs/bezierplan.yaml"' in rule, rule.split(":")[0]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="the program that plays conda is for a shell")
 def test_jobs_run_in_the_environment(tmp_path):
     base, told, study = tmp_path / "base", tmp_path / "told", tmp_path / "walk"
     (base / "bin").mkdir(parents=True)
