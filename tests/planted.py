@@ -21,7 +21,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.explained import Evaluated, Interpretation, name_of
-from bezierplan.analysis.search import Part, Task, search
+from bezierplan.analysis.search import Task, search
+from bezierplan.analysis.search_job import Choice, Part
 from bezierplan.study import choices, reading
 from bezierplan.workspaces.seeds import generator
 
@@ -38,13 +39,13 @@ class Surface:
     """
 
     def __init__(
-        self, name: str, given: list[dict], parts: list[Part], noise: bool = False, most: int = 60
+        self, name: str, given: list[Choice], parts: list[Part], noise: bool = False, most: int = 60
     ) -> None:
         rng, self.most = generator(f"surface/{name}"), most
         self.choices, self.parts, self.asked, self.name = given, parts, 0, name
         self.effects: list[dict[str, list[np.ndarray]]] = []
         self.pairs: list[dict[tuple[str, str], np.ndarray]] = []
-        levels = {choice["id"]: len(choice["values"]) for choice in given}
+        levels = {choice.id: len(choice.values) for choice in given}
         for part in parts:
             self.effects.append(
                 {choice: self._effect(rng, levels[choice]) for choice in part.choices}
@@ -66,9 +67,9 @@ class Surface:
         for choice in given:
             if (
                 rng.random() < 0.6
-                and (value := choice["values"][rng.integers(levels[choice["id"]])]) is not None
+                and (value := choice.values[rng.integers(levels[choice.id])]) is not None
             ):
-                self.truth[choice["id"]] = value
+                self.truth[choice.id] = value
         self.printed = [
             self._means(part, self.truth) + rng.normal(size=NUMBERS) for part in range(len(parts))
         ]
@@ -87,7 +88,7 @@ class Surface:
         )
 
     def _place(self, choice: str, made: Interpretation) -> int:
-        values = next(each["values"] for each in self.choices if each["id"] == choice)
+        values = next(each.values for each in self.choices if each.id == choice)
         return values.index(made.get(choice))
 
     def _means(self, part: int, made: Interpretation) -> np.ndarray:
@@ -140,10 +141,10 @@ def of_study(key: str, number: int, noise: bool = False) -> Surface:
     job = choices.search_job(reading.load(reading.read_config({"studies": [key]}, alone=True))[key])
     return Surface(
         f"{key}/{number}",
-        job["screened"]["choices"],
-        [Part(**part) for part in job["parts"]],
+        job.choices,
+        job.parts,
         noise,
-        job["most"],
+        job.most,
     )
 
 
@@ -164,9 +165,9 @@ class Paid:
     def __call__(self, levels: Any) -> float:
         values = zip(self.surface.choices, np.rint(levels).astype(int), strict=True)
         made = {
-            choice["id"]: choice["values"][level]
+            choice.id: choice.values[level]
             for choice, level in values
-            if choice["values"][level] is not None
+            if choice.values[level] is not None
         }
         total = 0.0
         for number, part in enumerate(self.surface.parts):
@@ -183,7 +184,7 @@ class Paid:
 
     @property
     def levels(self) -> list[int]:
-        return [len(choice["values"]) for choice in self.surface.choices]
+        return [len(choice.values) for choice in self.surface.choices]
 
 
 def random_interpretations(paid: Paid, name: str) -> None:

@@ -33,7 +33,7 @@ def found(study, experiment, method):
     """
     described = job(study, experiment, method, "smoke", 0)
     name = list(described.problems)[-1]
-    made, _ = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
+    made = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
     blocked = region(made[name].workspace)
     rows = []
     condition = next(conditions([name], described.vary))
@@ -107,7 +107,7 @@ def test_every_setting_that_a_paper_leaves_open_is_tried(key):
     interpretation.
     """
     study = STUDIES[key]
-    searched = {choice["id"] for choice in choices.choices(study)}
+    searched = {choice.id for choice in choices.choices(study)}
     left = {
         identity for name, (identity, _) in alternatives(study).items() if name not in tried(study)
     }

@@ -16,9 +16,10 @@ from pivots import pivot_of
 from bezierplan.analysis import explained, interpretations, statistics
 from bezierplan.analysis.explained import Evaluated
 from bezierplan.analysis.results import Results
-from bezierplan.analysis.search import Part, confirm, search, within_reach
-from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.analysis.search import confirm, search, within_reach
+from bezierplan.analysis.search_job import Choice, Part, Search, Stage
 from bezierplan.figures import specification
+from bezierplan.schema import model
 from bezierplan.study import choices, reading
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -28,7 +29,7 @@ ROOT = Path(__file__).parents[1]
 KEYS = ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"]
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {"only": Problem("only", GRID, (0.5, 0.5), (1.5, 1.5))}
-CHOICES = [{"id": f"O{n}", "detail": "", "values": [None, 1, 2]} for n in range(6)]
+CHOICES = [Choice(f"O{n}", "", [None, 1, 2]) for n in range(6)]
 
 
 @pytest.fixture(scope="module")
@@ -60,22 +61,23 @@ def numbers(in_range: list[bool], table: list[str] | None = None) -> pd.DataFram
 
 
 def test_grid_has_settings_worlds_and_metrics(studies):
-    found = {choice["id"]: choice for choice in choices.choices(studies["tharwat2018"])}
-    assert found["O2"]["values"] == [None, 0.9, 0.7298]
-    assert "cpso1_gauss" in found["O2"]["methods"]
-    assert found["workspace"]["values"] == [None, "public"]
-    assert found["profile"]["values"] == [None, "tuned", "public_model"]
-    assert found["profile"]["overrules"] == {"tuned": ["O2b", "O2c"], "public_model": ["O7", "O8"]}
+    found = {choice.id: choice for choice in choices.choices(studies["tharwat2018"])}
+    assert found["O2"].values == [None, 0.9, 0.7298]
+    assert "cpso1_gauss" in found["O2"].methods
+    assert found["workspace"].values == [None, "public"]
+    assert found["profile"].values == [None, "tuned", "public_model"]
+    assert found["profile"].overrules == {"tuned": ["O2b", "O2c"], "public_model": ["O7", "O8"]}
     # Roadmaps have no printed number.
     assert "O18" not in found
 
 
 def test_what_the_paper_does_not_define_has_no_vote(studies):
     job = choices.interpretations_job(studies["tharwat2018"])
-    assert "O10" not in {choice["id"] for choice in job["choices"]}
-    assert {
-        value["metric"] for table in job["tables"].values() for value in table["spec"]["values"]
-    } == {"rank", "objective"}
+    assert "O10" not in {choice.id for choice in job.choices}
+    assert {value.metric for table in job.tables.values() for value in table.spec.values} == {
+        "rank",
+        "objective",
+    }
     # Its numbers stand in the same file as the others, and are passed over.
     both = printed(5.0, 6.0)
     found, likelihood, _ = interpretations.numbers_of(
@@ -88,9 +90,11 @@ def test_what_the_paper_does_not_define_has_no_vote(studies):
 @pytest.mark.parametrize("key", KEYS)
 def test_every_study_has_a_grid_of_plain_values(studies, key):
     job = choices.interpretations_job(studies[key])
-    assert json.loads(json.dumps(job)) == job
-    assert job["tables"]
-    assert job["choices"]
+    written = model.plain(job)
+    assert json.loads(json.dumps(written)) == written
+    assert model.job(Stage, written) == job
+    assert job.tables
+    assert job.choices
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -100,18 +104,14 @@ def test_a_thousand_runs_choose_among_finalists_and_a_thousand_others_judge_the_
     job = choices.search_job(studies[key])
 
     def runs(stage, table, method):
-        chunk = job[stage]["tables"][table]["jobs"][method]
-        spec = Pivot.model_validate(job[stage]["tables"][table]["spec"])
+        chunk = job.stages[stage].tables[table].jobs[method]
+        spec = job.stages[stage].tables[table].spec
         _, own = interpretations.in_world(spec, chunk, {})
-        return {
-            (problem, repeat) for problem in own["problems"] for repeat in range(*own["repeats"])
-        }
+        return {(problem, repeat) for problem in own.problems for repeat in range(*own.repeats)}
 
-    for name, table in job["finalists"]["tables"].items():
-        drawn = "layout" in next(
-            iter(table["jobs"][next(iter(table["jobs"]))]["problems"].values())
-        )
-        for method in table["jobs"]:
+    for name, table in job.stages["finalists"].tables.items():
+        drawn = "layout" in next(iter(next(iter(table.jobs.values())).problems.values()))
+        for method in table.jobs:
             screened, judged, finalists, fresh = (
                 runs(stage, name, method) for stage in choices.STAGES
             )
@@ -126,7 +126,7 @@ def test_a_thousand_runs_choose_among_finalists_and_a_thousand_others_judge_the_
 def test_finalists_and_the_chosen_one_are_judged_on_fields_that_none_met_before(studies):
     job = choices.search_job(studies["elhoseny2017"])
     screened, judged, finalists, fresh = (
-        {place["layout"] for place in job[stage]["worlds"]["fields100"]["problems"].values()}
+        {place["layout"] for place in job.stages[stage].worlds["fields100"].problems.values()}
         for stage in choices.STAGES
     )
     assert screened < judged
@@ -140,46 +140,46 @@ def test_finalists_and_the_chosen_one_are_judged_on_fields_that_none_met_before(
 
 def test_an_interpretation_changes_the_settings_of_its_methods_and_nothing_else(studies):
     job = choices.interpretations_job(studies["meledje"])
-    chunk = job["tables"]["table2"]["jobs"]["proposed"]
-    changed = interpretations.job_under(chunk, {"M5": 1, "M18": "path"}, job["choices"])
-    assert changed["settings"] == chunk["settings"] | {"elitism": 1}
-    assert interpretations.job_under(chunk, {}, job["choices"]) == chunk
+    chunk = job.tables["table2"].jobs["proposed"]
+    changed = interpretations.chunk_under(chunk, {"M5": 1, "M18": "path"}, job.choices)
+    assert changed.settings == chunk.settings | {"elitism": 1}
+    assert interpretations.chunk_under(chunk, {}, job.choices) == chunk
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_choice_can_be_made_in_every_job(studies, key):
     job = choices.interpretations_job(studies[key])
-    for choice in job["choices"]:
-        for value in choice["values"][1:]:
-            chosen = {choice["id"]: value}
+    for choice in job.choices:
+        for value in choice.values[1:]:
+            chosen = {choice.id: value}
             changes = [
-                interpretations.job_under(chunk, chosen, job["choices"]) != chunk
-                for table in job["tables"].values()
-                for chunk in table["jobs"].values()
+                interpretations.chunk_under(chunk, chosen, job.choices) != chunk
+                for table in job.tables.values()
+                for chunk in table.jobs.values()
             ]
             # A metric and a world change how runs are read, a workspace what they are made in, a
             # setting changes runs.
-            assert any(changes) == ("setting" in choice), chosen
+            assert any(changes) == bool(choice.setting), chosen
 
 
 def test_a_choice_wins_over_the_settings_of_a_problem(studies):
     job = choices.interpretations_job(studies["ma2020"])
-    chunk = job["tables"]["table2"]["jobs"]["aco"]
-    assert chunk["problems"]["environment2"]["settings"]["iterations"] == 100
-    changed = interpretations.job_under(chunk, {"O12d": 200}, job["choices"])
-    assert changed["settings"]["iterations"] == 200
-    assert "iterations" not in changed["problems"]["environment2"].get("settings", {})
+    chunk = job.tables["table2"].jobs["aco"]
+    assert chunk.problems["environment2"]["settings"]["iterations"] == 100
+    changed = interpretations.chunk_under(chunk, {"O12d": 200}, job.choices)
+    assert changed.settings["iterations"] == 200
+    assert "iterations" not in changed.problems["environment2"].get("settings", {})
 
 
 def test_only_the_world_of_the_interpretation_is_run(studies):
-    table = choices.interpretations_job(studies["tharwat2018"])["tables"]["table3"]
-    chunk, given = table["jobs"]["cpso1_gauss"], Pivot.model_validate(table["spec"])
+    table = choices.interpretations_job(studies["tharwat2018"]).tables["table3"]
+    chunk, given = table.jobs["cpso1_gauss"], table.spec
     for chosen, world in (
         ({}, ("equal", "default")),
         ({"workspace": "public", "profile": "tuned"}, ("public", "tuned")),
     ):
         spec, job = interpretations.in_world(given, chunk, chosen)
-        assert (list(job["problems"]), job["vary"]) == ([world[0]], {"profile": [world[1]]})
+        assert (list(job.problems), job.vary) == ([world[0]], {"profile": [world[1]]})
         assert (spec.where["workspace"], spec.where["profile"]) == world
 
 
@@ -271,7 +271,10 @@ def test_too_few_runs_explain_nothing():
 
 def test_a_metric_takes_the_place_of_the_printed_word():
     spec, published = interpretations.under_metrics(
-        SPEC, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}]
+        SPEC,
+        printed(5.0, 6.0),
+        {"O1": "length"},
+        [Choice("O1", "", [None, "length"], metric="objective")],
     )
     assert [value.metric for value in spec.values] == ["length"]
     assert set(published["metric"]) == {"length"}
@@ -280,34 +283,38 @@ def test_a_metric_takes_the_place_of_the_printed_word():
         TABLE | {"values": [*TABLE["values"], {"metric": "length", "statistic": "mean"}]}
     )
     spec, _ = interpretations.under_metrics(
-        both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}]
+        both,
+        printed(5.0, 6.0),
+        {"O1": "length"},
+        [Choice("O1", "", [None, "length"], metric="objective")],
     )
     assert len(spec.values) == 1
 
 
 def test_the_search_leaves_out_what_takes_too_long(studies):
-    found = {choice["id"]: choice for choice in choices.choices(studies["meledje"])}
-    assert found["M9b"]["values"] == [None, "unrestricted"]
+    found = {choice.id: choice for choice in choices.choices(studies["meledje"])}
+    assert found["M9b"].values == [None, "unrestricted"]
 
 
 def test_the_length_that_a_fitness_uses_is_not_the_length_that_is_printed(studies):
-    found = {choice["id"]: choice for choice in choices.choices(studies["elhoseny2017"])}
-    assert found["O1b"]["metric"] == "cells4"
-    assert found["O2"].keys() & {"metric", "setting"} == {"setting"}
+    found = {choice.id: choice for choice in choices.choices(studies["elhoseny2017"])}
+    assert found["O1b"].metric == "cells4"
+    assert found["O2"].setting
+    assert found["O2"].metric is None
 
 
 def test_a_choice_for_some_problems_leaves_the_others_alone(studies):
     job = choices.interpretations_job(studies["meledje"])
-    first, second = (job["tables"][name]["jobs"]["ref12"] for name in ("table2", "table4"))
+    first, second = (job.tables[name].jobs["ref12"] for name in ("table2", "table4"))
     changed = [
-        interpretations.job_under(chunk, {"M15": 50, "M15b": 200}, job["choices"])
+        interpretations.chunk_under(chunk, {"M15": 50, "M15b": 200}, job.choices)
         for chunk in (first, second)
     ]
-    assert all(chunk["settings"]["generations"] == 50 for chunk in changed)
+    assert all(chunk.settings["generations"] == 50 for chunk in changed)
     found = {
         name: place["settings"].get("generations")
         for chunk in changed
-        for name, place in chunk["problems"].items()
+        for name, place in chunk.problems.items()
     }
     assert found["env1_initial"] is None
     assert found["env2_initial"] == found["env2_modified"] == 200
@@ -315,19 +322,19 @@ def test_a_choice_for_some_problems_leaves_the_others_alone(studies):
 
 def test_methods_that_no_metric_compares_are_parts(studies):
     job = choices.search_job(studies["elhoseny2017"])
-    parts = {part["methods"][0]: part["choices"] for part in job["parts"]}
+    parts = {part.methods[0]: part.choices for part in job.parts}
     assert list(parts) == ["mga", "prm", "abc_ep", "ga"]
     assert parts["prm"] == ["O1", "O1b", "O15b", "O15c", "O15d", "O25b"]
     # Mean ranks are those of all methods together.
-    assert len(choices.search_job(studies["tharwat2018"])["parts"]) == 1
+    assert len(choices.search_job(studies["tharwat2018"]).parts) == 1
 
 
 @pytest.mark.parametrize("method", ["prm", "abc_ep", "ga"])
 def test_every_rival_has_forty_settings_to_try(studies, method):
     found = {
-        choice["id"]: len(choice["values"])
+        choice.id: len(choice.values)
         for choice in choices.choices(studies["elhoseny2017"])
-        if choice.get("methods") == [method]
+        if choice.methods == [method]
     }
     assert math.prod(found.values()) >= 40
 
@@ -335,24 +342,24 @@ def test_every_rival_has_forty_settings_to_try(studies, method):
 def test_a_share_of_the_runs_screens_interpretations(studies):
     job = choices.search_job(studies["elhoseny2017"])
     layouts = [
-        {place["layout"] for place in job[name]["worlds"]["fields100"]["problems"].values()}
+        {place["layout"] for place in job.stages[name].worlds["fields100"].problems.values()}
         for name in ("screened", "judged")
     ]
     assert list(map(len, layouts)) == [statistics.LEAST_RUNS, 20]
     job = choices.search_job(studies["ma2020"])
     assert [
-        job[name]["tables"]["table1"]["jobs"]["aco"]["repeats"] for name in ("screened", "judged")
+        job.stages[name].tables["table1"].jobs["aco"].repeats for name in ("screened", "judged")
     ] == [[0, 25], [0, 100]]
 
 
 # The search.
 
-ALONE = [Part(["a"], [choice["id"] for choice in CHOICES])]
+ALONE = [Part(["a"], [choice.id for choice in CHOICES])]
 
 
 def evaluated(chosen: dict, planted: dict) -> Evaluated:
     """As many numbers in range as choices agree with the planted interpretation."""
-    agree = [chosen.get(choice["id"]) == planted.get(choice["id"]) for choice in CHOICES]
+    agree = [chosen.get(choice.id) == planted.get(choice.id) for choice in CHOICES]
     return Evaluated(chosen, numbers(agree), {"table1": float(sum(agree))})
 
 
@@ -397,16 +404,10 @@ def test_an_interpretation_names_no_choice_that_its_world_makes_itself():
     """As a bundle of settings beats the single ones, `O1=2, world=other` would be the runs of
     `world=other` under another name.
     """
-    world = {
-        "id": "world",
-        "detail": "",
-        "values": [None, "other"],
-        "column": "world",
-        "overrules": {"other": ["O1"]},
-    }
+    world = Choice("world", "", [None, "other"], column="world", overrules={"other": ["O1"]})
 
     def tried(grid):
-        parts = [Part(["a"], [choice["id"] for choice in [*grid, world]])]
+        parts = [Part(["a"], [choice.id for choice in [*grid, world]])]
         return search(
             [*grid, world],
             parts,
@@ -548,20 +549,15 @@ def test_luck_does_not_choose_the_best_of_many(monkeypatch):
     score that is reported is one that chose nothing.
     """
     names = ["screened", "judged", "finalists", "fresh"]
-    job = {
-        "study": "study",
-        "most": 27,
-        "most_finalists": 5,
-        "parts": [{"methods": ["a"], "choices": ["O0", "O1", "O2"]}],
-        "along": {},
-    } | {stage: {"choices": CHOICES[:3], "stage": stage} for stage in names}
+    stages = {name: Stage(name, {}, CHOICES[:3], {}, "") for name in names}
+    job = Search("study", 27, 5, [Part(["a"], ["O0", "O1", "O2"])], {}, stages)
     asked = {}
 
     class Lucky:
         """Few runs have a large error, many a small one."""
 
-        def __init__(self, job, files, maps, folder, resamples=0):
-            self.stage, self.resamples, self.published = job["stage"], resamples, {}
+        def __init__(self, stage, files, maps, folder, resamples=0):
+            self.stage, self.resamples, self.published = stage.study, resamples, {}
 
         def __call__(self, methods, interpretation):
             name = explained.name_of(interpretation)
@@ -593,9 +589,7 @@ PLANTED = [("song2016", 0), ("ma2020", 0), ("meledje", 0), ("meledje", 1), ("ma2
 @pytest.mark.parametrize(("key", "number"), PLANTED)
 def test_a_planted_interpretation_is_found(studies, key, number):
     job = choices.search_job(studies[key])
-    surface = planted.Surface(
-        f"{key}/{number}", job["screened"]["choices"], [Part(**part) for part in job["parts"]]
-    )
+    surface = planted.Surface(f"{key}/{number}", job.choices, job.parts)
     assert planted.found_by(surface, 100) >= -planted.NEAR
 
 
@@ -612,12 +606,7 @@ def test_nine_of_ten_planted_interpretations_are_found(study, found):
 
 def test_noise_is_not_explained(studies):
     job = choices.search_job(studies["ma2020"])
-    surface = planted.Surface(
-        "ma2020/noise",
-        job["screened"]["choices"],
-        [Part(**part) for part in job["parts"]],
-        noise=True,
-    )
+    surface = planted.Surface("ma2020/noise", job.choices, job.parts, noise=True)
     found = search(surface.choices, surface.parts, surface.evaluate, "study", most=60)
     best = max(found.interpretations, key=lambda each: each.rank)
     assert best.numbers["in_range"].mean() < 0.5
@@ -823,7 +812,7 @@ def test_a_line_predicts_numbers_on_it_and_not_others():
 def test_figure_shows_every_choice_that_some_interpretation_makes():
     judged = [evaluated(chosen, {}) for chosen in ({}, {"O1": 2}, {"O3": 1})]
     table = explained.interpretations_table("study", judged, [], judged[0], CHOICES)
-    above, below = specification.draw(table, [choice["id"] for choice in CHOICES]).axes
+    above, below = specification.draw(table, [choice.id for choice in CHOICES]).axes
     assert [label.get_text() for label in below.get_yticklabels()] == ["O1 = 2", "O3 = 1"]
     assert above.lines[0].get_ydata().tolist() == sorted(table["in_range"])
 
@@ -832,15 +821,15 @@ def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(
     studies, tmp_path, monkeypatch
 ):
     study = studies["song2016"]
-    job = choices.search_job(study) | {"most": 2}
-    for stage in choices.STAGES:
-        for table in job[stage]["tables"].values():
-            for chunk in table["jobs"].values():
-                chunk["settings"] = chunk["settings"] | {"generations": 5, "population": 20}
-                chunk["repeats"] = [
-                    chunk["repeats"][0],
-                    chunk["repeats"][0] + statistics.LEAST_RUNS,
-                ]
+    job = choices.search_job(study)._replace(most=2)
+    for stage in job.stages.values():
+        for table in stage.tables.values():
+            for method, chunk in table.jobs.items():
+                first = chunk.repeats[0]
+                table.jobs[method] = chunk._replace(
+                    settings=chunk.settings | {"generations": 5, "population": 20},
+                    repeats=[first, first + statistics.LEAST_RUNS],
+                )
     monkeypatch.chdir(ROOT)
     files = {"table1": study.published_file("table1")}
 

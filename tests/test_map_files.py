@@ -12,6 +12,7 @@ from PIL import Image
 import bezierplan as bp
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files
 
 YAML = (
@@ -354,12 +355,8 @@ def test_a_moving_ai_map_and_its_scenarios(tmp_path):
     ]
     one = files.scenario(described(), 1, grid, tmp_path)
     assert (one.start, one.target) == ((0.5, 3.5), (4.5, 0.5))
-    job = {
-        "study": "s",
-        "workspaces": {"w": described()},
-        "problems": {"p": {"workspace": "w", "scenario": 2}},
-    }
-    problem = problems.build_all(job, tmp_path)[0]["p"]
+    job = Descriptions("s", {"p": {"workspace": "w", "scenario": 2}}, {"w": described()})
+    problem = problems.build_all(job, tmp_path)["p"]
     assert (problem.start, problem.target) == ((0.5, 0.5), (3.5, 1.5))
     length = shortest_paths.lattice_path(grid.occupied, (0, 0), (1, 3), math.sqrt(2), "none").length
     assert length == pytest.approx(4.0)
@@ -429,11 +426,7 @@ def test_a_scenario_that_is_not_there(tmp_path):
 
 def test_an_optimal_length_of_another_map_is_told(tmp_path):
     moving_ai(tmp_path, scen=SCEN.replace("7.00000000", "9.5"))
-    job = {
-        "study": "s",
-        "workspaces": {"w": described()},
-        "problems": {"p": {"workspace": "w", "scenario": 1}},
-    }
+    job = Descriptions("s", {"p": {"workspace": "w", "scenario": 1}}, {"w": described()})
     with pytest.raises(
         ValueError, match=r"room\.map\.scen: line 2: optimal length 9\.5; on room\.map it is 7"
     ):
@@ -448,11 +441,7 @@ def test_a_scenario_with_another_optimal_length_is_told(tmp_path, off):
     words = row.split()
     words[-1] = str(float(words[-1]) + off)
     file.write_text("\n".join([*before, "\t".join(words)]) + "\n")
-    job = {
-        "study": "s",
-        "workspaces": {"w": described()},
-        "problems": {"p": {"workspace": "w", "scenario": 1}},
-    }
+    job = Descriptions("s", {"p": {"workspace": "w", "scenario": 1}}, {"w": described()})
     with pytest.raises(
         ValueError, match=r"room.map.scen: line 2: optimal length .*; on room.map it is"
     ):

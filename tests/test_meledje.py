@@ -17,6 +17,7 @@ from bezierplan.figures.panels import drawing
 from bezierplan.geometry import shortest_paths
 from bezierplan.planners import Plan, node_genetic
 from bezierplan.running import execution, problems, worlds
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import between
 from bezierplan.running.simulation.policy import Policy
@@ -136,9 +137,10 @@ def cell_path(problem, state):
 def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
     (column, row), remaining, total = DRIVEN[environment, percent]
     name = f"{environment}_at_{percent}"
-    described = {"study": "meledje", "problems": {name: STUDY.problems[name].plain()}}
-    described["workspaces"] = {name: STUDY.workspaces[name].plain()}
-    made, _, moving = worlds.build_all(described, FOLDER)
+    described = Descriptions(
+        "meledje", {name: STUDY.problems[name].plain()}, {name: STUDY.workspaces[name].plain()}
+    )
+    made, moving = worlds.build_all(described, FOLDER)
     ride = drive(
         moving[name], made[name], Policy(**STUDY.policies["replans"].model_dump()), cell_path
     )
@@ -413,7 +415,7 @@ def own_study(folder, experiments=OWN, yard=YARD):
 
 def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
     study = own_study(tmp_path)
-    made, _ = problems.build_all(problems_job(study, "tries", "full"), study.folder)
+    made = problems.build_all(problems_job(study, "tries", "full"), study.folder)
     for method in ("proposed", "repaired"):
         runs, times = execution.run_chunk(made, job(study, "tries", method, "full", 0))
         table = runs.to_pandas()

@@ -91,7 +91,7 @@ def written(folder, old="", new=""):
 
 
 def chunk(study):
-    made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     return rides.run_chunk(made, found, job(study, "drives", "mine", "smoke", 0))
 
 
@@ -142,9 +142,10 @@ def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path
 
 def test_files_of_problems_keep_the_world(tmp_path):
     study = reading.load([written(tmp_path)])["mystudy"]
-    made, workspaces, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    described = problems_job(study, "drives", "smoke")
+    made, found = worlds.build_all(described, study.folder)
     file = str(tmp_path / "drives.parquet")
-    worlds.write(made, workspaces, found, file)
+    worlds.write(made, described.homes, found, file)
     assert worlds.read(file)["across"].workspace(3).occupied[2, 3]
     assert not problems.read(file)["across"].workspace.occupied[2, 3]
     bounds = rides.bounds_of(made, found, {}).to_pylist()[0]
@@ -202,7 +203,7 @@ def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
 @pytest.mark.parametrize(("end", "feasible"), [((6.5, 2.5), True), ((6.0, 2.5), False)])
 def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_path, end, feasible):
     study = reading.load([written(tmp_path)])["mystudy"]
-    made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     around = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end])
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
     plan = Planned(0.0, None, float(times[-1]), 0.0, 0.0, 1)
@@ -220,7 +221,7 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     tmp_path, monkeypatch, clearance, least, steps
 ):
     study = reading.load([written(tmp_path)])["mystudy"]
-    made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     points = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)])
     ride = Ride(Motion(points, np.arange(4.0)), True, 0.0, [Planned(0.0, None, 10.0, 0.0, 0.0, 1)])
     verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
@@ -239,7 +240,7 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
 def a_row(tmp_path, points, times, arrived=True):
     """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
     study = reading.load([written(tmp_path)])["mystudy"]
-    made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     ride = Ride(
         Motion(np.array(points), np.array(times)),
         arrived,

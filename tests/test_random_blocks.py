@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import random_blocks
 
 MAP = {
@@ -43,8 +44,8 @@ def built(count, obstacles=60, **changes):
         f"blocks_{layout}": PROBLEM | {"layout": layout, "obstacles": obstacles}
         for layout in range(count)
     }
-    job = {"study": "study", "problems": described, "workspaces": {"blocks": MAP | changes}}
-    return [problem.workspace.occupied for problem in problems.build_all(job, None)[0].values()]
+    job = Descriptions("study", described, {"blocks": MAP | changes})
+    return [problem.workspace.occupied for problem in problems.build_all(job, None).values()]
 
 
 def test_maps_are_drawn_from_names_and_numbers_alone():
@@ -125,10 +126,6 @@ def test_maps_without_a_block_are_empty():
 )
 def test_what_no_map_can_be_is_told(description, problem, told, monkeypatch):
     monkeypatch.setattr(random_blocks, "MOST_MAPS", 50)
-    job = {
-        "study": "study",
-        "problems": {"blocks_0": PROBLEM | problem},
-        "workspaces": {"blocks": MAP | description},
-    }
+    job = Descriptions("study", {"blocks_0": PROBLEM | problem}, {"blocks": MAP | description})
     with pytest.raises(ValueError, match=told):
         problems.build_all(job, None)

@@ -6,6 +6,7 @@ import pytest
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.region import blocks, region
 from bezierplan.running import problems
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files, random_field
 from bezierplan.workspaces.circles import Circles
 
@@ -101,9 +102,9 @@ def test_ends_outside_are_told():
 
 
 def test_a_field_is_written_and_read_bit_by_bit(tmp_path):
-    job = {"study": "study", "workspaces": {"dense": FIELD}, "problems": {"case1_0_25": PROBLEM}}
-    made, workspaces = problems.build_all(job, tmp_path)
-    problems.write(made, workspaces, tmp_path / "problems.parquet")
+    job = Descriptions("study", {"case1_0_25": PROBLEM}, {"dense": FIELD})
+    made = problems.build_all(job, tmp_path)
+    problems.write(made, job.homes, tmp_path / "problems.parquet")
     (one,), (again,) = made.values(), problems.read(tmp_path / "problems.parquet").values()
     assert np.array_equal(one.workspace.occupied, again.workspace.occupied)
     assert np.array_equal(one.workspace.drawn.centres, again.workspace.drawn.centres)
@@ -112,8 +113,8 @@ def test_a_field_is_written_and_read_bit_by_bit(tmp_path):
 
 
 def test_bounds_of_a_moved_grid_are_those_of_the_same_cells_at_the_origin(tmp_path):
-    job = {"study": "study", "workspaces": {"dense": FIELD}, "problems": {"case1_0_25": PROBLEM}}
-    (moved,), _ = problems.build_all(job, tmp_path)[0].values(), None
+    job = Descriptions("study", {"case1_0_25": PROBLEM}, {"dense": FIELD})
+    (moved,) = problems.build_all(job, tmp_path).values()
     at_origin = moved._replace(
         workspace=type(moved.workspace)(moved.workspace.occupied, 1.0, "cell"),
         start=(0.5, 0.5),

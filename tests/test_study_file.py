@@ -460,7 +460,7 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     )
     assert all(
         "settings" not in problem
-        for problem in jobs.problems_job(study, "routes", "smoke")["problems"].values()
+        for problem in jobs.problems_job(study, "routes", "smoke").problems.values()
     )
 
 

@@ -18,6 +18,7 @@ from pydantic import Field as model_field
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import blocks, region
 from bezierplan.running import problems, worlds
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.schema import model
 from bezierplan.workspaces import files, kinds, random_circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
@@ -546,12 +547,12 @@ def test_layouts_leave_the_ends_free():
 def test_problems_in_random_circles_have_free_ends():
     """Circles so large and many that one would cover the other end if only one were kept free."""
     described = {"workspace": "close", "start": [-6, 0], "target": [4, 6], "obstacles": 10}
-    job = {
-        "study": "study",
-        "workspaces": {"close": RANDOM | {"kind": "random_circles", "radius": 5.0}},
-        "problems": {f"p{number}": described | {"layout": number} for number in range(20)},
-    }
-    drawn, _ = problems.build_all(job, Path())
+    job = Descriptions(
+        "study",
+        {f"p{number}": described | {"layout": number} for number in range(20)},
+        {"close": RANDOM | {"kind": "random_circles", "radius": 5.0}},
+    )
+    drawn = problems.build_all(job, Path())
     assert len(drawn) == 20
     for problem in drawn.values():
         assert len(problem.workspace.radii) == 10

@@ -141,7 +141,7 @@ class Arena(NamedTuple):
 
 def arena(contest: Contest) -> Arena:
     study = reading.load(reading.read_config({"studies": [contest.study]}))[contest.study]
-    made, _ = problems.build_all(jobs.problems_job(study, contest.experiment, "full"), study.folder)
+    made = problems.build_all(jobs.problems_job(study, contest.experiment, "full"), study.folder)
     problem = made[contest.problem]
     return Arena(
         contest,

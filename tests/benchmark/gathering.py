@@ -119,11 +119,12 @@ def write_runs(study: Study) -> None:
     """Write problems, bounds and all chunks of runs of a study into `results` of the working
     folder.
     """
-    made, workspaces = problems.build_all(jobs.problems_job(study, "all", SCALE), study.folder)
+    described = jobs.problems_job(study, "all", SCALE)
+    made = problems.build_all(described, study.folder)
     (files,) = targets.shown_by(study, SCALE, "lengths").values()
     for file in (files.problems, *files.chunks):
         Path(file).parent.mkdir(parents=True, exist_ok=True)
-    problems.write(made, workspaces, files.problems)
+    problems.write(made, described.homes, files.problems)
     parquet.write_table(problems.bounds_of(problems.read(files.problems)), files.bounds)
     for method in study.methods_of("all"):
         runs, times = execution.run_chunk(

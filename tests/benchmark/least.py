@@ -314,9 +314,7 @@ def benchmark_least() -> None:
     for key, study in reading.load(reading.read_config({})).items():
         for experiment, method in _chosen(study):
             job = jobs.job(study, experiment, method, "smoke", 0)
-            made, _ = problems.build_all(
-                jobs.problems_job(study, experiment, "smoke"), study.folder
-            )
+            made = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
             condition = job.conditions()[0]
             run = partial(execution.run, job, condition, 0, made[condition.problem])
             taken = cpu_seconds(run, ROUNDS)

@@ -35,7 +35,7 @@ def _on_the_maps() -> Iterator[Timed]:
     where it takes longest.
     """
     study = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
-    made, _ = problems.build_all(jobs.problems_job(study, "maps", "smoke"), study.folder)
+    made = problems.build_all(jobs.problems_job(study, "maps", "smoke"), study.folder)
     maps = list(made.values())
 
     def genetic(problem: Problem) -> float:

@@ -42,9 +42,7 @@ def benchmark_runs() -> None:
     for key, study in reading.load(reading.read_config({})).items():
         for experiment, method in methods(study):
             job = jobs.job(study, experiment, method, "smoke", 0)
-            made, _ = problems.build_all(
-                jobs.problems_job(study, experiment, "smoke"), study.folder
-            )
+            made = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
             condition = job.conditions()[0]
             problem = made[condition.problem]
             taken = _milliseconds(lambda number: execution.run(job, condition, number, problem))  # noqa: B023

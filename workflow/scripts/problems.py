@@ -6,6 +6,8 @@ with log.job(snakemake) as output:
     from pathlib import Path
 
     from bezierplan.running import problems
+    from bezierplan.running.descriptions import Descriptions
 
-    made, workspaces = problems.build_all(snakemake.params.job, Path(snakemake.params.folder))
-    problems.write(made, workspaces, output[0])
+    described = Descriptions(**snakemake.params.job)
+    made = problems.build_all(described, Path(snakemake.params.folder))
+    problems.write(made, described.homes, output[0])

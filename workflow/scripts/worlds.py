@@ -6,6 +6,8 @@ with log.job(snakemake) as output:
     from pathlib import Path
 
     from bezierplan.running import worlds
+    from bezierplan.running.descriptions import Descriptions
 
-    made, workspaces, found = worlds.build_all(snakemake.params.job, Path(snakemake.params.folder))
-    worlds.write(made, workspaces, found, output[0])
+    described = Descriptions(**snakemake.params.job)
+    made, moving = worlds.build_all(described, Path(snakemake.params.folder))
+    worlds.write(made, described.homes, moving, output[0])

@@ -42,6 +42,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis.search_job import Choice
+
 Interpretation = dict[str, Any]
 
 DEFAULT = "default"
@@ -97,12 +99,12 @@ def together(interpretation: Interpretation, parts: list[Evaluated]) -> Evaluate
     )
 
 
-def in_words(interpretation: Interpretation, choices: list[dict]) -> str:
+def in_words(interpretation: Interpretation, choices: list[Choice]) -> str:
     """The choices that an interpretation makes, each with what the paper leaves open."""
     made = [
-        f"{choice['detail']}: {interpretation[choice['id']]}"
+        f"{choice.detail}: {interpretation[choice.id]}"
         for choice in choices
-        if choice["id"] in interpretation
+        if choice.id in interpretation
     ]
     return "; ".join(made)
 
@@ -112,7 +114,7 @@ def interpretations_table(
     confirmed: list[Evaluated],
     screened: list[Evaluated],
     fresh: Evaluated,
-    choices: list[dict],
+    choices: list[Choice],
 ) -> pd.DataFrame:
     """interpretations.csv. confirmed: the default and the finalists, judged by many runs. screened:
     all, of which those confirmed are left out. fresh: the best finalist, judged by as many runs
@@ -134,7 +136,7 @@ def interpretations_table(
                 "in_words": in_words(evaluated.interpretation, choices),
             }
             | {"confirmed": name_of(evaluated.interpretation) in again}
-            | {choice["id"]: evaluated.interpretation.get(choice["id"], "") for choice in choices}
+            | {choice.id: evaluated.interpretation.get(choice.id, "") for choice in choices}
             | {
                 "in_range": int(numbers["in_range"].sum()),
                 "numbers": len(numbers),

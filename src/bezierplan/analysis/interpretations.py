@@ -32,7 +32,8 @@ import pyarrow.parquet as parquet
 from bezierplan.analysis import comparison, explained, metrics, statistics, tables
 from bezierplan.analysis.explained import Evaluated, Interpretation, name_of, together
 from bezierplan.analysis.results import Results, joined, select
-from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search, whole, within_reach
+from bezierplan.analysis.search import Evaluate, Task, confirm, search, whole, within_reach
+from bezierplan.analysis.search_job import Choice, Part, Search, Stage
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
@@ -57,40 +58,39 @@ JUDGED = 3
 # One interpretation.
 
 
-def job_under(job: dict, interpretation: Interpretation, choices: list[dict]) -> dict:
-    """A job of runs under an interpretation: with its settings, and only in the world that it
+def chunk_under(chunk: Chunk, interpretation: Interpretation, choices: list[Choice]) -> Chunk:
+    """A chunk of runs under an interpretation: with its settings, and only in the world that it
     names.
     """
     settings, problems = (
-        dict(job["settings"]),
-        {name: dict(place.get("settings", {})) for name, place in job["problems"].items()},
+        dict(chunk.settings),
+        {name: dict(place.get("settings", {})) for name, place in chunk.problems.items()},
     )
     # Choices for some problems alone are stronger than those for all.
-    for choice in sorted(choices, key=lambda choice: "problems" in choice):
-        if choice["id"] in interpretation and job["method"] in choice.get("methods", []):
-            made = {choice["setting"]: interpretation[choice["id"]]} | choice["along"].get(
-                job["method"], {}
-            )
-            if "problems" in choice:
-                for name in problems.keys() & set(choice["problems"]):
+    for choice in sorted(choices, key=lambda choice: bool(choice.problems)):
+        if choice.id in interpretation and chunk.method in choice.methods:
+            made = {choice.setting: interpretation[choice.id]}
+            made |= choice.along.get(chunk.method, {})
+            if choice.problems:
+                for name in problems.keys() & set(choice.problems):
                     problems[name] |= made
                 continue
             settings |= made
             for own in problems.values():
-                own.pop(choice["setting"], None)
+                own.pop(choice.setting, None)
     bare = {
         name: {key: value for key, value in place.items() if key != "settings"}
-        for name, place in job["problems"].items()
+        for name, place in chunk.problems.items()
     }
     met = {
         name: place | ({"settings": problems[name]} if problems[name] else {})
         for name, place in bare.items()
     }
-    return job | {"settings": settings, "problems": met}
+    return chunk._replace(settings=settings, problems=met)
 
 
-def in_world(spec: Pivot, job: dict, interpretation: Interpretation) -> tuple[Pivot, dict]:
-    """A table's description and one of its jobs, restricted to the paper's interpretation of the
+def in_world(spec: Pivot, chunk: Chunk, interpretation: Interpretation) -> tuple[Pivot, Chunk]:
+    """A table's description and one of its chunks, restricted to the paper's interpretation of the
     world.
     """
     world = {column: interpretation.get(column, value) for column, value in spec.primary.items()}
@@ -102,19 +102,19 @@ def in_world(spec: Pivot, job: dict, interpretation: Interpretation) -> tuple[Pi
 
     problems = {
         name: place
-        for name, place in job["problems"].items()
+        for name, place in chunk.problems.items()
         if wanted("problem", name)
         and all(wanted(column, place[column]) for column in place if column != "settings")
     }
     vary = {
         column: [value for value in values if wanted(column, value)]
-        for column, values in job["vary"].items()
+        for column, values in chunk.vary.items()
     }
-    return spec.but(where=where), job | {"problems": problems, "vary": vary}
+    return spec.but(where=where), chunk._replace(problems=problems, vary=vary)
 
 
 def under_metrics(
-    spec: Pivot, published: pd.DataFrame, interpretation: Interpretation, choices: list[dict]
+    spec: Pivot, published: pd.DataFrame, interpretation: Interpretation, choices: list[Choice]
 ) -> tuple[Pivot, pd.DataFrame]:
     """A table's description and its published numbers, with the metrics that an interpretation
     assigns to printed words, and the keys that it changes.
@@ -122,16 +122,16 @@ def under_metrics(
     A metric that the table has in another entry already stays once.
     """
     metric = {
-        choice["metric"]: interpretation[choice["id"]]
+        choice.metric: interpretation[choice.id]
         for choice in choices
-        if "metric" in choice and choice["id"] in interpretation
+        if choice.metric and choice.id in interpretation
     }
     renamed = [entry.but(metric=metric.get(entry.metric, entry.metric)) for entry in spec.values]
     entries = {(entry.metric, str(entry.statistic)): entry for entry in renamed}
     keys = {
-        choice["table"]: interpretation[choice["id"]]
+        choice.table: interpretation[choice.id]
         for choice in choices
-        if "table" in choice and choice["id"] in interpretation
+        if choice.table and choice.id in interpretation
     }
     return spec.but(**keys, values=[*entries.values()]), comparison.as_read(published, metric)
 
@@ -359,18 +359,15 @@ class Evaluator:
     """
 
     def __init__(
-        self, job: dict, files: dict[str, str], maps: Path, folder: Path, resamples: int = 0
+        self, stage: Stage, files: dict[str, str], maps: Path, folder: Path, resamples: int = 0
     ) -> None:
-        """job: as from `study.choices.interpretations_job`. files: published numbers, by table.
-        maps: where map files are looked up. resamples: how often runs are resampled for the error
-        of the score.
+        """files: published numbers, by table. maps: where map files are looked up. resamples: how
+        often runs are resampled for the error of the score.
         """
-        self.job, self.maps, self.folder, self.resamples = job, maps, folder, resamples
-        self.specs = {
-            name: Pivot.model_validate(table["spec"]) for name, table in job["tables"].items()
-        }
+        self.stage, self.maps, self.folder, self.resamples = stage, maps, folder, resamples
         self.published = {
-            name: comparison.read_published(files[name], spec) for name, spec in self.specs.items()
+            name: comparison.read_published(files[name], table.spec)
+            for name, table in stage.tables.items()
         }
         self.worlds: dict[str, tuple[dict, pd.DataFrame]] = {}
 
@@ -379,23 +376,24 @@ class Evaluator:
         exclude each other or no workspace is like that.
         """
         evaluated = []
-        for name, table in self.job["tables"].items():
-            jobs = [job for method, job in table["jobs"].items() if method in methods]
-            if not jobs:
+        choices = self.stage.choices
+        for name, table in self.stage.tables.items():
+            own = [method for method in table.jobs if method in methods]
+            if not own:
                 continue
             placed = [
                 in_world(
-                    self.specs[name],
-                    job_under(job, interpretation, self.job["choices"]),
+                    table.spec,
+                    chunk_under(table.jobs[method], interpretation, choices),
                     interpretation,
                 )
-                for job in jobs
+                for method in own
             ]
             if any(_excluded(chunk) for _, chunk in placed):
                 return None
             try:
                 problems, bounds, changes = self._world(
-                    table["experiment"], [*placed[0][1]["problems"]], interpretation
+                    table.experiment, [*placed[0][1].problems], interpretation
                 )
             except ValueError as error:  # no such workspace can be drawn
                 logger.info("%s: %s", name_of(interpretation), error)
@@ -404,20 +402,16 @@ class Evaluator:
                 [self._runs(chunk, problems, changes) for _, chunk in placed], ignore_index=True
             )
             spec, published = under_metrics(
-                placed[0][0],
-                self._printed(name, interpretation),
-                interpretation,
-                self.job["choices"],
+                placed[0][0], self._printed(name, interpretation), interpretation, choices
             )
-            if len(jobs) < len(table["jobs"]):
-                own = [job["method"] for job in jobs]
+            if len(own) < len(table.jobs):
                 spec = spec.but(where=spec.where | {"method": own})
                 published = published[published["method"].isin(own)]
             numbers, likelihood, resampled = numbers_of(
                 joined(runs, problems, bounds),
                 spec,
                 published,
-                f"{self.job['study']}/{name}",
+                f"{self.stage.study}/{name}",
                 self.resamples,
             )
             evaluated.append(
@@ -448,35 +442,35 @@ class Evaluator:
         """Some problems of an experiment under an interpretation, their bounds, and what the
         interpretation changes in their workspaces.
         """
-        described = self.job["worlds"][experiment]
-        wanted = {name: described["problems"][name] for name in names}
+        described = self.stage.worlds[experiment]
+        wanted = {name: described.problems[name] for name in names}
         used = {problem["workspace"] for problem in wanted.values()}
         changes = [
-            (workspace, key, interpretation[choice["id"]])
-            for choice in self.job["choices"]
-            for workspace, key in choice.get("workspace", {}).items()
-            if choice["id"] in interpretation and workspace in used
+            (workspace, key, interpretation[choice.id])
+            for choice in self.stage.choices
+            for workspace, key in choice.workspace.items()
+            if choice.id in interpretation and workspace in used
         ]
         described_world = json.dumps([experiment, names, changes])
         if described_world not in self.worlds:
-            workspaces = {name: dict(described["workspaces"][name]) for name in sorted(used)}
+            workspaces = {name: dict(described.workspaces[name]) for name in sorted(used)}
             for workspace, key, value in changes:
                 workspaces[workspace][key] = value
-            made, _ = problem_files.build_all(
-                described | {"problems": wanted, "workspaces": workspaces}, self.maps
+            made = problem_files.build_all(
+                described._replace(problems=wanted, workspaces=workspaces), self.maps
             )
             self.worlds[described_world] = made, problem_files.bounds_of(made).to_pandas()
         return *self.worlds[described_world], changes
 
-    def _runs(self, job: dict, problems: dict, changes: list) -> pd.DataFrame:
+    def _runs(self, chunk: Chunk, problems: dict, changes: list) -> pd.DataFrame:
         key = (
-            source_digest(_planner(job["planner"]))
-            + self.job["maps"]
-            + json.dumps([job, changes], sort_keys=True)
+            source_digest(_planner(chunk.planner))
+            + self.stage.maps
+            + json.dumps([chunk.plain(), changes], sort_keys=True)
         )
         file = self.folder / f"{hashlib.sha256(key.encode()).hexdigest()[:24]}.parquet"
         if not file.exists():
-            table, times = execution.run_chunk(problems, Chunk(**job), timed_alike=False)
+            table, times = execution.run_chunk(problems, chunk, timed_alike=False)
             file.parent.mkdir(parents=True, exist_ok=True)
             # Two processes may make the same runs.
             part = Path(f"{file}.{os.getpid()}.part")
@@ -521,7 +515,7 @@ def _evaluated(task: Task) -> Evaluated | None:
 
 
 def found_by(
-    job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int
+    job: Search, files: dict[str, str], maps: Path, folder: Path, processes: int
 ) -> dict[str, pd.DataFrame]:
     """The three tables of `explained`, by name, after the search for a study's best interpretation.
 
@@ -529,18 +523,15 @@ def found_by(
     luck as well. So those within its reach are judged by more, then the finalists by many others,
     which choose the best one; and as these runs were kind to the one that they chose, it is judged
     anew by as many with seeds that chose nothing.
-
-    job: as from `study.choices.search_job`.
     """
-    parts = [Part(**part) for part in job["parts"]]
-    choices, study, most = job["screened"]["choices"], job["study"], job["most_finalists"]
+    parts, choices, study, most = job.parts, job.choices, job.study, job.most_finalists
 
     def by(stage: str, resamples: int = 0) -> AbstractContextManager[Evaluate]:
-        evaluator = Evaluator(job[stage], files, maps, folder, resamples)
+        evaluator = Evaluator(job.stages[stage], files, maps, folder, resamples)
         return evaluating(evaluator, parts, processes)
 
     with by("screened") as evaluate:
-        tried = search(choices, parts, evaluate, study, job["most"])
+        tried = search(choices, parts, evaluate, study, job.most)
     near = [each.interpretation for each in tried.interpretations]
     for stage, kept in (("screened", JUDGED * most), ("judged", most)):
         with by(stage, RESAMPLES) as evaluate:
@@ -551,14 +542,12 @@ def found_by(
     with by("fresh") as evaluate:
         fresh = whole(best, parts, evaluate)
     shared = {
-        choice["id"]
-        for choice in choices
-        if sum(choice["id"] in part.choices for part in parts) > 1
+        choice.id for choice in choices if sum(choice.id in part.choices for part in parts) > 1
     }
-    published = Evaluator(job["finalists"], files, maps, folder).published
+    published = Evaluator(job.stages["finalists"], files, maps, folder).published
     lines = {
         name: (along, explained.yardstick(published[name], along))
-        for name, along in job["along"].items()
+        for name, along in job.along.items()
     }
     return {
         "interpretations": explained.interpretations_table(
@@ -569,10 +558,9 @@ def found_by(
     }
 
 
-def _excluded(job: dict) -> bool:
+def _excluded(chunk: Chunk) -> bool:
     """Whether a planner refuses a combination of settings."""
-    check = getattr(planner_module(job["planner"]), "check", None)
-    chunk = Chunk(**job)
+    check = getattr(planner_module(chunk.planner), "check", None)
     settings = [execution.settings_in(chunk, condition) for condition in chunk.conditions()]
     try:
         for each in settings if check else []:

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan.analysis.explained import Evaluated, Interpretation, name_of, together
+from bezierplan.analysis.search_job import Choice, Part
 from bezierplan.workspaces.seeds import generator
 
 # Rows of the space-filling design before a further one is drawn.
@@ -36,15 +37,6 @@ REACH = 2.0
 # What a printed number that no run could have costs an interpretation in the climb: more than any
 # likelihood gives.
 RULED_OUT = 1e6
-
-
-class Part(NamedTuple):
-    """methods: those whose numbers are judged together. choices: the ids of those that they depend
-    on.
-    """
-
-    methods: list[str]
-    choices: list[str]
 
 
 class Task(NamedTuple):
@@ -77,7 +69,7 @@ class _Book:
     """
 
     def __init__(
-        self, choices: list[dict], parts: list[Part], evaluate: Evaluate, most: float
+        self, choices: list[Choice], parts: list[Part], evaluate: Evaluate, most: float
     ) -> None:
         self.choices, self.parts, self.evaluate = choices, parts, evaluate
         self.left = [most] * len(parts)
@@ -151,7 +143,7 @@ class _Book:
 
 
 def search(
-    choices: list[dict],
+    choices: list[Choice],
     parts: list[Part],
     evaluate: Evaluate,
     name: str,
@@ -160,11 +152,11 @@ def search(
 ) -> Found:
     """The interpretations tried, up to a number, and all that is known of the parts.
 
-    choices: with `id` and `values`, the default first, as None. name: seeds the design.
+    name: seeds the design.
     most: how often each part may be evaluated. All interpretations are, if there are no more than
     that.
     """
-    everything = math.prod(len(choice["values"]) for choice in choices) <= most
+    everything = math.prod(len(choice.values) for choice in choices) <= most
     book = _Book(choices, parts, evaluate, math.inf if everything else most)
     book.ask([{}])
     if everything:
@@ -174,14 +166,14 @@ def search(
     return book.found(listed)
 
 
-def settled(interpretation: Interpretation, choices: list[dict]) -> Interpretation:
+def settled(interpretation: Interpretation, choices: list[Choice]) -> Interpretation:
     """An interpretation without the choices that its world makes itself: with another value they
     would name runs that are not made.
     """
     worlds = [
-        choice["overrules"].get(str(interpretation.get(choice["id"])), [])
+        choice.overrules.get(str(interpretation.get(choice.id)), [])
         for choice in choices
-        if "column" in choice
+        if choice.column
     ]
     return {
         choice: value
@@ -249,7 +241,7 @@ def whole(interpretation: Interpretation, parts: list[Part], evaluate: Evaluate)
     return together(interpretation, book.evaluated(interpretation))
 
 
-def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
+def _climb_on(choices: list[Choice], book: _Book, name: str) -> None:
     """Climb from the default interpretation, then from kicks of the best one, until nothing is new,
     or too little may be evaluated.
     """
@@ -265,15 +257,12 @@ def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
         # tried everywhere.
         anew = group is not shared and number // len(groups) % 2 == 0
         count = len(group) if anew else min(KICKED, len(group))
-        kicked = {
-            choice["id"]
-            for choice in np.array(group, dtype=object)[rng.permutation(len(group))[:count]]
-        }
-        kicked_interpretation = interpretation
-        for choice in kicked:
-            kicked_interpretation = book.changed(kicked_interpretation, choice, drawn[choice])
+        kicked = interpretation
+        for place in rng.permutation(len(group))[:count]:
+            choice = group[place].id
+            kicked = book.changed(kicked, choice, drawn[choice])
         before = sum(book.left)
-        climbed = _climb(kicked_interpretation, choices if group is shared else group, book, rng)
+        climbed = _climb(kicked, choices if group is shared else group, book, rng)
         if climbed is not None and book.value(climbed) >= book.value(interpretation):
             interpretation = climbed
         stale = stale + 1 if sum(book.left) == before else 0
@@ -282,7 +271,7 @@ def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
 
 
 def _climb(
-    interpretation: Interpretation, choices: list[dict], book: _Book, rng: np.random.Generator
+    interpretation: Interpretation, choices: list[Choice], book: _Book, rng: np.random.Generator
 ) -> Interpretation | None:
     """Give one choice after the other its best value, in random order, until none improves the
     score. A choice stays as it is where its values may not be evaluated any more; None if the
@@ -296,7 +285,7 @@ def _climb(
     unchanged = 0
     for choice in itertools.cycle(order):
         unchanged += 1
-        others = [book.changed(interpretation, choice["id"], value) for value in choice["values"]]
+        others = [book.changed(interpretation, choice.id, value) for value in choice.values]
         try:
             values = book.ask(others)
         except _SpentError:
@@ -311,20 +300,21 @@ def _climb(
     return interpretation
 
 
-def _shared_and_own(choices: list[dict], parts: list[Part]) -> tuple[list[dict], list[list[dict]]]:
+def _shared_and_own(
+    choices: list[Choice], parts: list[Part]
+) -> tuple[list[Choice], list[list[Choice]]]:
     """Choices on which several parts depend, and for each part those on which it alone does."""
     users = {
-        choice["id"]: [part for part, each in enumerate(parts) if choice["id"] in each.choices]
+        choice.id: [part for part, each in enumerate(parts) if choice.id in each.choices]
         for choice in choices
     }
-    shared = [choice for choice in choices if len(users[choice["id"]]) > 1]
+    shared = [choice for choice in choices if len(users[choice.id]) > 1]
     return shared, [
-        [choice for choice in choices if users[choice["id"]] == [part]]
-        for part in range(len(parts))
+        [choice for choice in choices if users[choice.id] == [part]] for part in range(len(parts))
     ]
 
 
-def _design(choices: list[dict], name: str) -> Iterator[dict[str, Any]]:
+def _design(choices: list[Choice], name: str) -> Iterator[dict[str, Any]]:
     """Rows of Latin hypercubes over the values of all choices, without end: each value of a choice
     comes up equally often.
     """
@@ -336,16 +326,16 @@ def _design(choices: list[dict], name: str) -> Iterator[dict[str, Any]]:
         )
         for row in cube:
             yield {
-                choice["id"]: choice["values"][int(place * len(choice["values"]))]
+                choice.id: choice.values[int(place * len(choice.values))]
                 for choice, place in zip(choices, row, strict=True)
             }
 
 
-def _all(choices: list[dict]) -> Iterator[Interpretation]:
-    for values in itertools.product(*(choice["values"] for choice in choices)):
+def _all(choices: list[Choice]) -> Iterator[Interpretation]:
+    for values in itertools.product(*(choice.values for choice in choices)):
         yield settled(
             {
-                choice["id"]: value
+                choice.id: value
                 for choice, value in zip(choices, values, strict=True)
                 if value is not None
             },

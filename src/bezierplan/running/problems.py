@@ -17,6 +17,7 @@ from bezierplan.geometry import cell_length
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import Region, blocks, region
 from bezierplan.running.columns import Bound
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files, lattice, random_blocks, robot
 from bezierplan.workspaces.frames import WORLD, Frame, corners, frame_of, inward_map
 from bezierplan.workspaces.grid import Grid
@@ -153,40 +154,37 @@ def _within(workspace: Workspace, frame: Frame) -> str:
     return f"expected x from {x_low:.12g} to {x_high:.12g} and y from {y_low:.12g} to {y_high:.12g}"
 
 
-def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:
-    """Problems and the names of their workspaces, both keyed by problem, from their descriptions
-    (`jobs.problems_job`).
+def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
+    """Problems by name, from their descriptions.
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
     from bezierplan.workspaces.kinds import kind_of
 
-    kinds = {name: kind_of(each) for name, each in job["workspaces"].items()}
+    kinds = {name: kind_of(each) for name, each in described.workspaces.items()}
     fixed = {
         name: files.load(each, folder)
-        for name, each in job["workspaces"].items()
+        for name, each in described.workspaces.items()
         if hasattr(kinds[name], "load")
     }
     problems = {}
-    for name, description in job["problems"].items():
+    for name, description in described.problems.items():
         home = description["workspace"]
-        arguments = job["workspaces"][home], description, f"{job['study']}/{home}"
+        arguments = described.workspaces[home], description, f"{described.study}/{home}"
         if home in fixed:
             workspace = fixed[home]
         elif hasattr(kinds[home], "draw"):
             workspace = kinds[home].draw(*arguments)
         else:
             workspace = _suitable(
-                kinds[home].candidates(*arguments), job["workspaces"][home], description
+                kinds[home].candidates(*arguments), described.workspaces[home], description
             )
         if "scenario" in description:
             description = description | scenario(
-                job["workspaces"][home], description["scenario"], workspace, folder
+                described.workspaces[home], description["scenario"], workspace, folder
             )
         problems[name] = build(name, description, workspace)
-    return problems, {
-        name: description["workspace"] for name, description in job["problems"].items()
-    }
+    return problems
 
 
 # Tolerance between our optimal length of a scenario and the printed one, in cells.

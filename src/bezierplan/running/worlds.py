@@ -10,6 +10,7 @@ import pyarrow.parquet as parquet
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems as problem_files
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import worlds
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import kind_of
@@ -17,21 +18,18 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
 
-def build_all(
-    job: dict, folder: Path
-) -> tuple[dict[str, Problem], dict[str, str], dict[str, World]]:
-    """Problems, the names of their workspaces, and their worlds, all keyed by problem, from their
-    descriptions (`jobs.problems_job`).
+def build_all(described: Descriptions, folder: Path) -> tuple[dict[str, Problem], dict[str, World]]:
+    """Problems and their worlds, both by the problem's name, from their descriptions.
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
     made, moving = {}, {}
-    for name, problem in job["problems"].items():
-        description = job["workspaces"][problem["workspace"]]
-        world = build(description, problem, f"{job['study']}/{problem['workspace']}", folder)
+    for name, problem in described.problems.items():
+        home = problem["workspace"]
+        world = build(described.workspaces[home], problem, f"{described.study}/{home}", folder)
         made[name] = problem_files.build(name, problem, world.workspace(0))
         moving[name] = world
-    return made, {name: problem["workspace"] for name, problem in job["problems"].items()}, moving
+    return made, moving
 
 
 def build(description: dict, problem: dict, name: str, folder: Path) -> World:

@@ -102,12 +102,31 @@ def defaults(model: type[Model]) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Models as mappings, also inside lists and mappings."""
+    """Models and named tuples as mappings, also inside lists and mappings; of a named tuple without
+    what has its default.
+    """
     if isinstance(value, Model):
         return value.plain()
+    if hasattr(value, "_asdict"):
+        absent, entry = value._field_defaults, value._asdict()
+        return {
+            name: plain(each)
+            for name, each in entry.items()
+            if name not in absent or each != absent[name]
+        }
     if isinstance(value, dict):
         return {key: plain(each) for key, each in value.items()}
     return [plain(each) for each in value] if isinstance(value, list) else value
+
+
+J = TypeVar("J")
+
+
+def job(kind: type[J], params: Any) -> J:
+    """A job as the named tuple that it was before `plain`. Raises ValidationError for any other
+    content.
+    """
+    return TypeAdapter(kind).validate_python(params)
 
 
 def parsed(model: type[M], content: Any, location: str) -> M:

@@ -20,6 +20,7 @@ from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import PLACE, planner_module
 from bezierplan.running import columns, interface, problems, worlds
 from bezierplan.running.chunk import conditions
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.interface import check_settings
 from bezierplan.schema.checked import Fault, closest
@@ -268,16 +269,15 @@ def _built(study: Study, name: str) -> Problem:
     """
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
-    described = {name: problem.plain("settings", "layouts") | drawn}
-    build_all = worlds.build_all if home.moves else problems.build_all
-    return build_all(
-        {
-            "study": study.key,
-            "problems": described,
-            "workspaces": {problem.workspace: home.plain()},
-        },
-        study.folder,
-    )[0][name]
+    described = Descriptions(
+        study.key,
+        {name: problem.plain("settings", "layouts") | drawn},
+        {problem.workspace: home.plain()},
+    )
+    if home.moves:
+        made, _ = worlds.build_all(described, study.folder)
+        return made[name]
+    return problems.build_all(described, study.folder)[name]
 
 
 def _check_experiment(

@@ -1,26 +1,18 @@
 """The grid of interpretations of a paper: every choice that it leaves open and that governs its
 published numbers.
-
-A choice is a mapping of plain values: id; detail; values, the default first (None, as methods may
-differ in it); and what it governs:
-
-    setting, methods, along   a setting of some methods, and further settings that go with it,
-                              method -> settings; with `problems`, on these problems alone
-    workspace                 workspace -> its key
-    table                     a key of the tables
-    column, overrules         the column of the tables whose value is the paper's world, and value
-                              -> ids of the choices of settings that it makes itself
-    metric                    the metric with which a printed word is compared
 """
 
 import csv
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from bezierplan.analysis.metrics import METRICS
+from bezierplan.analysis.search_job import Choice, Part, Search, Stage, TableRuns
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.running.chunk import Chunk
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.digest import content_digest
 from bezierplan.schema.model import one_or_list
 from bezierplan.study import alternatives, jobs
@@ -66,7 +58,7 @@ def _published(study: Study, table: str) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def choices(study: Study) -> list[dict[str, Any]]:
+def choices(study: Study) -> list[Choice]:
     """All choices: settings that assumptions govern, and worlds between which the tables leave the
     choice.
     """
@@ -80,7 +72,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
     compared -= {
         entry.metric for table in tables.values() for entry in table.values if not entry.defined
     }
-    known = []
+    known: list[Choice] = []
     for assumption in study.assumptions:
         governs: dict[str, Any] = {}
         if (
@@ -108,10 +100,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
             value for value in assumption.alternatives if value not in assumption.not_searched
         ]
         if governs and values:
-            known.append(
-                {"id": assumption.id, "detail": assumption.detail, "values": [None, *values]}
-                | governs
-            )
+            known.append(Choice(assumption.id, assumption.detail, [None, *values], **governs))
     worlds: dict[str, list] = {}
     for table in tables.values():
         for column, value in table.primary.items():
@@ -131,26 +120,23 @@ def choices(study: Study) -> list[dict[str, Any]]:
     return known + [_world(study, column, values, known) for column, values in open_worlds.items()]
 
 
-def _world(
-    study: Study, column: str, values: list, settings: list[dict[str, Any]]
-) -> dict[str, Any]:
+def _world(study: Study, column: str, values: list, settings: list[Choice]) -> Choice:
     """The choice between worlds, the default first. settings: the choices of settings."""
     made = {
         str(value): study.presets.get(column, {}).get(str(value).lower(), {})
         for value in values[1:]
     }
     overrules = {
-        value: [choice["id"] for choice in settings if choice.get("setting") in own]
+        value: [choice.id for choice in settings if choice.setting in own]
         for value, own in made.items()
     }
-    detail = f"Which {column} the tables show"
-    return {
-        "id": column,
-        "detail": detail,
-        "values": [None, *values[1:]],
-        "column": column,
-        "overrules": overrules,
-    }
+    return Choice(
+        column,
+        f"Which {column} the tables show",
+        [None, *values[1:]],
+        column=column,
+        overrules=overrules,
+    )
 
 
 def _methods(study: Study, name: str, table: Pivot) -> list[str]:
@@ -179,29 +165,22 @@ def _apart(table: Pivot, rows: list[dict[str, str]]) -> bool:
     return "method" in rows[0] and not compared
 
 
-def search_job(study: Study) -> dict[str, Any]:
-    """What the search for an interpretation depends on, in addition to the files of maps and
-    published numbers.
-
-    One key a stage (`STAGES`): its `interpretations_job`. most, finalists: how many interpretations
-    are tried, and how many may be finalists. parts: as `analysis.search.Part`. along: of some
-    tables, the column along which the paper says that its numbers rise or fall.
-    """
+def search_job(study: Study) -> Search:
+    """What the search for an interpretation depends on."""
     tables = printed_tables(study)
     along = {name: table.monotone[0].along for name, table in tables.items() if table.monotone}
-    search = {
-        "study": study.key,
-        "most": study.interpretations_tried,
-        "most_finalists": study.interpretations_finalists,
-        "parts": _parts(study),
-        "along": along,
-    }
-    return search | {stage: interpretations_job(study, stage) for stage in STAGES}
+    return Search(
+        study.key,
+        most=study.interpretations_tried,
+        most_finalists=study.interpretations_finalists,
+        parts=_parts(study),
+        along=along,
+        stages={stage: interpretations_job(study, stage) for stage in STAGES},
+    )
 
 
-def interpretations_job(study: Study, stage: str = "judged") -> dict[str, Any]:
-    """What interpretations are judged by in a stage: the jobs of their runs, and the problems of
-    these.
+def interpretations_job(study: Study, stage: str = "judged") -> Stage:
+    """What interpretations are judged by in a stage.
 
     Those screened have a share of the runs of those judged, though at least as many as are judged
     at all. Where there is one run in each layout, it is a share of the layouts, of which twice
@@ -224,17 +203,7 @@ def interpretations_job(study: Study, stage: str = "judged") -> dict[str, Any]:
         layouts = _layouts(drawn, stage) if by_layout else None
         placed = _with_layouts(study, table.experiment, layouts.stop) if by_layout else study
         methods = _methods(study, name, table)
-        chunk_jobs = {
-            method: jobs.job(placed, table.experiment, method, "full", 0).plain()
-            for method in methods
-        }
-        world = jobs.problems_job(placed, table.experiment, "full")
-        for given in (world, *chunk_jobs.values()):
-            given["problems"] = {
-                key: place
-                for key, place in given["problems"].items()
-                if layouts is None or place.get("layout") in layouts
-            }
+        world = _on_layouts(jobs.problems_job(placed, table.experiment, "full"), layouts)
         share = 1 if by_layout else SCREENED
         many = -(-MANY // _in_one_world(table, world)) if drawn else MANY
         stages = {
@@ -243,20 +212,33 @@ def interpretations_job(study: Study, stage: str = "judged") -> dict[str, Any]:
             "finalists": [repeats, repeats + many],
             "fresh": [repeats + many, repeats + 2 * many],
         }
-        for job in chunk_jobs.values():
-            job["repeats"] = stages[stage]
+        chunks = {
+            method: _on_layouts(
+                jobs.job(placed, table.experiment, method, "full", 0), layouts
+            )._replace(repeats=stages[stage])
+            for method in methods
+        }
         # What the paper does not define has no vote.
-        voting = [entry.plain() for entry in table.values if entry.defined]
-        spec = table.plain() | {"where": table.where | {"method": methods}, "values": voting}
-        tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
+        voting = [entry for entry in table.values if entry.defined]
+        spec = table.but(where=table.where | {"method": methods}, values=voting)
+        tables[name] = TableRuns(table.experiment, spec, chunks)
         worlds[table.experiment] = world
-    return {
-        "study": study.key,
-        "tables": tables,
-        "choices": choices(study),
-        "worlds": worlds,
-        "maps": content_digest(*maps(study)),
+    return Stage(study.key, tables, choices(study), worlds, content_digest(*maps(study)))
+
+
+D = TypeVar("D", Chunk, Descriptions)
+
+
+def _on_layouts(described: D, layouts: range | None) -> D:
+    """A description with those of its problems alone that have one of these layouts; None for
+    all.
+    """
+    problems = {
+        name: place
+        for name, place in described.problems.items()
+        if layouts is None or place.get("layout") in layouts
     }
+    return described._replace(problems=problems)
 
 
 def _layouts(drawn: dict[str, int], stage: str) -> range:
@@ -283,11 +265,11 @@ def _with_layouts(study: Study, experiment: str, layouts: int) -> Study:
     return replace(study, problems=study.problems | drawn)
 
 
-def _in_one_world(table: Pivot, world: dict) -> int:
+def _in_one_world(table: Pivot, world: Descriptions) -> int:
     """How many problems belong to the paper's own interpretation of the world."""
     return sum(
         all(problem.get(column, value) == value for column, value in table.primary.items())
-        for problem in world["problems"].values()
+        for problem in world.problems.values()
     )
 
 
@@ -313,7 +295,7 @@ def maps(study: Study) -> list[str]:
     return sorted({*study.maps(names), *workspaces})
 
 
-def _parts(study: Study) -> list[dict[str, list[str]]]:
+def _parts(study: Study) -> list[Part]:
     """Methods that no metric of a table compares with each other, and for each such part the
     choices that it depends on.
     """
@@ -330,11 +312,9 @@ def _parts(study: Study) -> list[dict[str, list[str]]]:
     known = choices(study)
     order = list(study.methods)
     return [
-        {
-            "methods": sorted(group, key=order.index),
-            "choices": [
-                choice["id"] for choice in known if group & set(choice.get("methods", group))
-            ],
-        }
+        Part(
+            sorted(group, key=order.index),
+            [choice.id for choice in known if group & set(choice.methods or group)],
+        )
         for group in sorted(groups, key=lambda group: min(map(order.index, group)))
     ]

@@ -14,23 +14,24 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study.alternatives import experiments_of_claims
 from bezierplan.study.artefacts import Figure
 from bezierplan.study.definition import Study
 
 
-def problems_job(study: Study, experiment: str, scale: str) -> dict:
+def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
     """What the problems of an experiment depend on, except the content of map files."""
-    described = {
+    problems = {
         name: {key: value for key, value in problem.items() if key != "settings"}
         for name, problem in study.problems_of(experiment, scale).items()
     }
     workspaces = {
         name: study.workspaces[name].plain()
-        for name in sorted({problem["workspace"] for problem in described.values()})
+        for name in sorted({problem["workspace"] for problem in problems.values()})
     }
-    return {"study": study.key, "problems": described, "workspaces": workspaces}
+    return Descriptions(study.key, problems, workspaces)
 
 
 def job(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:

@@ -47,7 +47,7 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
 
 def _rerun(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
     """A run where nothing moves."""
-    made, _ = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
+    made = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     problem = made[condition.problem]
     named = {condition.problem: problem}
     plan = execution.run(chunk, condition, repeat, lend(named)[condition.problem].problem)
@@ -57,7 +57,7 @@ def _rerun(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> res
 
 def _redriven(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
     """A run in a world that moves."""
-    made, _, found = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
+    made, found = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     problem, world = made[condition.problem], found[condition.problem]
     ride = rides.run(chunk, condition, repeat, problem, from_json(to_json(world)))
     row, _ = rides.row(chunk, condition, repeat, ride, problem, world)

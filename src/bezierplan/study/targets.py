@@ -18,6 +18,7 @@ from bezierplan.analysis.table_kinds import Comparison, Layout, Pivot
 from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.running.inputs import BOUNDS, PROBLEMS, Files, named, of_experiments, part
+from bezierplan.schema.model import plain
 from bezierplan.study import alternatives, choices, definition, design, jobs
 from bezierplan.study.definition import Study
 
@@ -111,28 +112,26 @@ def problems_params(studies: Studies, scale: str, study: str, experiment: str) -
     """Params of the job that builds the problems of an experiment."""
     job = jobs.problems_job(studies[study], experiment, scale)
     return {
-        "job": job,
+        "job": job._asdict(),
         "folder": definition.relative(studies[study].folder),
         "maps": content_digest(*problem_maps(studies, scale, study, experiment)),
         "code": _code(
-            "worlds" if studies[study].moves(experiment) else "problems", *_kinds_of_workspace(job)
+            "worlds" if studies[study].moves(experiment) else "problems",
+            *_kinds_of_workspace(job.workspaces),
         ),
     }
 
 
-def _kinds_of_workspace(job: dict) -> list[str]:
-    """Modules of the kinds of a job's workspaces, which are imported by name."""
+def _kinds_of_workspace(workspaces: dict[str, dict]) -> list[str]:
+    """Modules of the kinds of some workspaces, which are imported by name."""
     return sorted(
-        {
-            f"bezierplan.workspaces.kinds.{described['kind']}"
-            for described in job["workspaces"].values()
-        }
+        {f"bezierplan.workspaces.kinds.{described['kind']}" for described in workspaces.values()}
     )
 
 
 def problem_maps(studies: Studies, scale: str, study: str, experiment: str) -> list[str]:
     """Map files of an experiment."""
-    return studies[study].maps(jobs.problems_job(studies[study], experiment, scale)["workspaces"])
+    return studies[study].maps(jobs.problems_job(studies[study], experiment, scale).workspaces)
 
 
 def bounds_params(script: str) -> dict:
@@ -543,18 +542,19 @@ def interpretations_inputs(studies: Studies, scale: str, study: str) -> dict[str
 def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the search for an interpretation."""
     job = choices.search_job(studies[study])
+    screened = job.stages["screened"]
     planners = {
-        _planner(each["planner"])
-        for table in job["screened"]["tables"].values()
-        for each in table["jobs"].values()
+        _planner(chunk.planner)
+        for table in screened.tables.values()
+        for chunk in table.jobs.values()
     }
     kinds = {
         module
-        for world in job["screened"]["worlds"].values()
-        for module in _kinds_of_workspace(world)
+        for world in screened.worlds.values()
+        for module in _kinds_of_workspace(world.workspaces)
     }
     return {
-        "job": job,
+        "job": plain(job),
         "folder": definition.relative(studies[study].folder),
         "published": content_digest(
             *(
