@@ -20,7 +20,7 @@ from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims import comparisons, judge, variants
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import OfRuns, kinds
-from bezierplan.analysis.claims.material import Material, Shown
+from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.papers import elhoseny2017, ma2020, meledje, song2016, tharwat2018
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
@@ -56,11 +56,7 @@ def published(key):
 
 @cache
 def artefacts(key):
-    job = jobs.claims_job(study(key), study(key).claims, primary_alone=False)
-    return {
-        name: [Shown.model_validate(part) for part in parts]
-        for name, parts in job["artefacts"].items()
-    }
+    return jobs.claims_job(study(key), study(key).claims, "full").artefacts
 
 
 @cache

@@ -12,9 +12,12 @@ import pytest
 
 from bezierplan.analysis import audit, baseline_comparison
 from bezierplan.analysis.claims import job as claims_job
+from bezierplan.analysis.jobs import AuditJob, ClaimsJob, MeasuredJob
 from bezierplan.figures import job as figures_job
+from bezierplan.figures.figure_job import FigureJob
 from bezierplan.running import inputs
 from bezierplan.running.inputs import Files
+from bezierplan.schema import model
 from bezierplan.study import reading, targets
 
 
@@ -53,8 +56,9 @@ def moved(study, tmp_path):
 
 
 def test_methods_are_measured_against_the_baseline(study, moved):
+    params = targets.baseline_comparison_params({"many": study}, "full")["job"]
     rows = baseline_comparison.of_studies(
-        targets.baseline_comparison_params({"many": study}, "full")["job"], {"many/all": moved}
+        {"many": MeasuredJob(**params["many"])}, {"many/all": moved}
     )
     assert list(rows.columns) == list(baseline_comparison.COLUMNS)
     assert set(rows["method"]) == {"pso", "cpso1_singer", "cpso2_singer", "ferguson"}
@@ -63,7 +67,7 @@ def test_methods_are_measured_against_the_baseline(study, moved):
 
 
 def test_claims_are_judged(study, moved, tmp_path):
-    job = targets.claims_params({"many": study}, "full", "many")["job"]
+    job = model.job(ClaimsJob, targets.claims_params({"many": study}, "full", "many")["job"])
     published = inputs.part(targets.claims_inputs({"many": study}, "full", "many"), "published")
     claims_job.run(
         job, {"all": moved}, published, str(tmp_path / "claims.csv"), str(tmp_path / "checks.csv")
@@ -73,7 +77,7 @@ def test_claims_are_judged(study, moved, tmp_path):
 
 
 def test_the_papers_numbers_are_audited(study, moved):
-    job = targets.audit_params({"many": study}, "full", "many")["job"]
+    job = model.job(AuditJob, targets.audit_params({"many": study}, "full", "many")["job"])
     published = inputs.part(targets.audit_inputs({"many": study}, "full", "many"), "published")
     table = audit.audited(job, {}, {"all": moved.bounds}, published)
     assert list(table.columns) == audit.COLUMNS
@@ -81,7 +85,7 @@ def test_the_papers_numbers_are_audited(study, moved):
 
 @pytest.mark.parametrize("name", ["spread", "paths"])
 def test_a_figure_is_drawn_wide_and_narrow(study, moved, tmp_path, name):
-    job = targets.figure_params({"many": study}, "full", "many", name)["job"]
+    job = model.job(FigureJob, targets.figure_params({"many": study}, "full", "many", name)["job"])
     output = SimpleNamespace(
         **{
             part: str(tmp_path / f"{part}.{name}")
@@ -90,7 +94,7 @@ def test_a_figure_is_drawn_wide_and_narrow(study, moved, tmp_path, name):
     )
     figures_job.draw(job, {"all": moved}, {}, study.folder, output)
     assert "runs" in Path(output.caption).read_text()
-    assert pd.read_csv(output.data)["panel"].nunique() == len(job["spec"]["panels"])
+    assert pd.read_csv(output.data)["panel"].nunique() == len(job.panels)
     narrow = SimpleNamespace(svg=str(tmp_path / "narrow.svg"), pdf=str(tmp_path / "narrow.pdf"))
     figures_job.draw_narrow(job, {"all": moved.problems}, output.data, study.folder, narrow)
     assert Path(narrow.svg).stat().st_size > 1000

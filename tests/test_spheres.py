@@ -10,7 +10,6 @@ import yaml
 from faults import told
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from panels import panels_of
 from studies import study
 
 from bezierplan.figures import sheet
@@ -264,12 +263,12 @@ def job():
 
 def test_the_figure_shows_what_its_runs_are():
     described = job()
-    panels = panels_of(described["spec"]["panels"])
+    panels = described.panels
     bare = {
         name: files.load(each, study("tharwat2018").folder)
-        for name, each in described["workspaces"].items()
+        for name, each in described.workspaces.items()
     }
-    frame = sheet.data(panels, Sources(workspaces=bare, study=described["study"]))
+    frame = sheet.data(panels, Sources(workspaces=bare, study=described.study))
     for _, own in frame.groupby("panel"):
         runs = own[own["part"] == "run"]
         assert list(runs["run"]) == [f"tharwat2018/spheres/pso/{repeat}" for repeat in range(20)]
@@ -342,9 +341,8 @@ def folder(tmp_path):
 
 def test_a_reader_declares_spheres_in_a_few_lines(folder):
     (own,) = reading.load([folder]).values()
-    (described,) = jobs.figure_job(own, "ball", "full")["spec"]["panels"]
-    assert described["settings"] == own.resolved("swarm")
-    (options,) = panels_of([described])
+    (options,) = jobs.figure_job(own, "ball", "full").panels
+    assert options.settings == own.resolved("swarm")
     frame = panel.data((files.load(own.workspaces["ball"].plain(), folder), own.key), options)
     assert list(frame["run"].dropna().unique()) == ["mine/ball/swarm/0"]
 

@@ -13,13 +13,13 @@ from studies import KEYS, arguments
 from studies import study as shared
 
 from bezierplan.analysis import audit, metrics
+from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.papers import song2016, tharwat2018
 from bezierplan.analysis.results import Results
-from bezierplan.analysis.table_kinds import Layout
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
-from bezierplan.schema import checked
+from bezierplan.schema import checked, model
 from bezierplan.study import checks, reading, targets
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
@@ -376,8 +376,8 @@ def test_flow_chart_has_a_box_around_every_step():
 
 def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
-    job = targets.audit_params({"tharwat2018": study}, "full", "tharwat2018")["job"]
-    layouts = {name: Layout.model_validate(each) for name, each in job["layouts"].items()}
+    params = targets.audit_params({"tharwat2018": study}, "full", "tharwat2018")
+    layouts = model.job(AuditJob, params["job"]).layouts
     tables = published("tharwat2018")
     compared = {name: audit.read_published(study.published_file(name)) for name in layouts}
     rows = audit.table(

@@ -32,7 +32,6 @@ from timing import cpu_seconds_of_each
 
 from bezierplan.analysis import comparison, results, tables
 from bezierplan.analysis.claims import job as claims_job
-from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import sheet, style
 from bezierplan.figures.page import runs as page_runs
 from bezierplan.figures.panels import Sources
@@ -159,10 +158,9 @@ def _runs(given: Studies, repeats: int) -> None:
 def _tables(given: Studies) -> None:
     (study,) = given.values()
     found, job = _read(given), jobs.table_job(study, "lengths", gathering.SCALE)
-    spec = Pivot.model_validate(job["spec"])
-    published = comparison.read_published(study.published_file("lengths"), spec)
-    comparison.compare(found, spec, published, job["variants"], job["baselines"], job["name"])
-    tables.pivot(found, spec, job["labels"])
+    published = comparison.read_published(study.published_file("lengths"), job.spec)
+    comparison.compare(found, job.spec, published, job.variants, job.baselines, job.name)
+    tables.pivot(found, job.spec, job.labels)
 
 
 def _figures(given: Studies) -> None:
@@ -185,7 +183,7 @@ def _claims(given: Studies) -> None:
     files = targets.judged_by_claims(given[key], gathering.SCALE)
     published = {Path(file).stem: file for file in given[key].published_files()}
     claims_job.run(
-        targets.claims_params(given, gathering.SCALE, key)["job"],
+        jobs.claims_job(given[key], given[key].claims, gathering.SCALE),
         files,
         published,
         "claims.csv",

@@ -8,13 +8,15 @@ with log.job(snakemake) as output:
     from pathlib import Path
 
     from bezierplan.analysis.claims import job
+    from bezierplan.analysis.jobs import ClaimsJob
     from bezierplan.running import again, inputs
+    from bezierplan.schema import model
 
     files = again.with_chunks(
         inputs.experiments(snakemake.input), snakemake.params.chunks, Path(output.runs)
     )
     job.run(
-        snakemake.params.job,
+        model.job(ClaimsJob, snakemake.params.job),
         files,
         inputs.part(snakemake.input, "published"),
         output.claims,

@@ -4,7 +4,10 @@ from bezierplan.running import log
 
 with log.job(snakemake) as output:
     from bezierplan.analysis import baseline_comparison
+    from bezierplan.analysis.jobs import MeasuredJob
     from bezierplan.running import inputs
+    from bezierplan.schema import model
 
-    rows = baseline_comparison.of_studies(snakemake.params.job, inputs.experiments(snakemake.input))
+    job = model.job(dict[str, MeasuredJob], snakemake.params.job)
+    rows = baseline_comparison.of_studies(job, inputs.experiments(snakemake.input))
     rows.to_csv(output[0], index=False, float_format="%.6g", lineterminator="\n")

@@ -4,10 +4,14 @@ from bezierplan.running import log
 
 with log.job(snakemake) as output:
     from bezierplan.analysis.claims import job
+    from bezierplan.analysis.jobs import ClaimsJob
     from bezierplan.running import inputs
+    from bezierplan.schema import model
 
-    files, published = (
+    job.run(
+        model.job(ClaimsJob, snakemake.params.job),
         inputs.experiments(snakemake.input),
         inputs.part(snakemake.input, "published"),
+        output.claims,
+        output.checks,
     )
-    job.run(snakemake.params.job, files, published, output.claims, output.checks)

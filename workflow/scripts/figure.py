@@ -6,10 +6,14 @@ with log.job(snakemake) as output:
     from pathlib import Path
 
     from bezierplan.figures import job
+    from bezierplan.figures.figure_job import FigureJob
     from bezierplan.running import inputs
+    from bezierplan.schema import model
 
-    files, published = (
+    job.draw(
+        model.job(FigureJob, snakemake.params.job),
         inputs.experiments(snakemake.input),
         inputs.part(snakemake.input, "published"),
+        Path(snakemake.params.folder),
+        output,
     )
-    job.draw(snakemake.params.job, files, published, Path(snakemake.params.folder), output)

@@ -3,16 +3,12 @@
 from bezierplan.running import log
 
 with log.job(snakemake) as output:
-    import importlib
-
-    from bezierplan.analysis import listing, table_kinds
+    from bezierplan.analysis import table_jobs
+    from bezierplan.analysis.jobs import ListingJob
     from bezierplan.running import inputs
+    from bezierplan.schema import model
 
-    job = snakemake.params.job
-    functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
-    spec, published = (
-        table_kinds.table_of(job["spec"]),
-        inputs.part(snakemake.input, "published"),
+    table = table_jobs.listing(
+        model.job(ListingJob, snakemake.params.job), inputs.part(snakemake.input, "published")
     )
-    table = listing.table(spec, published, functions, job["labels"])
     table.to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

@@ -6,9 +6,14 @@ with log.job(snakemake) as output:
     from pathlib import Path
 
     from bezierplan.figures import job
+    from bezierplan.figures.figure_job import FigureJob
     from bezierplan.running import inputs
+    from bezierplan.schema import model
 
-    problems = inputs.part(snakemake.input, inputs.PROBLEMS)
     job.draw_narrow(
-        snakemake.params.job, problems, snakemake.input.data, Path(snakemake.params.folder), output
+        model.job(FigureJob, snakemake.params.job),
+        inputs.part(snakemake.input, inputs.PROBLEMS),
+        snakemake.input.data,
+        Path(snakemake.params.folder),
+        output,
     )

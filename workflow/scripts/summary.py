@@ -6,12 +6,14 @@ with log.job(snakemake) as output:
     from pathlib import Path
 
     from bezierplan.analysis import summary
+    from bezierplan.analysis.jobs import SummaryJob
     from bezierplan.running import inputs
+    from bezierplan.schema import model
 
     comparisons, claims = (inputs.part(snakemake.input, name) for name in ("comparisons", "claims"))
     scale = snakemake.wildcards.scale
     found = summary.gathered(
-        snakemake.params.job,
+        model.job(SummaryJob, snakemake.params.job),
         comparisons,
         list(claims.values()),
         snakemake.input.baseline_comparison,

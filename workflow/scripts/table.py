@@ -3,19 +3,15 @@
 from bezierplan.running import log
 
 with log.job(snakemake) as output:
-    from bezierplan.analysis import comparison, results, table_kinds, tables
+    from bezierplan.analysis import table_jobs
+    from bezierplan.analysis.jobs import PivotJob
     from bezierplan.running import inputs
+    from bezierplan.schema import model
 
-    job = snakemake.params.job
-    spec = table_kinds.Pivot.model_validate(job["spec"])
-    found = results.read(
-        inputs.experiments(snakemake.input)[spec.experiment], job["repeats"], spec.experiment
+    table, comparison = table_jobs.pivot(
+        model.job(PivotJob, snakemake.params.job),
+        inputs.experiments(snakemake.input),
+        next(iter(inputs.part(snakemake.input, "published").values()), None),
     )
-    published = comparison.read_published(
-        next(iter(inputs.part(snakemake.input, "published").values()), None), spec
-    )
-    compared = comparison.compare(
-        found, spec, published, job["variants"], job["baselines"], job["name"]
-    )
-    tables.pivot(found, spec, job["labels"]).to_csv(output.table, lineterminator="\n")
-    compared.to_csv(output.comparison, index=False, float_format="%.10g", lineterminator="\n")
+    table.to_csv(output.table, lineterminator="\n")
+    comparison.to_csv(output.comparison, index=False, float_format="%.10g", lineterminator="\n")

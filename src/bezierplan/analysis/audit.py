@@ -21,6 +21,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from bezierplan.analysis import identified, possible
+from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.possible import Printed
 from bezierplan.analysis.results import published_table
@@ -594,34 +595,34 @@ def _text(number: Fraction) -> str:
 
 
 def audited(
-    job: dict,
+    job: AuditJob,
     problem_files: Mapping[str, str],
     bound_files: Mapping[str, str],
     files: Mapping[str, str],
 ) -> pd.DataFrame:
-    """The audit of a job (`study.targets.audit_params`) as a table with `COLUMNS`.
+    """The audit of a paper as a table with `COLUMNS`.
 
     problem_files and bound_files: by experiment, problems of those alone whose printed lengths are
     identified. files: of published numbers, by table.
     """
-    layouts = {name: Layout.model_validate(each) for name, each in job["layouts"].items()}
+    layouts = job.layouts
     published = {name: read_published(file) for name, file in files.items()}
     bounds = {
         name: pd.read_parquet(file).set_index("problem") for name, file in bound_files.items()
     }
-    of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
+    of_tables = {table: bounds[experiment] for table, experiment in job.tables.items()}
     compared = {table: published[table] for table in of_tables}
     # Numbers to which a workspace was fitted lie above its bound by construction.
     independent = {name: table for name, table in compared.items() if not layouts[name].fitted}
-    rows = below_bound(independent, of_tables, job["primary"]) + of_any_paper(compared, layouts)
+    rows = below_bound(independent, of_tables, job.primary) + of_any_paper(compared, layouts)
     made = {name: problems.read(file) for name, file in problem_files.items()}
     for name, layout in layouts.items():
         rows += identified.of_table(
-            name, published[name], layout.identify, made.get(job["tables"][name], {})
+            name, published[name], layout.identify, made.get(job.tables[name], {})
         )
-    if job["module"]:
-        rows += importlib.import_module(job["module"]).audit(published)
-    return table(job["study"], rows)
+    if job.module:
+        rows += importlib.import_module(job.module).audit(published)
+    return table(job.study, rows)
 
 
 def read_published(file: str) -> pd.DataFrame:

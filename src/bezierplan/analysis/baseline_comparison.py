@@ -17,12 +17,12 @@ baseline's runs; the table has the median of these ratios over the conditions. C
 """
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics
+from bezierplan.analysis.jobs import MeasuredJob
 from bezierplan.analysis.results import Results, read
 from bezierplan.running.inputs import Files
 
@@ -65,19 +65,18 @@ def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
     )
 
 
-def of_studies(job: Mapping[str, dict[str, Any]], files: Mapping[str, Files]) -> pd.DataFrame:
+def of_studies(job: Mapping[str, MeasuredJob], files: Mapping[str, Files]) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
-    job: study -> its `baseline`, and `repeats` of the experiments that are measured. files: of
-    experiments, each by `study/experiment`.
+    job: by study. files: of experiments, each by `study/experiment`.
     """
     tables = []
-    for study, described in job.items():
+    for study, own in job.items():
         experiments = {
             name: read(files[f"{study}/{name}"], number, name)
-            for name, number in described["repeats"].items()
+            for name, number in own.repeats.items()
         }
-        tables.append(measured(experiments, described["baseline"]).assign(study=study))
+        tables.append(measured(experiments, own.baseline).assign(study=study))
     rows = pd.concat(tables) if tables else pd.DataFrame()
     return rows.reindex(columns=COLUMNS)
 

@@ -10,15 +10,16 @@ import json
 
 import pandas as pd
 
+from bezierplan.analysis.jobs import Tried
+
 
 def sensitivity(
-    claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], described: dict[str, dict]
+    claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], described: dict[str, Tried]
 ) -> pd.DataFrame:
     """One row per alternative and headline claim.
 
     claims: claims of the study with all defaults. alternatives: by name, claims with that
-    alternative. described: by name, the columns study, assumption, detail, setting, default,
-    alternative.
+    alternative. described: the alternatives, by name.
     """
     deciding = claims[claims["primary"]].set_index("id")
     rows = []
@@ -27,8 +28,8 @@ def sensitivity(
             in_force = deciding.loc[tried.id]
             rows.append(
                 {
-                    **described[name],
-                    "default": _text(described[name]["default"]),
+                    **described[name]._asdict(),
+                    "default": _text(described[name].default),
                     "claim": tried.id,
                     "statement": in_force["statement"],
                     "verdict": in_force["verdict"],

@@ -10,6 +10,7 @@ import pandas as pd
 
 from bezierplan.analysis import baseline_comparison, explained, headline
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
+from bezierplan.analysis.jobs import SummaryJob
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
 
@@ -25,26 +26,24 @@ class Summary(NamedTuple):
 
 
 def gathered(
-    job: dict,
+    job: SummaryJob,
     comparison_files: Mapping[str, str],
     claims_files: list[str],
     baseline_comparison_file: str,
     scale: str,
 ) -> Summary:
-    """The summary of a job (`study.targets.summary_params`). comparison_files: each by
-    `study/table`.
-    """
+    """The summary of all studies. comparison_files: each by `study/table`."""
     everything = numbers(
         {
             (study, table): pd.read_csv(comparison_files[f"{study}/{table}"])
-            for study, table in job["tables"]
+            for study, table in job.tables
         }
     )
     claims = read_claims(claims_files)
     return Summary(
         everything,
         claims,
-        report(everything, claims, pd.read_csv(baseline_comparison_file), job["titles"], scale),
+        report(everything, claims, pd.read_csv(baseline_comparison_file), job.titles, scale),
     )
 
 

@@ -5,13 +5,13 @@ pictures and the table of what they show.
 import importlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from bezierplan.analysis import results
 from bezierplan.figures import sheet, style
-from bezierplan.figures.panels import Panel, Sources, panel_of
+from bezierplan.figures.figure_job import FigureJob
+from bezierplan.figures.panels import Sources
 from bezierplan.running import problems as problem_files
-from bezierplan.running.chunk import Chunk
 from bezierplan.running.inputs import Files
 from bezierplan.workspaces import files as workspace_files
 from bezierplan.workspaces.problem import Problem
@@ -35,39 +35,34 @@ class NarrowPictures(Protocol):
 
 
 def draw(
-    job: dict[str, Any],
+    job: FigureJob,
     files: Mapping[str, Files],
     published_files: Mapping[str, str],
     folder: Path,
     output: Pictures,
 ) -> None:
-    """Draw the figure of a job (`study.targets.figure_params`), from the table that is written
-    first and read back.
+    """Draw a figure, from the table that is written first and read back.
 
     files: by experiment. published_files: of published numbers, by table. folder: that of the
     study, with its maps.
     """
     published = {name: results.published_table(file) for name, file in published_files.items()}
     numbers = results.joined_numbers(published)
-    chunks = {
-        name: {method: Chunk(**chunk) for method, chunk in methods.items()}
-        for name, methods in job["jobs"].items()
-    }
     experiments = {
-        name: runs._replace(published=numbers, jobs=chunks.get(name))
-        for name, runs in results.read_all(files, job["repeats"]).items()
+        name: runs._replace(published=numbers, jobs=job.chunks.get(name))
+        for name, runs in results.read_all(files, job.repeats).items()
     }
-    functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
-    panels, scene = _drawn(job, {name: runs.problems for name, runs in experiments.items()}, folder)
-    sources = Sources(experiments, scene.workspaces, functions, published, job["study"])
-    sheet.write_data(sheet.data(panels, sources), output.data)
-    figure = sheet.draw(panels, sheet.read_data(output.data), scene, job["spec"]["columns"])
+    functions = vars(importlib.import_module(job.module)) if job.module else {}
+    scene = _scene(job, {name: runs.problems for name, runs in experiments.items()}, folder)
+    sources = Sources(experiments, scene.workspaces, functions, published, job.study)
+    sheet.write_data(sheet.data(job.panels, sources), output.data)
+    figure = sheet.draw(job.panels, sheet.read_data(output.data), scene, job.columns)
     sheet.save(figure, output.svg, output.png, output.pdf)
     Path(output.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
 
 
 def draw_narrow(
-    job: dict[str, Any],
+    job: FigureJob,
     problems: Mapping[str, str],
     data: str,
     folder: Path,
@@ -76,22 +71,16 @@ def draw_narrow(
     """Draw the figure of a job on a sheet of one text column. problems: files by experiment. data:
     the file of what is drawn.
     """
-    panels, scene = _drawn(
-        job, {name: problem_files.read(problems[name]) for name in job["repeats"]}, folder
-    )
+    scene = _scene(job, {name: problem_files.read(problems[name]) for name in job.repeats}, folder)
     figure = sheet.draw(
-        panels, sheet.read_data(data), scene, sheet.narrow_columns(panels), style.NARROW
+        job.panels, sheet.read_data(data), scene, sheet.narrow_columns(job.panels), style.NARROW
     )
     sheet.save(figure, output.svg, pdf=output.pdf)
 
 
-def _drawn(
-    job: dict[str, Any], problems: dict[str, dict[str, Problem]], folder: Path
-) -> tuple[list[Panel], sheet.Scene]:
-    """The panels of a job, and what they are drawn with. problems: by experiment, then by name."""
+def _scene(job: FigureJob, problems: dict[str, dict[str, Problem]], folder: Path) -> sheet.Scene:
+    """What the panels are drawn with. problems: by experiment, then by name."""
     workspaces = {
-        name: workspace_files.load(described, folder)
-        for name, described in job["workspaces"].items()
+        name: workspace_files.load(described, folder) for name, described in job.workspaces.items()
     }
-    scene = sheet.Scene(problems, workspaces, job["labels"], job["unit"], job["looks"])
-    return [panel_of(panel) for panel in job["spec"]["panels"]], scene
+    return sheet.Scene(problems, workspaces, job.labels, job.unit, job.looks)

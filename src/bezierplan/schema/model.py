@@ -116,7 +116,7 @@ def plain(value: Any) -> Any:
         }
     if isinstance(value, dict):
         return {key: plain(each) for key, each in value.items()}
-    return [plain(each) for each in value] if isinstance(value, list) else value
+    return [plain(each) for each in value] if isinstance(value, list | tuple) else value
 
 
 J = TypeVar("J")

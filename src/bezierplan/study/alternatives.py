@@ -6,6 +6,7 @@ from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import Check
+from bezierplan.analysis.jobs import Tried
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study
@@ -82,23 +83,13 @@ def headline_claims(study: Study, name: str) -> list[Claim]:
     return [claim.in_primary_variant() for claim in claims_tried(study, name)]
 
 
-def alternatives_described(study: Study) -> dict[str, dict]:
+def alternatives_described(study: Study) -> dict[str, Tried]:
     """What `analysis.sensitivity` prints about each alternative, by name."""
     described = {}
     for name in tried(study):
         identity, value = alternatives(study)[name]
-        assumption = assumption_of(study, identity)
-        parts = {
-            "detail": assumption.detail,
-            "setting": assumption.setting,
-            "default": assumption.default,
-        }
-        described[name] = {
-            "study": study.key,
-            "assumption": identity,
-            **parts,
-            "alternative": value,
-        }
+        of = assumption_of(study, identity)
+        described[name] = Tried(study.key, identity, of.detail, of.setting, of.default, value)
     return described
 
 

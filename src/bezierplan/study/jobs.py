@@ -1,6 +1,8 @@
-"""The jobs, inputs and targets that follow from a study.
+"""The jobs that follow from a study: named tuples, all that a job depends on beside its input
+files.
 
-A script receives a job: plain values only, so that Snakemake can detect changes.
+A script receives them as plain values (`schema.model.plain`), in which Snakemake can detect
+changes.
 """
 
 import itertools
@@ -9,8 +11,10 @@ from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Shown
+from bezierplan.analysis.jobs import ClaimsJob, ListingJob, PivotJob
 from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures import style
+from bezierplan.figures.figure_job import FigureJob
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
@@ -82,56 +86,49 @@ def chunks(study: Study, experiment: str, scale: str) -> range:
     return range(-(-content.repeats[scale] // content.chunk[scale]))
 
 
-def table_job(study: Study, table: str, scale: str) -> dict:
-    """What a table depends on in addition to runs, problems, bounds and the file of published
-    numbers.
-    """
+def table_job(study: Study, table: str, scale: str) -> PivotJob:
+    """What a table of runs depends on."""
     spec = study.compared()[table]
     experiment = study.experiments[spec.experiment]
     # The experiment's own methods unless the table selects some: baselines appear only in the
     # comparison.
     where = {"method": experiment.methods} | spec.where
-    return {
-        "name": f"{study.key}/{table}",
-        "spec": spec.plain("monotone", "fitted") | {"where": where},
-        "labels": study.labels,
-        "variants": {
+    return PivotJob(
+        name=f"{study.key}/{table}",
+        spec=Pivot.model_validate(spec.plain("monotone", "fitted") | {"where": where}),
+        labels=study.labels,
+        variants={
             name: method for name, method in study.variants().items() if name in experiment.methods
         },
-        "baselines": [
-            name for name in study.methods_of(spec.experiment) if name in study.baselines
-        ],
-        "repeats": experiment.repeats[scale],
-        "unit": _unit(study, spec.experiment),
-    }
+        baselines=[name for name in study.methods_of(spec.experiment) if name in study.baselines],
+        repeats=experiment.repeats[scale],
+    )
 
 
-def listing_job(study: Study, table: str) -> dict:
-    """What a table without runs depends on, in addition to the files of published numbers."""
-    return {"spec": study.tables[table].plain(), "module": study.module(), "labels": study.labels}
+def listing_job(study: Study, table: str) -> ListingJob:
+    """What a table without runs depends on."""
+    return ListingJob(study.tables[table], study.module(), study.labels)
 
 
-def figure_job(study: Study, figure: str, scale: str) -> dict:
-    """What a figure depends on in addition to runs, problems and bounds, and to map files if it
-    draws a workspace without runs.
-    """
+def figure_job(study: Study, figure: str, scale: str) -> FigureJob:
+    """What a figure depends on."""
     spec = study.figures[figure]
     experiments = experiments_of(study, figure)
     bare = sorted({panel.workspace for panel in spec.panels if getattr(panel, "workspace", None)})
-    return {
-        "study": study.key,
-        "spec": spec.plain()
-        | {"panels": [_planned(study, panel).plain() for panel in spec.panels]},
-        "module": study.module(),
-        "labels": study.labels,
-        "looks": looks(study),
-        "workspaces": {name: study.workspaces[name].plain() for name in bare},
-        "repeats": {name: study.experiments[name].repeats[scale] for name in experiments},
-        "jobs": _jobs_rerun(study, figure, scale),
-        "unit": _unit(study, experiments[0])
+    return FigureJob(
+        study=study.key,
+        columns=spec.columns,
+        panels=[_planned(study, panel) for panel in spec.panels],
+        module=study.module(),
+        labels=study.labels,
+        looks=looks(study),
+        workspaces={name: study.workspaces[name].plain() for name in bare},
+        repeats={name: study.experiments[name].repeats[scale] for name in experiments},
+        chunks=_chunks_rerun(study, figure, scale),
+        unit=_unit(study, experiments[0])
         if experiments
         else study.workspaces[bare[0] if bare else next(iter(study.workspaces))].unit,
-    }
+    )
 
 
 def looks(study: Study) -> dict[str, str]:
@@ -146,15 +143,14 @@ def _planned(study: Study, panel: Panel) -> Panel:
     )
 
 
-def _jobs_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:
-    """The chunks whose runs a figure reruns, to draw what no table keeps: experiment -> method ->
-    chunk.
+def _chunks_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, Chunk]]:
+    """The chunks whose runs a figure reruns, to draw what no table keeps, by experiment and
+    method.
     """
     again = {panel.experiment for panel in study.figures[figure].panels if panel.rerun}
     return {
         name: {
-            method: job(study, name, method, scale, 0).plain()
-            for method in methods_of(study, figure, name)
+            method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)
         }
         for name in sorted(again)
     }
@@ -187,31 +183,33 @@ def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
     return [method for method in study.methods_of(experiment) if method in needed]
 
 
-def claims_job(study: Study, claims: list[Claim], primary_alone: bool) -> dict:
-    """What claims depend on in addition to runs, problems, bounds and the files of published
-    numbers.
+def claims_job(
+    study: Study, claims: list[Claim], scale: str, primary_alone: bool = False
+) -> ClaimsJob:
+    """What claims depend on.
 
     primary_alone: whether they are judged in their primary variant only.
     """
     judged = [claim.in_primary_variant() for claim in claims] if primary_alone else claims
     experiments = {name: study.experiments[name] for name in experiments_of_claims(judged)}
-    return {
-        "study": study.key,
-        "module": study.module(),
-        "claims": [claim.plain() for claim in claims],
-        "primary_alone": primary_alone,
-        "artefacts": {
-            name: [part.plain() for part in parts]
+    return ClaimsJob(
+        study=study.key,
+        module=study.module(),
+        claims=claims,
+        primary_alone=primary_alone,
+        artefacts={
+            name: parts
             for name, artefact in (study.tables | study.figures).items()
             if (parts := _shown(artefact))
         },
-        "variant_of": study.variants(),
-        "paired": {name: experiment.paired for name, experiment in experiments.items()},
-        "paper_repeats": {
+        variant_of=study.variants(),
+        paired={name: experiment.paired for name, experiment in experiments.items()},
+        paper_repeats={
             name: experiment.repeats["full"] for name, experiment in experiments.items()
         },
-        "labels": study.labels,
-    }
+        labels=study.labels,
+        repeats={name: experiment.repeats[scale] for name, experiment in experiments.items()},
+    )
 
 
 def _shown(artefact: Table | Figure) -> list[Shown]:

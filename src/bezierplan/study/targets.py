@@ -11,9 +11,10 @@ numbers. So timestamps of sources do not matter.
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.jobs import AuditJob, ListingJob, MeasuredJob, PivotJob, SummaryJob
 from bezierplan.analysis.table_kinds import Comparison, Layout, Pivot
 from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
@@ -196,7 +197,7 @@ def table_inputs(studies: Studies, scale: str, study: str, table: str) -> dict[s
 def table_params(studies: Studies, scale: str, study: str, table: str) -> dict:
     """Params of a table of runs."""
     return {
-        "job": _shown(studies[study], table, jobs.table_job(studies[study], table, scale)),
+        "job": plain(_shown(studies[study], table, jobs.table_job(studies[study], table, scale))),
         "published": content_digest(*filter(None, [studies[study].published_file(table)])),
         "code": _code("table"),
     }
@@ -223,9 +224,9 @@ def listing_params(studies: Studies, scale: str, study: str, listing: str) -> di
         [] if kind == "comparison" else listing_inputs(studies, scale, study, listing).values()
     )
     return {
-        "job": _shown(studies[study], listing, job),
+        "job": plain(_shown(studies[study], listing, job)),
         "published": content_digest(*sources),
-        "code": _code("listing", job["module"] if kind == "function" else None),
+        "code": _code("listing", job.module if kind == "function" else None),
     }
 
 
@@ -268,7 +269,7 @@ def figure_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict
 
 
 def _maps_of_figure(study: Study, scale: str, figure: str) -> list[str]:
-    return study.maps(jobs.figure_job(study, figure, scale)["workspaces"])
+    return study.maps(jobs.figure_job(study, figure, scale).workspaces)
 
 
 def narrow_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
@@ -297,13 +298,24 @@ def figure_params(studies: Studies, scale: str, study: str, figure: str) -> dict
         studies[study].module() if any(getattr(panel, "data", None) for panel in panels) else None
     )
     again = {
-        _planner(each["planner"]) for methods in job["jobs"].values() for each in methods.values()
+        _planner(chunk.planner) for methods in job.chunks.values() for chunk in methods.values()
     }
     return {
-        "job": _shown(studies[study], figure, job),
+        "job": plain(
+            job._replace(
+                labels=_labels(studies[study], figure),
+                looks={
+                    name: look
+                    for name, look in job.looks.items()
+                    if name in _shown_methods(studies[study], figure)
+                },
+            )
+        ),
         "folder": definition.relative(studies[study].folder),
         "sources": content_digest(*inputs["maps"], *part(inputs, "published").values()),
-        "code": _code("figure", *sorted(kinds), module, *sorted(again), *_kinds_of_workspace(job)),
+        "code": _code(
+            "figure", *sorted(kinds), module, *sorted(again), *_kinds_of_workspace(job.workspaces)
+        ),
     }
 
 
@@ -324,15 +336,14 @@ def escaped(text: str) -> str:
     )
 
 
-def _shown(study: Study, artefact: str, job: dict) -> dict:
-    """The job of a table or figure with the words that it prints: with its name for a title, which
-    is in the caption alone, and without labels of items that it does not show.
+J = TypeVar("J", PivotJob, ListingJob)
+
+
+def _shown(study: Study, table: str, job: J) -> J:
+    """The job of a table with the words that it prints: with its name for a title, which is in the
+    caption alone, and without labels of items that it does not show.
     """
-    shown = job | {"spec": job["spec"] | {"title": artefact}, "labels": _labels(study, artefact)}
-    if "looks" in job:
-        methods = _shown_methods(study, artefact)
-        shown["looks"] = {name: look for name, look in job["looks"].items() if name in methods}
-    return shown
+    return job._replace(spec=job.spec.but(title=table), labels=_labels(study, table))
 
 
 def _shown_methods(study: Study, artefact: str) -> set[str]:
@@ -395,7 +406,7 @@ def claims_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of claims."""
     own = studies[study]
     return {
-        "job": _claims_job(own, scale, own.claims, primary_alone=False),
+        "job": plain(jobs.claims_job(own, own.claims, scale)),
         "published": content_digest(*own.published_files()),
         "code": _code("claims", own.module(), *_kinds(own.claims)),
     }
@@ -410,13 +421,6 @@ def _kinds(claims: list[Claim]) -> list[str]:
             for check in claim.checks
         }
     )
-
-
-def _claims_job(study: Study, scale: str, claims: list[Claim], primary_alone: bool) -> dict:
-    job = jobs.claims_job(study, claims, primary_alone)
-    return job | {
-        "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]},
-    }
 
 
 def alternative_inputs(
@@ -458,8 +462,10 @@ def alternative_params(studies: Studies, scale: str, study: str, alternative: st
     planners = sorted({_planner(chunk.planner) for _, chunk in chunks})
     return {
         "chunks": [[number, chunk.plain()] for number, chunk in chunks],
-        "job": _claims_job(
-            content, scale, alternatives.claims_tried(content, alternative), primary_alone=True
+        "job": plain(
+            jobs.claims_job(
+                content, alternatives.claims_tried(content, alternative), scale, primary_alone=True
+            )
         ),
         "published": content_digest(*content.published_files()),
         "code": _code("alternative", content.module(), *_kinds(claims), *planners),
@@ -498,17 +504,16 @@ def _identifies(study: Study, experiment: str) -> bool:
 
 def audit_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the audit."""
-    content = studies[study]
+    content, tables = studies[study], _audited(studies[study])
+    job = AuditJob(
+        study,
+        content.module(),
+        {name: table.experiment for name, table in tables.items()},
+        {name: table.primary for name, table in tables.items()},
+        {name: Layout.of(table) for name, table in tables.items()},
+    )
     return {
-        "job": {
-            "study": study,
-            "module": content.module(),
-            "tables": {name: table.experiment for name, table in _audited(content).items()},
-            "primary": {name: table.primary for name, table in _audited(content).items()},
-            "layouts": {
-                name: Layout.of(table).plain() for name, table in _audited(content).items()
-            },
-        },
+        "job": plain(job),
         "published": content_digest(*content.published_files()),
         "code": _code("audit", content.module()),
     }
@@ -526,7 +531,7 @@ def sensitivity_inputs(studies: Studies, scale: str, study: str) -> dict[str, st
 def sensitivity_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the table of alternatives."""
     return {
-        "described": alternatives.alternatives_described(studies[study]),
+        "described": plain(alternatives.alternatives_described(studies[study])),
         "code": _code("sensitivity"),
     }
 
@@ -606,11 +611,9 @@ def summary_inputs(studies: Studies, scale: str) -> dict[str, Any]:
 
 def summary_params(studies: Studies, scale: str) -> dict:
     """Params of the summary."""
-    job = {
-        "tables": [list(name) for name in _published_tables(studies)],
-        "titles": {key: study.title for key, study in studies.items()},
-    }
-    return {"job": job, "code": _code("summary")}
+    titles = {key: study.title for key, study in studies.items()}
+    job = SummaryJob([*_published_tables(studies)], titles)
+    return {"job": plain(job), "code": _code("summary")}
 
 
 def baseline_comparison_inputs(studies: Studies, scale: str) -> dict[str, Any]:
@@ -633,17 +636,17 @@ def baseline_comparison_params(studies: Studies, scale: str) -> dict:
     """Params of the comparison with the baseline: `job`, study -> baseline, and experiment ->
     repeats."""
     job = {
-        key: {
-            "baseline": study.baseline_comparison.baseline,
-            "repeats": {
+        key: MeasuredJob(
+            study.baseline_comparison.baseline,
+            {
                 name: study.experiments[name].repeats[scale]
                 for name in study.baseline_comparison.experiments
             },
-        }
+        )
         for key, study in studies.items()
         if study.baseline_comparison
     }
-    return {"job": job, "code": _code("baseline_comparison")}
+    return {"job": plain(job), "code": _code("baseline_comparison")}
 
 
 # --------------------------------------------------------------------------------------------------
