@@ -6,6 +6,7 @@ import re
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 from urllib.parse import unquote
 
 import jsonschema
@@ -35,6 +36,7 @@ from bezierplan.figures.page import (
     runs,
     search,
 )
+from bezierplan.figures.page.page_job import ExperimentShown
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
@@ -411,10 +413,11 @@ def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
         "artefact": "table1, figure2",
     }
     judged = pd.DataFrame([row | {"verdict_at_paper_size": "undecided"}])
-    known = {"labels": {}, "tables": {"table1": {}}, "figures": {}, "checks": {}}
-    (found,) = gather._claims("one", judged, None, [], known | {"figures": {"figure2": {}}})
+    known = SimpleNamespace(labels={}, tables={"table1": ...}, figures={"figure2": ...}, checks={})
+    (found,) = gather._claims("one", judged, None, [], known)
     assert found.more == {"verdict_at_paper_size": "undecided"}
     assert found.shown_in == ["one/table1", "one/figure2"]
+    known.figures = {}
     (found,) = gather._claims("one", judged, None, [], known)
     assert found.shown_in == ["one/table1"]
 
@@ -541,12 +544,8 @@ def stored(folder, lengths, feasible):
         for n, (length, ok) in enumerate(zip(lengths, feasible, strict=True))
     ]
     parquet.write_table(pa.Table.from_pylist(rows), folder / "0.parquet")
-    files = {
-        "runs": [str(folder / "0.parquet")],
-        "problems": str(folder / "p.parquet"),
-        "bounds": str(folder / "p.bounds.parquet"),
-    }
-    return {"methods": ["m"], "repeats": len(rows)} | files
+    files = (str(folder / name) for name in ("p.parquet", "p.bounds.parquet"))
+    return ExperimentShown(["m"], len(rows), [str(folder / "0.parquet")], *files, traces=[])
 
 
 def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
@@ -567,7 +566,7 @@ def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
 
 
 def test_repeats_that_a_chunk_has_beyond_those_wanted_are_not_shown(tmp_path):
-    described = stored(tmp_path, [5.0, 4.0, 3.0], [True, True, True]) | {"repeats": 2}
+    described = stored(tmp_path, [5.0, 4.0, 3.0], [True, True, True])._replace(repeats=2)
     assert runs.chosen("s", "e", described).shown[0].best == "s/e/room/m/1"
 
 
@@ -589,9 +588,9 @@ def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
     described = stored(tmp_path, [3.0], [False])
     rows = [
         {**row, "collision_at": 1.5, "steps": 2.5}
-        for row in parquet.read_table(described["runs"][0]).to_pylist()
+        for row in parquet.read_table(described.runs[0]).to_pylist()
     ]
-    parquet.write_table(pa.Table.from_pylist(rows), described["runs"][0])
+    parquet.write_table(pa.Table.from_pylist(rows), described.runs[0])
     empty = from_lines(["....", "....", "...."], cell=1.0, unit="m")
     later = from_lines(["#...", "....", "...#"], cell=1.0, unit="m")
     room = {"room": Problem("room", empty, (0.5, 0.5), (3.5, 0.5))}
@@ -599,11 +598,11 @@ def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
         room,
         {"room": "room"},
         {"room": ChangingCells((empty, later), np.array([2.0]), 1.0, 9)},
-        described["problems"],
+        described.problems,
     )
     trace = [{"id": "s/e/room/m/0", "x": [0.5, 1.5, 2.5, 3.5], "y": [0.5] * 4}]
     parquet.write_table(pa.Table.from_pylist(trace), tmp_path / "0.traces.parquet")
-    found = runs.chosen("s", "e", described | {"traces": [str(tmp_path / "0.traces.parquet")]})
+    found = runs.chosen("s", "e", described._replace(traces=[str(tmp_path / "0.traces.parquet")]))
     (drive,) = found.runs.values()
     assert (drive.steps, drive.driven, drive.collision, drive.collision_step, drive.control) == (
         2.5,

@@ -34,11 +34,13 @@ from bezierplan.analysis import comparison, results, tables
 from bezierplan.analysis.claims import job as claims_job
 from bezierplan.figures import sheet, style
 from bezierplan.figures.page import runs as page_runs
+from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.panels import Sources
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.running import execution, problems
+from bezierplan.schema import model
 from bezierplan.study import jobs, page, reading, stamps, targets
 from bezierplan.study.definition import Study
 from bezierplan.study.targets import Studies
@@ -193,9 +195,8 @@ def _claims(given: Studies) -> None:
 
 def _viewer(given: Studies) -> None:
     (key,) = given
-    page_runs.chosen(
-        key, "all", page.params(given, gathering.SCALE)["job"]["studies"][key]["experiments"]["all"]
-    )
+    job = model.job(PageJob, page.params(given, gathering.SCALE)["job"])
+    page_runs.chosen(key, "all", job.studies[key].experiments["all"])
 
 
 # --------------------------------------------------------------------------------------------------

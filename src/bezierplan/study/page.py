@@ -5,12 +5,24 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.figures import page
+from bezierplan.figures.page.page_job import (
+    AssumptionShown,
+    ExperimentShown,
+    FigureShown,
+    MethodShown,
+    PageJob,
+    PaperCited,
+    StudyShown,
+    TableShown,
+)
 from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.running.inputs import Files
 from bezierplan.schema import checked
+from bezierplan.schema.model import plain
 from bezierplan.study import jobs, targets
 from bezierplan.study.artefacts import in_printed_order
+from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study
 from bezierplan.study.targets import Studies
 
@@ -111,13 +123,15 @@ def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
     tried = {key: _tried(f"{root}results/{scale}/{key}") for key in studies}
     shown = _artefacts(studies, scale)
     return {
-        "job": {
-            "scale": scale,
-            "studies": {
-                key: _study(studies, scale, key, names, tried[key], root)
-                for key, names in shown.items()
-            },
-        },
+        "job": plain(
+            PageJob(
+                scale,
+                {
+                    key: _study(studies, scale, key, names, tried[key], root)
+                    for key, names in shown.items()
+                },
+            )
+        ),
         "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
         "code": versioned_digest(str(targets.SCRIPTS / "page.py")),
@@ -209,7 +223,7 @@ def _traces(study: Study, experiment: str, files: Files) -> list[str]:
 
 def _study(
     studies: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str
-) -> dict[str, Any]:
+) -> StudyShown:
     """What the page needs to know of a study beside its results. made: the names of its tables and
     figures.
     """
@@ -224,42 +238,43 @@ def _study(
         if scale != "smoke" and audit in targets.files_of_study(studies, scale, key)
         else {}
     )
-    described = {
-        name: {"title": spec.title, "caption": jobs.caption(study, name, scale)}
-        for name, spec in _specs(study, made).items()
-    }
-    return {
-        "title": study.title,
-        "paper": _paper(key),
-        "labels": study.labels,
-        "methods": {
-            name: {"planner": study.planner(name), "settings": study.resolved(name)}
-            for name in study.methods
+    tables = {name: study.tables[name] for name in made if name in study.tables}
+    figures = {name: study.figures[name] for name in made if name in study.figures}
+    return StudyShown(
+        title=study.title,
+        paper=_paper(key),
+        labels=study.labels,
+        methods={
+            name: MethodShown(study.planner(name), study.resolved(name)) for name in study.methods
         },
-        "checks": {claim.id: claim.plain()["checks"] for claim in study.claims} if judged else {},
-        "repeats": {each: _repeats(study, each) for each in (scale, "extended")},
-        "tables": {
-            name: described[name] | {"spec": study.tables[name].plain()}
-            for name in made
-            if name in study.tables
+        checks={claim.id: claim.checks for claim in study.claims} if judged else {},
+        repeats={each: _repeats(study, each) for each in (scale, "extended")},
+        tables={
+            name: TableShown(table.title, jobs.caption(study, name, scale), table)
+            for name, table in tables.items()
         },
-        "figures": {name: described[name] for name in made if name in study.figures},
-        "assumptions": [each.plain() for each in study.assumptions],
-        "files": files | (tried if judged else {}),
-        "latex": f"{key}/tables.tex"
-        if scale != "smoke" and targets.tables_of(study, scale)
-        else "",
-        "experiments": _experiments(studies, scale, key, made, root),
-    }
+        figures={
+            name: FigureShown(figure.title, jobs.caption(study, name, scale))
+            for name, figure in figures.items()
+        },
+        assumptions=[_assumption(each) for each in study.assumptions],
+        files=files | (tried if judged else {}),
+        latex=f"{key}/tables.tex" if scale != "smoke" and targets.tables_of(study, scale) else "",
+        experiments=_experiments(studies, scale, key, made, root),
+    )
 
 
-def _repeats(study: Any, scale: str) -> list[int]:
+def _assumption(assumption: Assumption) -> AssumptionShown:
+    return AssumptionShown(**{name: getattr(assumption, name) for name in AssumptionShown._fields})
+
+
+def _repeats(study: Study, scale: str) -> list[int]:
     """The least and the largest number of runs of a method under a condition."""
     counts = [experiment.repeats[scale] for experiment in study.experiments.values()]
     return [min(counts), max(counts)] if counts else []
 
 
-def _paper(key: str) -> dict[str, Any] | None:
+def _paper(key: str) -> PaperCited | None:
     """The paper of a study, as CITATION.cff cites it: its entry's notes begin with the study's
     name. None for any other study.
     """
@@ -271,30 +286,24 @@ def _paper(key: str) -> dict[str, Any] | None:
     if entry is None:
         return None
     where = ", ".join(str(entry[name]) for name in ("journal", "year") if name in entry)
-    return {"title": entry["title"], "where": where, "doi": entry.get("doi")}
-
-
-def _specs(study: Any, names: list[str]) -> dict[str, Any]:
-    return {name: study.tables.get(name) or study.figures[name] for name in names}
+    return PaperCited(entry["title"], where, entry.get("doi"))
 
 
 def _experiments(
     studies: Studies, scale: str, key: str, made: list[str], root: str
-) -> dict[str, dict[str, Any]]:
+) -> dict[str, ExperimentShown]:
     """The experiments whose runs the page shows: methods other than baselines, repeats, and
     files.
     """
     study, experiments = studies[key], {}
     for name, files in _experiments_behind(studies, scale, key, made).items():
         if files.chunks:
-            experiments[name] = {
-                "methods": [
-                    method for method in study.methods_of(name) if method not in study.baselines
-                ],
-                "repeats": study.experiments[name].repeats[scale],
-                "runs": [f"{root}{chunk}" for chunk in files.chunks],
-                "problems": f"{root}{files.problems}",
-                "bounds": f"{root}{files.bounds}",
-                "traces": [f"{root}{trace}" for trace in _traces(study, name, files)],
-            }
+            experiments[name] = ExperimentShown(
+                [method for method in study.methods_of(name) if method not in study.baselines],
+                study.experiments[name].repeats[scale],
+                [f"{root}{chunk}" for chunk in files.chunks],
+                f"{root}{files.problems}",
+                f"{root}{files.bounds}",
+                [f"{root}{trace}" for trace in _traces(study, name, files)],
+            )
     return experiments

@@ -2,6 +2,7 @@
 a file lacks stay empty.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -9,12 +10,12 @@ from typing import Any
 import pandas as pd
 
 from bezierplan.analysis import headline, sensitivity
-from bezierplan.analysis.claims.kinds import Check, check_of
-from bezierplan.analysis.table_kinds import Pivot, table_of
+from bezierplan.analysis.claims.kinds import Check
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other, why
 from bezierplan.figures.page.addresses import address, of_cells
-from bezierplan.schema.model import one_or_list
+from bezierplan.figures.page.page_job import AssumptionShown, FigureShown, StudyShown, TableShown
 
 # Columns of claims.csv that the page shows in places of their own, or that repeat the comparison
 # that decides.
@@ -83,7 +84,7 @@ def _flag(row: pd.Series, column: str) -> bool:
 
 
 def studies(
-    job: dict[str, dict],
+    job: Mapping[str, StudyShown],
     folder: Path,
     numbers: pd.DataFrame | None,
     claims: pd.DataFrame | None,
@@ -92,10 +93,8 @@ def studies(
     """All studies without the runs that the viewer shows, from the csv files in the folder of a
     scale.
 
-    job: study -> `title`, `labels`, `tables` and `figures` (name -> `title`, `caption` and, of
-    tables, `spec`), `assumptions`, `files` (its claims, comparisons of claims, audit, alternatives
-    and interpretations, as far as there are any). numbers, claims, measured: those of all studies
-    (`analysis.summary`, `analysis.baseline_comparison`), if the scale has them.
+    numbers, claims, measured: those of all studies (`analysis.summary`,
+    `analysis.baseline_comparison`), if the scale has them.
     """
     outcome = (
         headline.outcome(numbers, claims).to_dict("index")
@@ -110,19 +109,18 @@ def studies(
 
 def _study(
     key: str,
-    job: dict,
+    job: StudyShown,
     folder: Path,
     numbers: pd.DataFrame | None,
     measured: pd.DataFrame | None,
     outcome: dict[str, int],
 ) -> content.Study:
-    files = {name: read(file) for name, file in job["files"].items()}
+    files = {name: read(file) for name, file in job.files.items()}
     judged = files.get("claims", pd.DataFrame(columns=["study", "id", "primary", "verdict"]))
     choices = _choices(files.get("sensitivity"), judged)
     own = None if numbers is None else numbers[numbers["study"] == key]
     tables = [
-        _table(key, name, table, folder, own, job["labels"])
-        for name, table in job["tables"].items()
+        _table(key, name, table, folder, own, job.labels) for name, table in job.tables.items()
     ]
     gaps = [
         number.gap
@@ -132,19 +130,19 @@ def _study(
     ]
     return content.Study(
         address=address(key),
-        title=job["title"],
-        paper=content.Paper(**job["paper"]) if job["paper"] else None,
-        methods=[other.of_method(key, name, method) for name, method in job["methods"].items()],
+        title=job.title,
+        paper=content.Paper(**job.paper._asdict()) if job.paper else None,
+        methods=[other.of_method(key, name, method) for name, method in job.methods.items()],
         outcome={name: count for name, count in outcome.items() if isinstance(count, int)},
         claims=_claims(key, judged, files.get("checks"), choices, job),
         tables=tables,
-        figures=[_figure(key, name, figure, folder) for name, figure in job["figures"].items()],
-        latex=job["latex"],
+        figures=[_figure(key, name, figure, folder) for name, figure in job.figures.items()],
+        latex=job.latex,
         audit=[_audited(row) for _, row in files["audit"].iterrows()] if "audit" in files else [],
-        assumptions=[_assumption(key, each, choices) for each in job["assumptions"]],
+        assumptions=[_assumption(key, each, choices) for each in job.assumptions],
         gap=median(gaps) if gaps else None,
         shown=[],
-        labels=job["labels"],
+        labels=job.labels,
         **(other.of_baseline_comparison(key, measured) if measured is not None else {}),
         **(
             other.of_interpretations(
@@ -156,14 +154,14 @@ def _study(
     )
 
 
-def _figure(study: str, name: str, job: dict, folder: Path) -> content.Figure:
+def _figure(study: str, name: str, job: FigureShown, folder: Path) -> content.Figure:
     stem = f"{study}/figures/{name}"
     told = (folder / f"{stem}.txt").read_text(encoding="utf-8").strip()
     named = {
         "address": address(study, name),
         "name": name,
-        "title": job["title"],
-        "caption": job["caption"],
+        "title": job.title,
+        "caption": job.caption,
         "told": told,
     }
     return content.Figure(**named, svg=f"{stem}.svg", csv=f"{stem}.csv")
@@ -172,7 +170,7 @@ def _figure(study: str, name: str, job: dict, folder: Path) -> content.Figure:
 def _table(
     study: str,
     name: str,
-    job: dict,
+    job: TableShown,
     folder: Path,
     numbers: pd.DataFrame | None,
     labels: dict[str, str],
@@ -182,13 +180,12 @@ def _table(
     named = {
         "address": address(study, name),
         "name": name,
-        "title": job["title"],
-        "caption": job["caption"],
+        "title": job.title,
+        "caption": job.caption,
         "csv": file,
     }
-    spec = table_of(job["spec"])
-    if isinstance(spec, Pivot) and spec.published:
-        cells = _numbers(named["address"], read(compared), spec, numbers, labels)
+    if isinstance(job.spec, Pivot) and job.spec.published:
+        cells = _numbers(named["address"], read(compared), job.spec, numbers, labels)
         return content.Table(
             **named | {"csv": f"{study}/tables/{name}.comparison.csv"}, numbers=cells
         )
@@ -276,10 +273,9 @@ def _claims(
     judged: pd.DataFrame,
     checks: pd.DataFrame | None,
     choices: list[content.Choice],
-    job: dict[str, Any],
+    job: StudyShown,
 ) -> list[content.Claim]:
-    """Claims of a study; job: what the page knows of it, with the checks of its claims."""
-    claims, labels, there = [], job["labels"], job["tables"].keys() | job["figures"].keys()
+    claims, labels, there = [], job.labels, job.tables.keys() | job.figures.keys()
     for identity, rows in judged.groupby("id", sort=False):
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
@@ -288,7 +284,7 @@ def _claims(
             if checks is not None
             else pd.DataFrame()
         )
-        written = [check_of(each) for each in job["checks"].get(identity, [])]
+        written = job.checks.get(identity, [])
         decisive = next(
             (n for n, (_, each) in enumerate(compared.iterrows()) if _flag(each, "decisive")), None
         )
@@ -410,21 +406,23 @@ def _choices(tried: pd.DataFrame | None, judged: pd.DataFrame) -> list[content.C
     ]
 
 
-def _assumption(study: str, job: dict, choices: list[content.Choice]) -> content.Assumption:
-    default = job["default"]
+def _assumption(
+    study: str, job: AssumptionShown, choices: list[content.Choice]
+) -> content.Assumption:
+    default = job.default
     return content.Assumption(
-        address=address(study, job["id"]),
-        id=job["id"],
-        detail=job["detail"],
+        address=address(study, job.id),
+        id=job.id,
+        detail=job.detail,
         default=", ".join(f"{name}: {value}" for name, value in default.items())
         if isinstance(default, dict)
         else str(default),
-        alternatives=[str(value) for value in job["alternatives"]],
-        reason=job["reason"],
-        source=job["source"],
-        setting=job.get("setting") or "",
-        claims=one_or_list(job.get("claims", [])),
-        choices=[choice for choice in choices if choice.assumption == job["id"]],
+        alternatives=[str(value) for value in job.alternatives],
+        reason=job.reason,
+        source=job.source,
+        setting=job.setting or "",
+        claims=job.claims,
+        choices=[choice for choice in choices if choice.assumption == job.id],
     )
 
 

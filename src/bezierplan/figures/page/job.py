@@ -16,11 +16,12 @@ import bezierplan
 from bezierplan import places
 from bezierplan.analysis import headline
 from bezierplan.figures.page import answer, build, content, gather, runs
+from bezierplan.figures.page.page_job import ExperimentShown, PageJob, StudyShown
 from bezierplan.running.watchdog import end_with_parent
 
 
 def page(
-    job: dict[str, Any],
+    job: PageJob,
     folder: Path,
     summary: list[str] | None,
     processes: int = 1,
@@ -28,17 +29,15 @@ def page(
 ) -> content.Page:
     """The content of the page.
 
-    job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name ->
-    `methods`, `repeats` and the files `runs`, `problems`, `bounds` and, of drives, `traces`).
     folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
     baseline_comparison.csv, if the scale has them. processes: how many look for runs, if more than
     one beside this one. verified: the file of the check of these runs (`running.recheck`), if there
     is one.
     """
     experiments = [
-        (key, *each) for key, own in job["studies"].items() for each in own["experiments"].items()
+        (key, *each) for key, own in job.studies.items() for each in own.experiments.items()
     ]
-    shown: dict[str, list[content.Shown]] = {key: [] for key in job["studies"]}
+    shown: dict[str, list[content.Shown]] = {key: [] for key in job.studies}
     workspaces: dict[str, dict[str, Any]] = {}
     problems: dict[str, content.Problem] = {}
     kept: dict[str, content.Run] = {}
@@ -47,7 +46,7 @@ def page(
         tables: list[pd.DataFrame | None] = (
             [gather.read(file) for file in summary] if summary else [None, None, None]
         )
-        studies = gather.studies(job["studies"], folder, *tables)
+        studies = gather.studies(job.studies, folder, *tables)
         for (key, *_), chosen in zip(experiments, found, strict=True):
             shown[key] += chosen.shown
             workspaces |= chosen.workspaces
@@ -59,13 +58,13 @@ def page(
     shared = {"workspaces": workspaces, "problems": problems}
     checked = content.Verified(**json.loads(Path(verified).read_text())) if verified else None
     said = answer.answer(studies)
-    first = _headline(tables, {key: own["title"] for key, own in job["studies"].items()})
+    first = _headline(tables, {key: own.title for key, own in job.studies.items()})
     about = {
-        "about_scale": answer.about_scale(job["scale"], _repeats(job["studies"])),
+        "about_scale": answer.about_scale(job.scale, _repeats(job.studies)),
         "made_by": _made_by(),
     }
     return content.Page(
-        scale=job["scale"],
+        scale=job.scale,
         **about,
         headline=first,
         answer=said,
@@ -93,13 +92,13 @@ def _headline(tables: list[pd.DataFrame | None], titles: dict[str, str]) -> cont
     )
 
 
-def _repeats(studies: dict[str, dict[str, Any]]) -> dict[str, list[list[int]]]:
+def _repeats(studies: dict[str, StudyShown]) -> dict[str, list[list[int]]]:
     """Scale -> of each study, the least and the largest number of runs of a method under a
     condition.
     """
-    scales = {scale for study in studies.values() for scale in study["repeats"]}
+    scales = {scale for study in studies.values() for scale in study.repeats}
     return {
-        scale: [study["repeats"][scale] for study in studies.values() if study["repeats"][scale]]
+        scale: [study.repeats[scale] for study in studies.values() if study.repeats[scale]]
         or [[0, 0]]
         for scale in scales
     }
@@ -132,7 +131,7 @@ def _mapping(processes: int) -> Iterator[Callable[..., Any]]:
         yield pool.map
 
 
-def _chosen(experiment: tuple[str, str, dict[str, Any]]) -> runs.Chosen:
+def _chosen(experiment: tuple[str, str, ExperimentShown]) -> runs.Chosen:
     return runs.chosen(*experiment)
 
 
@@ -156,7 +155,7 @@ def _once(
 
 
 def write(
-    job: dict[str, Any],
+    job: PageJob,
     folder: Path,
     summary: list[str] | None,
     file: str,

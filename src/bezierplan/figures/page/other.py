@@ -14,16 +14,17 @@ from bezierplan.analysis import baseline_comparison
 from bezierplan.analysis.explained import DEFAULT, sentences
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import address
+from bezierplan.figures.page.page_job import MethodShown
 
 # Interpretations shown of a study, beside the default.
 MOST_INTERPRETATIONS = 10
 
 
-def of_method(study: str, name: str, method: dict[str, Any]) -> content.Method:
-    """A method, from `planner` and `settings`. What its planner does stands in the planner's file,
-    which is read and not imported.
+def of_method(study: str, name: str, method: MethodShown) -> content.Method:
+    """A method. What its planner does stands in the planner's file, which is read and not
+    imported.
     """
-    planner = method["planner"]
+    planner = method.planner
     file = (
         Path(planner)
         if planner.endswith(".py")
@@ -31,7 +32,7 @@ def of_method(study: str, name: str, method: dict[str, Any]) -> content.Method:
     )
     told = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     about = [" ".join(paragraph.replace("`", "").split()) for paragraph in told.split("\n\n")]
-    settings = {setting: str(value) for setting, value in method["settings"].items()}
+    settings = {setting: str(value) for setting, value in method.settings.items()}
     return content.Method(
         address=address(study, "method", name),
         name=name,

@@ -15,6 +15,7 @@ import pyarrow.parquet as parquet
 
 from bezierplan.analysis import results
 from bezierplan.figures.page import content
+from bezierplan.figures.page.page_job import ExperimentShown
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
@@ -53,20 +54,16 @@ class Chosen(NamedTuple):
     problems: dict[str, content.Problem]
 
 
-def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
-    """The runs of an experiment that the viewer shows.
-
-    described: `methods`, those that are shown; `repeats`; and the files `runs`, `problems`,
-    `bounds` and, of drives, `traces`. Of the runs that are not shown only the lengths are kept.
-    """
-    bounds = parquet.read_table(described["bounds"]).to_pandas().set_index("problem")
-    columns = [*_RANKED, *_DRAWN, *(["steps"] if described.get("traces") else [])]
-    tables = {file: parquet.read_table(file, columns=columns) for file in described["runs"]}
+def chosen(study: str, experiment: str, described: ExperimentShown) -> Chosen:
+    """The runs of an experiment that the viewer shows. Of the others only the lengths are kept."""
+    bounds = parquet.read_table(described.bounds).to_pandas().set_index("problem")
+    columns = [*_RANKED, *_DRAWN, *(["steps"] if described.traces else [])]
+    tables = {file: parquet.read_table(file, columns=columns) for file in described.runs}
     ranked = pd.concat(
         [table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()]
     )
     ranked = ranked[
-        (ranked["repeat"] < described["repeats"]) & ranked["method"].isin(described["methods"])
+        (ranked["repeat"] < described.repeats) & ranked["method"].isin(described.methods)
     ]
     ranked["gap"] = ranked["length"] / ranked["problem"].map(bounds["bound"]) - 1
     groups = [("", ranked)]
@@ -79,7 +76,7 @@ def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
         )
         shown += [
             _shown(experiment, problem, method, by_method[method])
-            for method in described["methods"]
+            for method in described.methods
             if method in by_method
         ]
     named = {
@@ -94,11 +91,11 @@ def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
     ]
     rows = pd.concat(kept) if kept else ranked
     made, moving = (
-        problem_files.read(described["problems"]),
-        world_files.read(described["problems"]),
+        problem_files.read(described.problems),
+        world_files.read(described.problems),
     )
     by_name = {row["id"]: row for row in rows.to_dict("records")}
-    traces = _traces(described.get("traces", []), list(by_name))
+    traces = _traces(described.traces, list(by_name))
     prefix = f"{study}/{experiment}/"
     runs = {
         name: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
