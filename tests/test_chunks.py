@@ -45,7 +45,41 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
         "claims": [],
     }
     own = definition.Study(**empty | {"experiments": {"first": experiment(repeats, chunk)}})
-    assert list(jobs.chunks(own, "first", "full")) == list(range(count))
+    assert list(jobs.chunks(own, "first", "mine", "full")) == list(range(count))
+
+
+@pytest.mark.parametrize(
+    ("method", "numbers", "first", "last"),
+    [("pso", 4, 6, 1), ("random_search", 1, 6, None)],
+)
+def test_conditions_with_fewer_runs_leave_the_later_chunks(method, numbers, first, last):
+    """Of the maps of tharwat2018: 4,000 runs of equal circles under the default profile, 1,000 of
+    other conditions and of baselines.
+    """
+    own = studies()["tharwat2018"]
+    chunks = jobs.chunks(own, "maps", method, "extended")
+    assert len(chunks) == numbers
+    made = [jobs.job(own, "maps", method, "extended", number) for number in chunks]
+    assert len(made[0].conditions()) == first
+    for chunk in made[1:]:
+        assert [each.name for each in chunk.conditions()] == ["equal,profile=default"]
+    assert [chunk.repeats for chunk in made] == [
+        [1000 * number, 1000 * number + 1000] for number in chunks
+    ]
+
+
+def test_other_scales_have_all_runs():
+    own = studies()["tharwat2018"]
+    for scale in ("smoke", "full"):
+        assert list(jobs.chunks(own, "maps", "random_search", scale)) == [0]
+        assert len(jobs.job(own, "maps", "pso", scale, 0).conditions()) == 6
+
+
+def test_a_caption_says_where_there_are_fewer_runs():
+    own = studies()["song2016"]
+    told = ", 125 where method is smooth (cubic pieces) or smooth (single Bezier)."
+    assert jobs.caption(own, "table1", "extended").endswith(f" on each problem{told}")
+    assert jobs.caption(own, "table1", "full").endswith(" on each problem.")
 
 
 def behind(given, scale):

@@ -785,6 +785,30 @@ FAULTS = {
         CHUNK.replace("full: 6", "full: 1000000"),
         "first: chunk: full: 1000000: expected at most 12",
     ),
+    "fewer runs that are half a chunk": (
+        E,
+        CHUNK,
+        f"{CHUNK}, fewer: {{method: {{mine: 3}}}}",
+        "first: fewer: method: mine: 3: expected a multiple of 6, the chunk, below 12, the repeats",
+    ),
+    "no fewer runs": (
+        E,
+        CHUNK,
+        f"{CHUNK}, fewer: {{method: {{mine: 12}}}}",
+        "first: fewer: method: mine: 12: expected a multiple of 6, the chunk, below 12",
+    ),
+    "fewer runs by an unknown factor": (
+        E,
+        CHUNK,
+        f"{CHUNK}, fewer: {{methods: {{mine: 6}}}}",
+        "experiments: first: fewer: methods: unknown; did you mean method?",
+    ),
+    "fewer runs of an unknown method": (
+        E,
+        CHUNK,
+        f"{CHUNK}, fewer: {{method: {{mined: 6}}}}",
+        "experiments: first: fewer: method: mined: unknown; did you mean mine?",
+    ),
     "a short time limit": (
         E,
         CHUNK,

@@ -10,6 +10,8 @@ from studies import studies
 from bezierplan.commands import needed, outcome
 from bezierplan.places import TREE
 from bezierplan.schema.checked import Fault
+from bezierplan.schema.model import one_or_list
+from bezierplan.study import jobs
 
 STUDIES = studies()
 STUDY = "song2016"
@@ -136,3 +138,25 @@ def test_extended_has_the_runs_that_decide_and_no_multiple_of_them():
         assert given >= row.needed, f"{row.study}/{row.experiment}: {row.asked_by}"
         if pd.isna(row.out_of_reach):
             assert given <= needed.MOST * row.needed, f"{row.study}/{row.experiment}"
+
+
+def test_no_number_that_counts_is_of_conditions_with_fewer_runs():
+    """Of the outcome that is kept: `given` is what such a number has."""
+    numbers = pd.read_csv(TREE / outcome.KEPT / "numbers.csv")
+    for row in numbers[numbers["counted"]].itertuples():
+        own = STUDIES[row.study]
+        for experiment in jobs.experiments_of(own, row.table):
+            fewer = own.experiments[experiment].fewer
+            assert row.method not in fewer.get("method", {}), row
+            assert row.profile not in fewer.get("profile", {}), row
+            assert row.workspace not in fewer.get("problem", {}), row
+
+
+def test_no_primary_claim_names_conditions_with_fewer_runs():
+    for own in STUDIES.values():
+        for claim in own.claims:
+            for check in claim.in_primary_variant().checks:
+                for experiment in one_or_list(getattr(check, "experiment", None) or []):
+                    for factor, fewer in own.experiments[experiment].fewer.items():
+                        named = one_or_list((check.where or {}).get(factor, []))
+                        assert not set(map(str, named)) & set(fewer), claim.id

@@ -7,7 +7,6 @@ to the upper sizes only, where a constant cost no longer hides growth.
 """
 
 import contextlib
-import itertools
 import math
 import os
 import shutil
@@ -460,10 +459,9 @@ def _list_jobs(folders: list[Path]) -> None:
     given = reading.load(folders)
     for key, study in given.items():
         targets.problems_params(given, gathering.SCALE, key, "all")
-        for method, chunk in itertools.product(
-            study.methods_of("all"), jobs.chunks(study, "all", gathering.SCALE)
-        ):
-            targets.run_params(given, gathering.SCALE, key, "all", method, str(chunk))
+        for method in study.methods_of("all"):
+            for chunk in jobs.chunks(study, "all", method, gathering.SCALE):
+                targets.run_params(given, gathering.SCALE, key, "all", method, str(chunk))
     list(gathering.gathering(given))
 
 

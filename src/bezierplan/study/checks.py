@@ -309,6 +309,11 @@ def _check_experiment(
         _known(setting, accepted | set(study.presets), f"{location}: vary")
         for value in values if setting in study.presets else []:
             _known(str(value).lower(), study.presets[setting], f"{location}: vary: {setting}")
+    factors = {"method": study.methods_of(name), "problem": experiment.problems} | experiment.vary
+    for factor, fewer in experiment.fewer.items():
+        _known(factor, factors, f"{location}: fewer")
+        for value in fewer:
+            _known(value, map(str, factors[factor]), f"{location}: fewer: {factor}")
     for method in experiment.methods:
         _check_method_in(study, built, name, method, location)
 

@@ -107,12 +107,14 @@ class Study:
         workspace = self.workspace_of(problem)
         return workspace.drawn or workspace.made or workspace.kind
 
-    def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
-        """Descriptions of an experiment's problems, by name, as plain values. One with layouts
-        expands to a problem for each layout and number of obstacles.
+    def problems_of(self, experiment: str, scale: str, repeat: int = 0) -> dict[str, dict]:
+        """Descriptions of an experiment's problems that have a repeat, by name, as plain values.
+        One with layouts expands to a problem for each layout and number of obstacles.
         """
-        described = {}
-        for name in self.experiments[experiment].problems:
+        content, described = self.experiments[experiment], {}
+        for name in content.problems:
+            if content.runs_of(scale, "problem", name) <= repeat:
+                continue
             problem = self.problems[name]
             if problem.layouts is None:
                 described[name] = problem.plain()

@@ -265,6 +265,11 @@ class Experiment(Model):
         description="how many repeats one job runs, for smoke, "
         "full and extended, at most all of them"
     )
+    fewer: dict[Name, dict[Annotated[str, matching(PART, PART_EXPECTED)], Count]] = Field(
+        {},
+        description="where fewer runs suffice at scale extended: `method`, `problem`, or a varied "
+        "setting or preset → value → repeats, a multiple of the chunk",
+    )
     interpretations: Count = Field(
         None,
         description="repeats from which `snakemake interpretations` judges an interpretation; by "
@@ -290,6 +295,14 @@ class Experiment(Model):
                 f"vary: expected at most {MOST_CONDITIONS} conditions: problems times "
                 "combinations of values"
             )
+        for factor, fewer in self.fewer.items():
+            for name, count in fewer.items():
+                if count % self.chunk.extended or count >= self.repeats.extended:
+                    raise wrong(
+                        f"fewer: {factor}: {name}: {count}: expected a multiple of "
+                        f"{self.chunk.extended}, the chunk, below {self.repeats.extended}, the "
+                        "repeats"
+                    )
         for setting, values in self.vary.items():
             if odd := [each for each in values if not re.fullmatch(PART, str(each))]:
                 raise wrong(
@@ -297,6 +310,11 @@ class Experiment(Model):
                     f"{PART_EXPECTED}, or a number"
                 )
         return self
+
+    def runs_of(self, scale: str, factor: str, value: Any) -> int:
+        """Repeats, at most, of a method, on a problem or under a varied value."""
+        most = self.repeats[scale]
+        return self.fewer.get(factor, {}).get(str(value), most) if scale == "extended" else most
 
     @property
     def paired(self) -> bool:

@@ -23,6 +23,7 @@ from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study.alternatives import experiments_of_claims
 from bezierplan.study.artefacts import Figure
 from bezierplan.study.definition import Study
+from bezierplan.study.experiments import Experiment
 
 
 def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
@@ -43,17 +44,22 @@ def job(study: Study, experiment: str, method: str, scale: str, number: int) -> 
     content = study.experiments[experiment]
     size = content.chunk[scale]
     settings = study.resolved(method).items()
+    first = number * size
+    vary = {
+        name: [value for value in values if content.runs_of(scale, name, value) > first]
+        for name, values in content.vary.items()
+    }
     return Chunk(
         study=study.key,
         experiment=experiment,
         method=method,
         planner=study.planner(method),
         settings={name: value for name, value in settings if name not in content.vary},
-        problems=_problems_met(study, experiment, method, scale),
-        vary=content.vary,
+        problems=_problems_met(study, experiment, method, scale, first),
+        vary=vary,
         presets={name: preset for name, preset in study.presets.items() if name in content.vary},
         seeds=content.seeds,
-        repeats=[number * size, (number + 1) * size],
+        repeats=[first, first + size],
         time_limit=content.time_limit,
         policy=study.policies[study.methods[method].policy].model_dump()
         if study.moves(experiment)
@@ -61,13 +67,15 @@ def job(study: Study, experiment: str, method: str, scale: str, number: int) -> 
     )
 
 
-def _problems_met(study: Study, experiment: str, method: str, scale: str) -> dict[str, dict]:
-    """Places of an experiment's problems, by name, with those of their settings that a method
-    leaves open.
+def _problems_met(
+    study: Study, experiment: str, method: str, scale: str, first: int
+) -> dict[str, dict]:
+    """Places of an experiment's problems that have the repeat `first`, by name, with those of their
+    settings that a method leaves open.
     """
     accepted = study.accepted(method).keys() - study.methods[method].settings.keys()
     met = {}
-    for name, problem in study.problems_of(experiment, scale).items():
+    for name, problem in study.problems_of(experiment, scale, first).items():
         settings = {
             key: value for key, value in problem.get("settings", {}).items() if key in accepted
         }
@@ -80,10 +88,17 @@ def _place(problem: dict) -> dict:
     return {key: problem[key] for key in PLACE if key in problem}
 
 
-def chunks(study: Study, experiment: str, scale: str) -> range:
-    """Numbers of the chunks that contain an experiment's repeats at a scale."""
+def chunks(study: Study, experiment: str, method: str, scale: str) -> range:
+    """Numbers of the chunks that contain a method's repeats in an experiment at a scale, under the
+    condition with the most.
+    """
     content = study.experiments[experiment]
-    return range(-(-content.repeats[scale] // content.chunk[scale]))
+    factors = {"method": [method], "problem": content.problems} | content.vary
+    repeats = min(
+        max(content.runs_of(scale, factor, value) for value in values)
+        for factor, values in factors.items()
+    )
+    return range(-(-repeats // content.chunk[scale]))
 
 
 def table_job(study: Study, table: str, scale: str) -> PivotJob:
@@ -335,8 +350,24 @@ def caption(study: Study, artefact: str, scale: str) -> str:
                 sentences.append(
                     f"On {study.labels.get(problem, problem)}:{_listed(settings, ' ')}"
                 )
-        sentences.append(f"{content.repeats[scale]} runs of each method on each problem")
+        sentences.append(
+            f"{content.repeats[scale]} runs of each method on each problem"
+            + (_fewer(study, content, methods) if scale == "extended" else "")
+        )
     return ". ".join(sentences) + "."
+
+
+def _fewer(study: Study, experiment: Experiment, methods: list[str]) -> str:
+    """Where these methods make fewer runs at scale extended, as the end of a sentence."""
+    told = ""
+    for factor, fewer in experiment.fewer.items():
+        shown = {
+            name: count for name, count in fewer.items() if factor != "method" or name in methods
+        }
+        for count in sorted(set(shown.values())):
+            names = [study.labels.get(name, name) for name, own in shown.items() if own == count]
+            told += f", {count} where {factor.replace('_', ' ')} is {' or '.join(names)}"
+    return told
 
 
 def _listed(settings: dict[str, Any], before: str) -> str:

@@ -271,6 +271,13 @@ def _assumption(assumption: Assumption) -> AssumptionShown:
 def _repeats(study: Study, scale: str) -> list[int]:
     """The least and the largest number of runs of a method under a condition."""
     counts = [experiment.repeats[scale] for experiment in study.experiments.values()]
+    if scale == "extended":
+        counts += [
+            count
+            for experiment in study.experiments.values()
+            for fewer in experiment.fewer.values()
+            for count in fewer.values()
+        ]
     return [min(counts), max(counts)] if counts else []
 
 

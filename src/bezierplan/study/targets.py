@@ -67,12 +67,12 @@ def _files(study: Study, scale: str, experiment: str, methods: Iterable[str] = (
     """Files of an experiment: chunks of methods as configured, whatever else the folder contains,
     problems and bounds.
     """
-    folder, chunks = (
-        _folder(study.home(experiment, scale), study.key),
-        jobs.chunks(study, experiment, scale),
-    )
+    folder = _folder(study.home(experiment, scale), study.key)
     runs = {
-        method: [f"{folder}/runs/{experiment}/{method}/{chunk}.parquet" for chunk in chunks]
+        method: [
+            f"{folder}/runs/{experiment}/{method}/{chunk}.parquet"
+            for chunk in jobs.chunks(study, experiment, method, scale)
+        ]
         for method in methods
     }
     return Files(
@@ -457,7 +457,7 @@ def alternative_params(studies: Studies, scale: str, study: str, alternative: st
         for experiment in alternatives.experiments_of_claims(claims)
         for method in alternatives.methods_of_claims(content, claims, experiment)
         if method in changed
-        for number in jobs.chunks(content, experiment, scale)
+        for number in jobs.chunks(content, experiment, method, scale)
     ]
     planners = sorted({_planner(chunk.planner) for _, chunk in chunks})
     return {
