@@ -20,6 +20,7 @@ from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import HOSTILE, claim, comparison, number, page
+from page_content import study as page_study
 from studies import study
 
 from bezierplan.figures.page import (
@@ -32,6 +33,7 @@ from bezierplan.figures.page import (
     gather,
     job,
     other,
+    outcome,
     pictures,
     runs,
     search,
@@ -400,6 +402,54 @@ def test_tip_gives_interval_n_share_and_bound():
         "exact bound 7.7, gap 39.6 %",
     ):
         assert each in words
+
+
+def test_numbers_and_claims_stand_next_to_those_of_the_readme():
+    row = {"study": "one", "table": "table1", "metric": "length", "statistic": "mean"}
+    numbers = pd.DataFrame(
+        [
+            row
+            | {"method": method, "obstacles": 5.0, "value_ours": ours, "value_ours_scaled": scaled}
+            | {"n_ours": 4000, "verdict": "disagrees", "counted": True, "primary": True}
+            for method, ours, scaled in (("a", 10.9, np.nan), ("b", 400.0, 4.0))
+        ]
+    )
+    claims = pd.DataFrame(
+        [
+            {"study": "one", "id": "C1", "primary": primary, "verdict": verdict, "n": 4000.0}
+            | {"holds": "0 of 2"}
+            for primary, verdict in ((False, "supported"), (True, "contradicted"))
+        ]
+    )
+    shown = page_study(
+        [claim("C1", "supported"), claim("C2", "supported")],
+        [
+            number("a/length", "agrees", keys={"method": "a", "obstacles": 5}),
+            number("b/length", "agrees", keys={"method": "b", "obstacles": 5}),
+            number("a/length", "agrees", keys={"method": "a", "obstacles": 10}),
+        ],
+    )
+    readme = outcome.Outcome(numbers, claims, pd.DataFrame({"study": []}))
+    found = outcome.beside({"one": shown}, readme)["one"]
+    first, second = found.claims
+    assert (first.extended.verdict, first.extended.holds, first.extended.n) == (
+        "contradicted",
+        "0 of 2",
+        4000,
+    )
+    assert second.extended is None
+    mean, count, other = found.tables[0].numbers
+    assert (mean.extended.ours, count.extended.ours, other.extended) == (10.9, 4.0, None)
+    assert "at scale extended, as in the README: ours 10.9, n 4000, disagrees" in build.tip(mean)
+    assert "README" not in build.tip(other)
+
+
+def test_the_readmes_headline_is_of_the_studies_of_the_page():
+    titles = {key: f"{key}: its title" for key in ("ma2020", "song2016", "my_own")}
+    readme = outcome.kept()
+    first = outcome.sentences(readme, titles)[0]
+    counted = readme.numbers[readme.numbers["counted"].astype(bool)]
+    assert first.startswith(f"Of {counted['study'].isin(titles).sum()} published numbers, ")
 
 
 def test_column_that_the_page_does_not_know_is_kept_with_the_claim():

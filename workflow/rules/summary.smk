@@ -84,6 +84,6 @@ rule page:
     # The last job of a workflow, so the others leave it the cores.
     threads: 2
     params:
-        **params(partial(page.params, root=PREFIX), "job", "tried", "look", "code"),
+        **params(partial(page.params, root=PREFIX), "job", "tried", "look", "outcome", "code"),
     script:
         "../scripts/page.py"

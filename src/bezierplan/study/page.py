@@ -15,7 +15,7 @@ from bezierplan.figures.page.page_job import (
     StudyShown,
     TableShown,
 )
-from bezierplan.places import TREE
+from bezierplan.places import STUDIES, TREE
 from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.running.inputs import Files
 from bezierplan.schema import checked
@@ -121,7 +121,7 @@ def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
     this one is a module.
     """
     tried = {key: _tried(f"{root}results/{scale}/{key}") for key in studies}
-    shown = _artefacts(studies, scale)
+    shown, outcome = _artefacts(studies, scale), _outcome(studies, scale)
     return {
         "job": plain(
             PageJob(
@@ -130,12 +130,23 @@ def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
                     key: _study(studies, scale, key, names, tried[key], root)
                     for key, names in shown.items()
                 },
+                outcome=bool(outcome),
             )
         ),
         "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
+        "outcome": content_digest(*outcome),
         "code": versioned_digest(str(targets.SCRIPTS / "page.py")),
     }
+
+
+def _outcome(studies: Studies, scale: str) -> list[str]:
+    """Files of the README's outcome, which the page of scale full shows next to its own, in a clone
+    that has them; none if it shows none of the papers.
+    """
+    papers = any(study.folder.resolve().is_relative_to(STUDIES) for study in studies.values())
+    shown = scale == "full" and papers and all(file.is_file() for file in page.OUTCOME)
+    return [*map(str, page.OUTCOME)] if shown else []
 
 
 def _tried(folder: str) -> dict[str, str]:

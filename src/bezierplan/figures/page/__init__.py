@@ -4,7 +4,14 @@ and its look (`build`).
 
 from pathlib import Path
 
+from bezierplan.places import TREE
+
 HERE = Path(__file__).parent
+OUTCOME = [
+    TREE / "docs" / "outcome" / name
+    for name in ("numbers.csv", "claims.csv", "baseline_comparison.csv")
+]
+"""The README's outcome, in a clone: tables of all studies."""
 
 
 def files() -> list[str]:

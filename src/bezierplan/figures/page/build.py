@@ -265,6 +265,12 @@ def tip(number: content.Number) -> str:
             f"exact bound {number.bound:.5g}"
             + ("" if number.gap is None else f", gap {100 * number.gap:.1f} %")
         )
+    if number.extended:
+        more = number.extended
+        parts.append(
+            f"at scale extended, as in the README: ours {short(more.ours, 5)}, n {short(more.n)}, "
+            f"{more.verdict or 'not judged'}"
+        )
     return "; ".join(parts)
 
 

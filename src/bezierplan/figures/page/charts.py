@@ -328,9 +328,17 @@ def _ratios(page: content.Page) -> Written | None:
             },
         ],
     }
+    counted = sum(
+        number.counted
+        for study in page.studies.values()
+        for table in study.tables
+        for number in table.numbers
+    )
+    of = f" of {counted}" if counted > len(rows) else ""
+    zero = " (a ratio with 0 has no place)" if of else ""
     text = (
-        f"Dots: {len(rows)} published numbers, ours divided by the published one, on a "
-        "logarithmic axis, one row per table; lines: the "
+        f"Dots: {len(rows)}{of} published numbers, ours divided by the published one, on a "
+        f"logarithmic axis{zero}, one row per table; lines: the "
         "range (95 %) that an experiment of the paper's size would print. A line that does not "
         "reach 1 is a number that disagrees."
     )

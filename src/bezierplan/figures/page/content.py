@@ -31,6 +31,15 @@ class Part(Record):
     address: Address | None = Field(None, description="the place that the words lead to")
 
 
+class Extended(Record):
+    """What the README's outcome, of scale extended, says of a published number or of a claim."""
+
+    verdict: str
+    n: float | None = Field(description="number of our runs that count")
+    ours: float | None = Field(None, description="our number, for the paper's number of runs")
+    holds: str = Field("", description="how many comparisons of a claim hold")
+
+
 class Number(Record):
     """A cell of a table: a published number and ours."""
 
@@ -71,6 +80,7 @@ class Number(Record):
         description="exact shortest length of the problem, in the unit of length"
     )
     gap: float | None = Field(description="median over the feasible runs of length / bound - 1")
+    extended: Extended | None = None
 
     @property
     def beside(self) -> float | None:
@@ -192,6 +202,7 @@ class Claim(Record):
     interpretations: list[Interpretation]
     choices: list[Choice]
     more: dict[str, Cell] = Field(description="further columns of claims.csv")
+    extended: Extended | None = None
 
 
 class Assumption(Record):
@@ -440,6 +451,9 @@ class Page(Record):
     made_by: str = Field("bezierplan", description="version and commit")
     headline: Headline | None = Field(
         None, description="the outcome; null at a scale that judges nothing"
+    )
+    headline_extended: list[str] = Field(
+        [], description="sentences: the README's headline, of scale extended"
     )
     answer: list[list[Part]] = Field(description="further sentences, each in parts")
     verified: Verified | None = Field(None, description="the check of the runs that the page shows")

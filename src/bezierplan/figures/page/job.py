@@ -15,7 +15,7 @@ import pandas as pd
 import bezierplan
 from bezierplan import places
 from bezierplan.analysis import headline
-from bezierplan.figures.page import answer, build, content, gather, runs
+from bezierplan.figures.page import answer, build, content, gather, outcome, runs
 from bezierplan.figures.page.page_job import ExperimentShown, PageJob, StudyShown
 from bezierplan.running.watchdog import end_with_parent
 
@@ -55,10 +55,14 @@ def page(
     studies = {
         key: study.model_copy(update={"shown": shown[key]}) for key, study in studies.items()
     }
+    titles = {key: own.title for key, own in job.studies.items()}
+    readme = outcome.kept() if job.outcome else None
+    if readme:
+        studies = outcome.beside(studies, readme)
     shared = {"workspaces": workspaces, "problems": problems}
     checked = content.Verified(**json.loads(Path(verified).read_text())) if verified else None
     said = answer.answer(studies)
-    first = _headline(tables, {key: own.title for key, own in job.studies.items()})
+    first = _headline(tables, titles)
     about = {
         "about_scale": answer.about_scale(job.scale, _repeats(job.studies)),
         "made_by": _made_by(),
@@ -67,6 +71,7 @@ def page(
         scale=job.scale,
         **about,
         headline=first,
+        headline_extended=outcome.sentences(readme, titles) if readme else [],
         answer=said,
         verified=checked,
         studies=studies,

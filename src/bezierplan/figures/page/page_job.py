@@ -100,3 +100,5 @@ class PageJob(NamedTuple):
 
     scale: str
     studies: dict[str, StudyShown]
+    outcome: bool
+    """Whether the README's outcome is shown next to that of this scale (`outcome`)."""
