@@ -293,7 +293,7 @@ WORDS = {
     ),
     "more chunks than jobs": (
         E,
-        "extended: 250}\n    chunk: {smoke: 2, full: 50, extended: 250}",
+        "extended: 250}\n    chunk: {smoke: 2, full: 50, extended: 125}",
         "extended: 1000000}\n    chunk: {smoke: 2, full: 50, extended: 1}",
         "experiments: routes: chunk: extended: 1: 1000000 repeats are more than 10000 chunks",
     ),

@@ -144,6 +144,27 @@ def test_a_process_that_holds_a_lock_does_not_wait_for_ever(tmp_path, monkeypatc
     assert kernel_cache._held == []
 
 
+def test_a_process_that_waits_does_what_it_will_need_later(tmp_path, monkeypatch):
+    """Once, and not while it holds a lock itself, for which others may wait."""
+    done = []
+
+    def later():
+        with kernel_cache._alone(tmp_path / "own"):
+            done.append(list(kernel_cache._held))
+            fcntl.flock(other, fcntl.LOCK_UN)
+
+    monkeypatch.setattr(kernel_cache, "meanwhile", [later])
+    monkeypatch.setattr(kernel_cache, "PATIENCE", 0.2)
+    (tmp_path / "busy").mkdir()
+    with open(tmp_path / "busy" / "lock", "w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        with kernel_cache._alone(tmp_path / "above"), kernel_cache._alone(tmp_path / "busy"):
+            assert done == []
+        with kernel_cache._alone(tmp_path / "busy"):
+            assert done == [[tmp_path / "own"]]
+    assert kernel_cache.meanwhile == []
+
+
 def test_a_file_system_without_locks(tmp_path, monkeypatch):
     def refuse(*_):
         raise OSError("no locks available")

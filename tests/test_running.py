@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from bezierplan.commands.digest import row_text
-from bezierplan.running import execution, watchdog
+from bezierplan.running import execution, kernel_cache, watchdog
 from bezierplan.running.chunk import Chunk
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
@@ -67,6 +67,27 @@ def test_rows_stand_in_order_and_do_not_depend_on_it(tmp_path, monkeypatch):
     )
     again, _ = execution.run_chunk({"disc": PROBLEM}, given)
     assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
+
+
+def test_a_job_that_waits_for_a_kernel_checks_a_free_path_and_one_that_collides(
+    tmp_path, monkeypatch
+):
+    """In each type of region, so that the kernels of the check are there for its own paths."""
+    blocked = PROBLEM._replace(
+        workspace=Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
+    )
+    checks = []
+
+    def run(*_):
+        checks.extend(each()[1].feasible for each in kernel_cache.meanwhile)
+        raise RuntimeError("that is enough")
+
+    monkeypatch.setattr(execution, "run", run)
+    monkeypatch.setattr(kernel_cache, "meanwhile", [])
+    given = chunk(tmp_path, problems={"disc": {"workspace": "field"}, "other": {"workspace": "w"}})
+    with pytest.raises(watchdog.PlannerFailure, match="that is enough"):
+        execution.run_chunk({"disc": blocked, "other": blocked}, given)
+    assert checks == [False, True]
 
 
 def test_conditions_take_turns(tmp_path):

@@ -43,6 +43,58 @@ def test_equal_content_is_checked_once(study, checks):
     assert told == [[]], "to be told before the check, and of this one alone"
 
 
+def test_a_study_that_is_not_needed_is_checked_another_time(study, checks):
+    assert reading.load([study], is_needed=lambda folder: False) == {}
+    assert checks == []
+    assert list(reading.load([study])) == ["song2016"]
+    assert list(reading.load([study], is_needed=lambda folder: False)) == ["song2016"]
+    assert checks == ["song2016"]
+
+
+FOLDERS = [Path("config/studies/walk"), Path("config/studies/walk_far"), Path("elsewhere/swim")]
+
+
+@pytest.mark.parametrize(
+    ("targets", "needed"),
+    [
+        ([], ["walk", "walk_far", "swim"]),
+        (["all"], ["walk", "walk_far", "swim"]),
+        (["walk"], ["walk"]),
+        (["swim_figure4"], ["swim"]),
+        (["swim_figure4", "walk"], ["walk", "swim"]),
+        (["swim_figure4", "smoke"], ["walk", "walk_far", "swim"]),
+        # A table of one, or a figure of the other.
+        (["walk_far_1"], ["walk", "walk_far"]),
+        (["results/full/swim/claims.csv"], ["swim"]),
+        (["results/full/swim"], ["swim"]),
+        (["results/full/index.html"], ["walk", "walk_far", "swim"]),
+        (["swimming_1"], ["walk", "walk_far", "swim"]),
+    ],
+)
+def test_a_target_needs_the_studies_that_it_is_named_after(targets, needed):
+    assert [
+        folder.name for folder in FOLDERS if reading.asked_for(folder, targets, FOLDERS)
+    ] == needed
+
+
+def test_a_target_of_one_study_starts_beside_a_fault_in_another(tmp_path):
+    """Everything together does not."""
+    shutil.copytree(SONG2016, tmp_path / "bad")
+    (tmp_path / "bad" / "claims.yaml").write_text("claims: many\n")
+    command = [
+        *(sys.executable, "-m", "snakemake", "--snakefile", str(SONG2016.parents[2] / "Snakefile")),
+        *("--workflow-profile", "none", "--cores", "1", "--dry-run"),
+        *("--config", "studies=[song2016, ./bad]"),
+    ]
+    codes = [
+        subprocess.run(
+            [*command, *targets], cwd=tmp_path, capture_output=True, check=False
+        ).returncode
+        for targets in (["--", "song2016_table1"], [])
+    ]
+    assert codes == [0, 2]
+
+
 # What jobs need and a start does not: to import it would take as long as all else that a start
 # does.
 HEAVY = {"matplotlib", "numba", "pandas", "pyarrow", "scipy", "seaborn", "shapely"}

@@ -210,7 +210,7 @@ FAULTS = {
     ),
     "no chunk": (
         EXPERIMENTS,
-        "    chunk: {smoke: 2, full: 50, extended: 250}\n",
+        "    chunk: {smoke: 2, full: 50, extended: 125}\n",
         "",
         "routes: chunk: missing key",
     ),

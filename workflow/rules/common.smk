@@ -24,6 +24,7 @@ sys.executable = shlex.quote(sys.executable)
 if hasattr(sys.stderr, "reconfigure"):
     sys.stderr.reconfigure(line_buffering=False, write_through=False)
 
+from snakemake.cli import get_argument_parser
 from snakemake.iocontainers import Params
 
 from bezierplan.running import effort, forks
@@ -52,9 +53,22 @@ def at_changes():
         FORKS.start()
 
 
+@cache
+def targets_given():
+    """What Snakemake was asked for, which it tells a workflow only when that has been read; nothing
+    if this process is not Snakemake's own, or if the workflow that it runs includes this one.
+    """
+    program = Path(sys.argv[0])
+    if workflow.modifier.namespace is None and "snakemake" in (program.name, program.parent.name):
+        return get_argument_parser().parse_known_args(sys.argv[1:])[0].targets
+    return []
+
+
 try:
+    FOLDERS = reading.read_config(config, alone=workflow.modifier.namespace is not None)
+    # In a new clone, the checks of all studies would take longer than a figure.
     STUDIES = reading.load(
-        reading.read_config(config, alone=workflow.modifier.namespace is not None), at_changes
+        FOLDERS, at_changes, lambda folder: reading.asked_for(folder, targets_given(), FOLDERS)
     )
     reading.check_start(workflow.resource_settings.cores)
 except checked.Fault as fault:

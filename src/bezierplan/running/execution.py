@@ -12,12 +12,12 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import Plan, planner_module, planner_settings
-from bezierplan.running import answer, rows, watchdog
+from bezierplan.running import answer, kernel_cache, rows, watchdog
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
 from bezierplan.running.loans import Loan, lend
 from bezierplan.workspaces import seeds
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.problem import Path, Problem
 
 logger = logging.getLogger(__name__)
 
@@ -174,6 +174,7 @@ def run_chunk(
     deterministic = getattr(planner_module(chunk.planner), "deterministic", False)
     first, last = chunk.repeats
     outcomes, times = {}, {}
+    kernel_cache.meanwhile[:] = _judgements(met, blocked)
     with watchdog.watching(chunk.time_limit) as watch:
         for n, (k, repeat) in enumerate(
             _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
@@ -204,6 +205,7 @@ def run_chunk(
             times[k, repeat] = Times(outcomes[k, repeat]["id"], cpu, wall)._asdict()
             if (n + 1) % _LOGGED == 0:
                 logger.info("%d runs done", n + 1)
+    kernel_cache.meanwhile.clear()
     if fault := next(filter(None, (loan.thorough_fault() for loan in loans.values())), ""):
         raise UnfitAnswer(f"run {chunk.name}: planner {chunk.planner}: {fault}")
     if deterministic:
@@ -218,6 +220,25 @@ def run_chunk(
     return rows.table([outcomes[key] for key in ordered], Planned, Outcome), rows.table(
         [times[key] for key in ordered], Times
     )
+
+
+def _judgements(
+    problems: dict[str, Problem], blocked: dict[str, Region]
+) -> list[Callable[[], object]]:
+    """The check of two paths in each type of region: of one that stays at the start, and so is
+    free, and of the straight line, which mostly collides. Together they need all kernels of the
+    check.
+    """
+    one_of_each = {type(blocked[name]): name for name in problems}
+    return [
+        partial(
+            answer.verdict,
+            Path("polyline", np.array([problems[name].start, end], dtype=float)),
+            blocked[name],
+        )
+        for name in one_of_each.values()
+        for end in (problems[name].target, problems[name].start)
+    ]
 
 
 def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int]]:

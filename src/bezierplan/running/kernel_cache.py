@@ -12,7 +12,7 @@ import fcntl
 import inspect
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -43,6 +43,11 @@ PATIENCE = 60.0
 
 _held: list[Path] = []
 """Folders in which this process compiles, each for a kernel of the one before."""
+
+meanwhile: list[Callable[[], object]] = []
+"""What a process does, once each, that waits for a kernel which another one compiles: it compiles
+others that it will need.
+"""
 
 
 class _Locator(_CacheLocator):
@@ -178,9 +183,15 @@ def _alone(folder: Path) -> Iterator[None]:
     with open(folder / "lock", "w") as lock:
         start = time.monotonic()
         until = start + (PATIENCE if _held else math.inf)
+        busy = 0.0
         while not _locked(lock) and time.monotonic() < until:
-            time.sleep(LOOK)
-        effort.spent["waiting"] += time.monotonic() - start
+            if meanwhile and not _held:
+                began = time.monotonic()
+                meanwhile.pop(0)()
+                busy += time.monotonic() - began
+            else:
+                time.sleep(LOOK)
+        effort.spent["waiting"] += time.monotonic() - start - busy
         _held.append(folder)
         try:
             yield

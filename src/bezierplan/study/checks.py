@@ -309,7 +309,8 @@ def _check_experiment(
         _known(setting, accepted | set(study.presets), f"{location}: vary")
         for value in values if setting in study.presets else []:
             _known(str(value).lower(), study.presets[setting], f"{location}: vary: {setting}")
-    factors = {"method": study.methods_of(name), "problem": experiment.problems} | experiment.vary
+    methods = [*experiment.methods, *study.baselines]
+    factors = {"method": methods, "problem": experiment.problems} | experiment.vary
     for factor, fewer in experiment.fewer.items():
         _known(factor, factors, f"{location}: fewer")
         for value in fewer:

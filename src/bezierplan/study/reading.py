@@ -60,13 +60,28 @@ def read_config(config: Mapping[str, Any], alone: bool = False) -> Folders:
     return folders
 
 
+def asked_for(folder: Path, targets: Iterable[str], folders: Iterable[Path]) -> bool:
+    """Whether a target may need the study in a folder: one that is named after it, or after none of
+    the studies in `folders`; or there is no target, which asks for all.
+    """
+    names = [each.resolve().name for each in folders]
+    concerned = [
+        [name for name in names if target.startswith(f"{name}_") or name in Path(target).parts]
+        for target in targets
+    ]
+    return not concerned or any(folder.resolve().name in own or not own for own in concerned)
+
+
 def load(
-    folders: Iterable[Path] | Folders, at_changes: Callable[[], object] = lambda: None
+    folders: Iterable[Path] | Folders,
+    at_changes: Callable[[], object] = lambda: None,
+    is_needed: Callable[[Path], bool] = lambda folder: True,
 ) -> dict[str, Study]:
     """The studies in folders, by name, read and checked, unless the same content was before. Raises
     Fault.
 
-    at_changes: called before each check, which takes seconds.
+    at_changes: called before each check, which takes seconds. is_needed: whether a study is read
+    that has not been checked before; the others are left out.
     """
     studies = {}
     for folder in folders:
@@ -74,6 +89,8 @@ def load(
         try:
             stamp = stamps.stamp_of(folder, json.dumps(changed, sort_keys=True) if changed else "")
             before = stamps.remembered(stamp, folder)
+            if not before and not is_needed(folder):
+                continue
             study = before or read_study(folder, changed)
             if study.key in studies:
                 raise Fault(
