@@ -77,7 +77,7 @@ def test_other_scales_have_all_runs():
 
 def test_a_caption_says_where_there_are_fewer_runs():
     own = studies()["song2016"]
-    told = ", 125 where method is smooth (cubic pieces) or smooth (single Bezier)."
+    told = ", 125 where method is smooth (cubic pieces) or smooth (single Bézier)."
     assert jobs.caption(own, "table1", "extended").endswith(f" on each problem{told}")
     assert jobs.caption(own, "table1", "full").endswith(" on each problem.")
 

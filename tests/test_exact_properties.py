@@ -134,7 +134,7 @@ def assert_check_is_right(workspace, pieces, blocked, judge):
 
 
 def random_path(rng, curve, extent):
-    """A random path in a square workspace; every other one is short. Bezier curves have degrees up
+    """A random path in a square workspace; every other one is short. Bézier curves have degrees up
     to 11.
     """
     count = int(rng.integers(least_points(curve), 13))

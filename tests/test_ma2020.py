@@ -299,11 +299,11 @@ def test_figure_1():
             lengths[panel, label] = steps.sum()
     assert set(lengths) == {
         ("corners", "path with corners"),
-        ("curve", "Bezier curve"),
+        ("curve", "Bézier curve"),
         ("both", "path with corners"),
-        ("both", "Bezier curve"),
+        ("both", "Bézier curve"),
     }
-    assert lengths["both", "Bezier curve"] < lengths["both", "path with corners"]
+    assert lengths["both", "Bézier curve"] < lengths["both", "path with corners"]
 
 
 def test_figure_2_swaps_the_genes_behind_the_cut():

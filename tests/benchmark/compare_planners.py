@@ -18,7 +18,7 @@ Budgets double from one attempt to the next, so times are known to a factor of t
 
 Compilation is charged to nobody. Lengths of unlike paths are compared: OMPL's are polylines, at
 whose corners a robot has to stop; so are those of meledje and of song2016's non-smooth method. All
-others have continuous tangents, for which they must swing out, and those of one Bezier curve
+others have continuous tangents, for which they must swing out, and those of one Bézier curve
 continuous curvature as well. So OMPL solves an easier problem.
 
 Writes planners.csv (each path), planners_times.csv (the table), planners.svg and planners.png into

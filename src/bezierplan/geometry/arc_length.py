@@ -1,4 +1,4 @@
-"""Arc length of Bezier pieces."""
+"""Arc length of Bézier pieces."""
 
 import math
 
@@ -48,7 +48,7 @@ def _integral(
 
 @compiled
 def piece_length(piece: np.ndarray) -> float:
-    """Arc length of one Bezier piece (degree + 1, 2), in its unit, to a relative 1e-10, by adaptive
+    """Arc length of one Bézier piece (degree + 1, 2), in its unit, to a relative 1e-10, by adaptive
     Gauss-Legendre quadrature of its speed.
 
     Orders 8 and 16 are compared on each interval, which is halved if they differ; a cusp costs only

@@ -37,7 +37,7 @@ _CENTRE = 1e-9
 
 @allocation_free
 def parts(points: np.ndarray) -> int:
-    """Number of equal parameter intervals over each of which a Bezier piece (degree + 1, 2), in
+    """Number of equal parameter intervals over each of which a Bézier piece (degree + 1, 2), in
     cells, moves less than one cell.
 
     The parts of a straight piece are at most half a cell long. The speed of a curve is at most its
@@ -57,7 +57,7 @@ def parts(points: np.ndarray) -> int:
 
 
 def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, 1 / last, 2 / last, ..., 1."""
+    """x and y of a Bézier piece (degree + 1, 2) at the parameters 0, 1 / last, 2 / last, ..., 1."""
     x, y, t, power = np.empty((4, last + 1))
     write_samples(points, last, 0, 1, last + 1, x, y, t, power)
     return x, y
@@ -75,7 +75,7 @@ def write_samples(
     t: np.ndarray,
     power: np.ndarray,
 ) -> None:
-    """Write x and y of a Bezier piece (degree + 1, 2) at `count` parameters: first / last, (first +
+    """Write x and y of a Bézier piece (degree + 1, 2) at `count` parameters: first / last, (first +
     stride) / last, ..., at most 1.
 
     t, power: (count,) or more, scratch.

@@ -41,7 +41,7 @@ class LargestCurvature(NamedTuple):
 
 
 def largest_curvature(pieces: np.ndarray) -> LargestCurvature:
-    """The largest curvature of Bezier pieces (pieces, degree + 1, 2) of a degree of at most 60."""
+    """The largest curvature of Bézier pieces (pieces, degree + 1, 2) of a degree of at most 60."""
     if pieces.shape[1] < 3:
         return LargestCurvature(0.0, 0.0)
     # Velocities are halved, not points: differences of points that are close to each other would

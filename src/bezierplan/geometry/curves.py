@@ -1,9 +1,9 @@
-"""Every curve kind as one linear map from control points to Bezier pieces; samples, exact length,
+"""Every curve kind as one linear map from control points to Bézier pieces; samples, exact length,
 curvature.
 
 Four kinds are clamped uniform B-splines of n control points and differ only in degree: `polyline`
 (1), `piecewise_quadratic` (2), `piecewise_cubic` (3), and `bezier` (n - 1, which has one piece). A
-piece of a B-spline is a Bezier curve whose control points are values of the spline's blossom (its
+piece of a B-spline is a Bézier curve whose control points are values of the spline's blossom (its
 polar form).
 
 Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform
@@ -11,7 +11,7 @@ parameters, with not-a-knot ends. `ferguson` is a chain of cubic Hermite pieces 
 reference 33); its control points are pairs of a point and its tangent, the derivative with respect
 to the piece's own parameter: P0, T0, V, TV, ..., P1, T1.
 
-A `cubic_chain` is any chain of cubic Bezier pieces, each beginning where the previous one ends: 3 k
+A `cubic_chain` is any chain of cubic Bézier pieces, each beginning where the previous one ends: 3 k
 + 1 control points for k pieces.
 """
 
@@ -64,7 +64,7 @@ def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
 
 @cache
 def piece_matrix(curve: str, points: int) -> np.ndarray:
-    """The linear map from control points to Bezier pieces: (pieces, degree + 1, points). Read-only.
+    """The linear map from control points to Bézier pieces: (pieces, degree + 1, points). Read-only.
 
     Raises ValueError for an unknown kind, for too few control points, for an odd number of control
     points of a `ferguson` curve, and for a number other than 3 k + 1 of a `cubic_chain`.
@@ -146,7 +146,7 @@ def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
 
 
 def bezier_pieces(path: Path) -> np.ndarray:
-    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where
+    """The path as Bézier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where
     the previous one ends.
 
     A quadratic B-spline has a joint in the middle of each inner leg of its control polygon:
@@ -244,7 +244,7 @@ def length(path: Path) -> float:
 
 
 def length_of(pieces: np.ndarray) -> float:
-    """`length` of a path, from its Bezier pieces (pieces, degree + 1, 2)."""
+    """`length` of a path, from its Bézier pieces (pieces, degree + 1, 2)."""
     from bezierplan.geometry.arc_length import piece_length
 
     return math.fsum(map(piece_length, pieces))

@@ -1,7 +1,7 @@
 """Paths among spheres in a box: the exact collision check, arc length, and a bound that no free
 path beats.
 
-Whether a path is free is decided in rational arithmetic, without rounding. On a Bezier piece the
+Whether a path is free is decided in rational arithmetic, without rounding. On a Bézier piece the
 squared distance to a centre, and the distance to a wall, are polynomials; their Bernstein
 coefficients enclose their values. A polynomial is halved until all coefficients of every part are
 high enough or a value at an end is certainly too low. As in `checker`, two thresholds guarantee
@@ -27,7 +27,7 @@ _Point = list[Fraction]
 
 
 def is_free(pieces: np.ndarray, spheres: Spheres) -> bool:
-    """Whether a path of Bezier pieces (pieces, degree + 1, 3), in units, stays outside all spheres
+    """Whether a path of Bézier pieces (pieces, degree + 1, 3), in units, stays outside all spheres
     and inside the box.
 
     Touching is allowed. Radii must be above twice the tolerance.
@@ -79,7 +79,7 @@ def _halves(coefficients: list[Fraction]) -> tuple[list[Fraction], list[Fraction
 
 
 def _squared_distance(points: list[_Point], centre: _Point) -> list[Fraction]:
-    """The Bernstein coefficients of the squared distance of a Bezier piece to a centre: its degree
+    """The Bernstein coefficients of the squared distance of a Bézier piece to a centre: its degree
     is twice that of the piece.
     """
     n = len(points) - 1
@@ -100,7 +100,7 @@ def _squared_distance(points: list[_Point], centre: _Point) -> list[Fraction]:
 
 
 def length(pieces: np.ndarray) -> float:
-    """Arc length of Bezier pieces (pieces, degree + 1, 3), in their unit, to a relative 1e-10."""
+    """Arc length of Bézier pieces (pieces, degree + 1, 3), in their unit, to a relative 1e-10."""
     from scipy import integrate
 
     degree, steps = pieces.shape[1] - 1, np.diff(pieces, axis=1)

@@ -2,7 +2,7 @@
 along a transition, as on a railway.
 
 An arc of a circle is replaced by one about the same centre with a smaller radius, and by a
-transition on either side, which begins on the line and ends on that arc. It is a cubic Bezier piece
+transition on either side, which begins on the line and ends on that arc. It is a cubic Bézier piece
 with the curvature 0 at one end and that of the arc at the other, close to a clothoid: to turn by an
 angle it needs about the radius times the angle of the line, and shifts the arc inwards by a sixth
 of the radius times the square of the angle. Where an arc has no line beside it, or no room to be

@@ -1,4 +1,4 @@
-"""Genetic algorithm for the control points of one Bezier curve on a grid: the shortest curve (BCA),
+"""Genetic algorithm for the control points of one Bézier curve on a grid: the shortest curve (BCA),
 or one that also keeps a safety distance from the obstacles (BCA-Q) (ma2020, Section 3).
 
 A chromosome is the sequence of the free control points, each gene the binary number of a free cell;
@@ -71,7 +71,7 @@ class Settings(NamedTuple):
     """
 
     curve: Annotated[
-        CurveKind, About("one Bezier curve, or a chain of quadratic pieces", PAPER + ", eqs. 1, 6")
+        CurveKind, About("one Bézier curve, or a chain of quadratic pieces", PAPER + ", eqs. 1, 6")
     ]
     control_points: Annotated[
         int, Range(0, 60), About("free control points, beside start and target")

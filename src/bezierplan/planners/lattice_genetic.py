@@ -2,7 +2,7 @@
 ma2020 (Section 4.1; its reference 29, no parameters given).
 
 With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted
-midpoints: the algorithm of BCA without the Bezier curve. With `rows` a chromosome is itself a path,
+midpoints: the algorithm of BCA without the Bézier curve. With `rows` a chromosome is itself a path,
 initially one through a random free cell of each row.
 """
 

@@ -1,5 +1,5 @@
 """Modified genetic algorithm (MGA): selects the points of a field that are control points of a
-Bezier curve (elhoseny2017, Section 3).
+Bézier curve (elhoseny2017, Section 3).
 
 A chromosome has one gene for each point of a lattice of cells: 1 makes the point a control point, 0
 leaves it out, and -1 marks an occupied cell, which is never set. It is stored as the ascending list
@@ -141,7 +141,7 @@ class Settings(NamedTuple):
     curve: Annotated[
         CurveKind,
         About(
-            "one Bezier curve, or quadratic pieces that meet half-way between the control points",
+            "one Bézier curve, or quadratic pieces that meet half-way between the control points",
             PAPER + ", eq. 2",
         ),
     ]

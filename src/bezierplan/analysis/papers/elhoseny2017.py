@@ -680,7 +680,7 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         marks.append(words | {"x": a, "y": b + top, "text": str(gene)})
         if y == 0 or gene == (side + 1) ** 2 - 1:
             marks.append(words | {"x": middle, "y": -0.45, "text": str(gene)})
-    line = {"mark": "line", "role": "second", "group": "curve", "label": "Bezier curve"}
+    line = {"mark": "line", "role": "second", "group": "curve", "label": "Bézier curve"}
     marks += [line | {"x": a, "y": b + top} for a, b in curve.coords]
     for role, (a, b) in (("start", start), ("target", target)):
         marks.append(
@@ -758,7 +758,7 @@ def validation(
             marks += [ring | {"x": x, "y": y} for x, y in circle.tolist()]
     x, y = grid.in_units(np.column_stack(samples(path, grid))).T
     marks += [
-        {"mark": "line", "role": "third", "group": "curve", "label": "Bezier curve", "x": a, "y": b}
+        {"mark": "line", "role": "third", "group": "curve", "label": "Bézier curve", "x": a, "y": b}
         for a, b in zip(x, y)
     ]
     for candidate, (point, word) in enumerate(judged, 1):

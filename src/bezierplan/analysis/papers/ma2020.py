@@ -35,7 +35,7 @@ STILL = 1e-6
 
 
 def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
-    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these corners
+    """Marks of Figure 1, column `drawn`: a path with corners, the Bézier curve with these corners
     as control points, and both.
 
     points: start, corners and target.
@@ -43,7 +43,7 @@ def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
     zigzag = np.array(points, dtype=float)
     steps = curves.sample_matrix("bezier", len(zigzag), 201) @ zigzag
     corners = _line(zigzag, "second", "path with corners")
-    curve = _line(steps, "first", "Bezier curve")
+    curve = _line(steps, "first", "Bézier curve")
     inner = _dots(zigzag[1:-1], "third", f"corners P1 to P{len(zigzag) - 2}")
     ends = pd.concat(
         [_dots(zigzag[:1], "start", "start S"), _dots(zigzag[-1:], "target", "target T")]
@@ -232,7 +232,7 @@ def continuous_curvature(
 
 
 def _least_speed(pieces: np.ndarray) -> float:
-    """Least speed of Bezier pieces (n, degree + 1, 2) as a share of the greatest."""
+    """Least speed of Bézier pieces (n, degree + 1, 2) as a share of the greatest."""
     weights = curves.bernstein(pieces.shape[1] - 2, np.linspace(0, 1, SPEED_SAMPLES))
     speed = np.hypot(*np.moveaxis(weights @ np.diff(pieces, axis=1), -1, 0))
     return float(speed.min() / speed.max())

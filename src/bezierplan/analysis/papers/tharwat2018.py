@@ -21,7 +21,7 @@ from bezierplan.workspaces.seeds import generator
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds import function
 
-# The three control points (x, y), in units, of the best known single Bezier curves, by workspace:
+# The three control points (x, y), in units, of the best known single Bézier curves, by workspace:
 # the results of 300 long runs, improved by sequential quadratic programming. Their lengths are
 # 7.7263 and 7.5180.
 BEST_KNOWN = {
@@ -350,7 +350,7 @@ def _landscape(results: Results) -> pd.DataFrame:
 
 
 def best_curves(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
-    """Lengths, in units, of the best Bezier curves found with one control point and more, and of
+    """Lengths, in units, of the best Bézier curves found with one control point and more, and of
     the exact shortest path.
 
     Columns: path (which of the two), control_points, length (of `SAMPLES` samples, of the exact
@@ -358,7 +358,7 @@ def best_curves(workspace: Workspace, *, start: list[float], target: list[float]
     """
     problem = Problem("", workspace, tuple(start), tuple(target))
     numbers = range(1, MOST_POINTS + 1)
-    rows = [("best Bezier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
+    rows = [("best Bézier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
     rows += [
         ("exact shortest path", n, shortest_paths.shortest_path(problem).length) for n in numbers
     ]
@@ -366,7 +366,7 @@ def best_curves(workspace: Workspace, *, start: list[float], target: list[float]
 
 
 def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[float, np.ndarray]:
-    """Length, in units, and control points (control_points + 2, 2) of the shortest free Bezier
+    """Length, in units, and control points (control_points + 2, 2) of the shortest free Bézier
     curve that a search from many starts finds.
 
     Length and freedom from collision are those of the given number of samples. The starts,
@@ -437,7 +437,7 @@ def _shortened(problem: Problem, free: np.ndarray, samples: int) -> tuple[float,
 
 
 def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
-    """Figures 10 and 11: fitness of a Bezier curve with one control point moving over the field,
+    """Figures 10 and 11: fitness of a Bézier curve with one control point moving over the field,
     the others as in `BEST_KNOWN`.
 
     One row per node of a square grid, y changing fastest; columns: x, y and fitness, in units.
@@ -456,7 +456,7 @@ def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd
 
 
 def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:
-    """Fitness (n,), in units, of Bezier curves with control points (n, k, 2), start and target
+    """Fitness (n,), in units, of Bézier curves with control points (n, k, 2), start and target
     included: length L (1 + beta V).
 
     The violation V is the sum over circles of the mean depth of the samples inside the circle, as a

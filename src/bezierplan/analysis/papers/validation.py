@@ -43,7 +43,7 @@ def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
 def curve_through(
     points: list[tuple[int, int]], start: tuple[int, int], target: tuple[int, int]
 ) -> Path:
-    """The Bezier curve of control points, ordered by their projection on the line from start to
+    """The Bézier curve of control points, ordered by their projection on the line from start to
     target.
     """
     along = np.subtract(target, start)

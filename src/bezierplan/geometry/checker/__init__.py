@@ -1,4 +1,4 @@
-"""The certified collision check: whether, where and how deeply a path of Bezier pieces enters the
+"""The certified collision check: whether, where and how deeply a path of Bézier pieces enters the
 blocked region, or how close it comes to it.
 
 The curve of a piece lies in the hull of its control points (`hulls`). A piece is halved until every
@@ -73,7 +73,7 @@ class Check(NamedTuple):
 def check(
     pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open"
 ) -> Check:
-    """Check a path of Bezier pieces.
+    """Check a path of Bézier pieces.
 
     Parameters
     ----------

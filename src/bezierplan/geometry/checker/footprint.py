@@ -65,7 +65,7 @@ class FootprintCheck(NamedTuple):
 
 
 def check_footprint(pieces: np.ndarray, region: Region, footprint: Footprint) -> FootprintCheck:
-    """Check the footprint along a path of Bezier pieces (pieces, degree + 1, 2) whose own points
+    """Check the footprint along a path of Bézier pieces (pieces, degree + 1, 2) whose own points
     are free (`check`).
     """
     reach = footprint.circumscribed

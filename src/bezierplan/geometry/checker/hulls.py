@@ -1,4 +1,4 @@
-"""Hulls of the control points of Bezier pieces: halving, extent and direction; and the limits
+"""Hulls of the control points of Bézier pieces: halving, extent and direction; and the limits
 within which they are sufficiently exact.
 """
 
