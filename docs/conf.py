@@ -45,5 +45,8 @@ html_theme_options = {
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
+html_context = {"default_mode": "auto"}
+# Pages without pages below them.
+html_sidebars = dict.fromkeys(("start", "verdicts", "glossary", "faq", "cite", "changelog"), [])
 html_static_path = []
 html_show_sourcelink = False
