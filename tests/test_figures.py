@@ -678,12 +678,84 @@ def test_what_has_no_order_is_not_joined(tmp_path):
         "joined": False,
     }
     axes = drawn(comparison(), [panel], 1, tmp_path).axes[0]
-    marks = [line for line in axes.lines if len(line.get_xdata()) == 3]
+    marks = [
+        line
+        for line in axes.lines
+        if len(line.get_xdata()) == 3 and line.get_markerfacecolor() != style.FREE
+    ]
     assert [line.get_linestyle() for line in marks] == ["None"] * 3
     places = np.array([line.get_xdata() for line in marks])
     np.testing.assert_allclose(places.mean(axis=0), [2, 3, 5])
     assert (np.diff(places, axis=0) > 0.1).all(), "groups stand beside each other"
     assert list(axes.get_xticks()) == [2, 3, 5]
+
+
+def test_what_has_no_order_can_be_sorted_by_a_number(tmp_path):
+    found = comparison()
+    found.runs["bound"] = found.runs["points"].map({2: 18.0, 3: 19.0, 5: 17.0})
+    panel = {
+        "kind": "lines",
+        "experiment": "routes",
+        "x": "points",
+        "metric": "length",
+        "hue": "method",
+        "joined": False,
+        "sorted_by": "bound",
+    }
+    axes = drawn(found, [panel], 1, tmp_path).axes[0]
+    assert list(axes.get_xticks()) == [0, 1, 2]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["5", "2", "3"]
+    assert axes.get_xlabel() == "points, sorted by bound"
+    frame = lines.data(found, panels_of([panel])[0])
+    assert frame.groupby("points")["place"].unique().map(list).to_dict() == {2: [1], 3: [2], 5: [0]}
+
+
+def test_names_that_lines_join_are_not_sorted():
+    with pytest.raises(ValueError, match="sorted_by: needs experiment and joined: false"):
+        options_of(lines, x="points", metric="length", sorted_by="bound")
+
+
+@pytest.mark.parametrize(("metric", "hollow"), [("length", True), ("objective", False)])
+@pytest.mark.parametrize("joined", [True, False])
+def test_a_statistic_of_some_runs_has_an_open_mark(metric, hollow, joined, tmp_path):
+    """Of the comparison's runs three quarters are feasible, and only these have a length."""
+    panel = {"kind": "lines", "experiment": "routes", "x": "points", "metric": metric}
+    figure = drawn(comparison(), [panel | {"hue": "method", "joined": joined}], 1, tmp_path)
+    assert ("hollow: some runs are not feasible" in words(figure)) == hollow
+    opened = [
+        line
+        for line in figure.axes[0].lines
+        if line.get_markerfacecolor() == style.FREE and len(line.get_xdata())
+    ]
+    assert [len(line.get_xdata()) for line in opened] == ([3, 3, 3] if hollow else [])
+
+
+@pytest.mark.parametrize(("slowest", "unit"), [(0.02, "ms"), (2.0, "s")])
+def test_all_panels_of_a_figure_have_one_unit_of_time(slowest, unit, tmp_path):
+    found = comparison()
+    slow = found.runs["method"] == "random"
+    times = np.where(slow, slowest, 0.001)
+    found = found._replace(
+        runs=found.runs.assign(cpu_s=times, evaluations=100, condition="field", bound=24.0)
+    )
+    kinds = [
+        {"kind": "lines", "x": "points"},
+        {"kind": "boxes"},
+        {"kind": "dots", "x": "points", "hue": "method"},
+    ]
+    own = [
+        panel | {"experiment": "routes", "metric": "cpu_s", "where": {"method": methods}}
+        for panel in kinds
+        for methods in (["random"], ["coarse"])
+    ]
+    own += [
+        {"kind": "expected_running_time", "experiment": "routes", "cost": cost}
+        for cost in ("cpu_s", "evaluations")
+    ]
+    axes = drawn(found, own, 2, tmp_path).axes
+    measured = [each.get_ylabel() for each in axes[:2]] + [each.get_xlabel() for each in axes[2:7]]
+    assert all(label.endswith(f"({unit})") for label in measured), measured
+    assert axes[7].get_xlabel() == "expected evaluations"
 
 
 def test_boxes_show_published_ends_and_a_limit(tmp_path):

@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
+from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources, kind_module
 from bezierplan.workspaces.problem import Problem, Workspace
@@ -31,8 +32,8 @@ class Scene(NamedTuple):
 
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels:
     how names are printed. unit: name of the study's unit of length. looks: method -> the name of
-    its look (`style.LOOKS`). narrow: whether panels are too narrow for more than the shortest
-    notes; set by `draw`.
+    its look (`style.LOOKS`). Set by `draw`: narrow, whether panels are too narrow for more than the
+    shortest notes, and milliseconds, whether all panels print lengths of time in these.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -41,6 +42,7 @@ class Scene(NamedTuple):
     unit: str
     looks: Mapping[str, str] = MappingProxyType({})
     narrow: bool = False
+    milliseconds: bool = False
 
 
 def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
@@ -78,7 +80,11 @@ def draw(
     rows = math.ceil(len(panels) / columns)
     width = width or (style.NARROW if columns == 1 else style.WIDE)
     labels = {name: _plain(label) for name, label in scene.labels.items()}
-    scene = scene._replace(narrow=width / columns < style.NARROW_PANEL, labels=labels)
+    scene = scene._replace(
+        labels=labels,
+        narrow=width / columns < style.NARROW_PANEL,
+        milliseconds=style.are_short(_seconds(panels, frame)),
+    )
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
         FigureCanvasAgg(
@@ -110,6 +116,16 @@ def draw(
         figure.set_label(_caption(letters, [heading.told for heading in headings]))
         _lay_out(figure, grid, legend, 2)  # headings change only the heights of rows
     return figure
+
+
+def _seconds(panels: list[Panel], frame: pd.DataFrame) -> list[float]:
+    """The lengths of time that panels show: one unit for all of them lets them be compared."""
+    timed = [
+        number
+        for number, panel in enumerate(panels)
+        if panel.measured in metrics.METRICS and metrics.unit(panel.measured, "") == "s"
+    ]
+    return frame.loc[frame["panel"].isin(timed), "value"].to_list() if timed else []
 
 
 # The most panels without names or last values beside them below each other.

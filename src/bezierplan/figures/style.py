@@ -115,6 +115,15 @@ PUBLISHED_MARK = {
 }
 
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
+
+# In the legend, the mark of a statistic to which not all runs contribute.
+HOLLOW = {
+    "linestyle": "",
+    "marker": "o",
+    "markersize": 3.5,
+    "color": BLACK,
+    "markerfacecolor": FREE,
+}
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
@@ -126,8 +135,8 @@ NARROW_PANEL = 2.0
 # more bands on top of each other hide the lines.
 MOST_BANDS = 5
 
-# A panel whose lengths of time are shorter than this, in seconds, shows them in milliseconds.
-# Values that differ by more than this factor are drawn on a logarithmic axis. An axis shows at
+# A figure all of whose lengths of time are shorter than this, in seconds, shows them in
+# milliseconds. Values that differ by more than this factor are drawn on a logarithmic axis. An axis shows at
 # least this share of its values.
 _SHORT, _WIDE_RANGE, _LEAST_SPAN = 0.1, 10.0, 0.01
 
@@ -242,13 +251,19 @@ def fit(axis: Any, values: Iterable[float], middles: Iterable[float]) -> None:
         set_limits(middle - least / 2, middle + least / 2)
 
 
-def in_milliseconds(axis: Any, values: Iterable[float]) -> None:
-    """Print an axis of seconds in milliseconds if all its values are short."""
+def are_short(seconds: Iterable[float]) -> bool:
+    """Whether all lengths of time that are known are better printed in milliseconds."""
     import numpy as np
+
+    known = [value for value in seconds if np.isfinite(value)]
+    return bool(known) and max(known) < _SHORT
+
+
+def in_milliseconds(axis: Any) -> None:
+    """Print an axis in milliseconds if it is one of seconds."""
     from matplotlib.ticker import FuncFormatter
 
-    known = [value for value in values if np.isfinite(value)]
-    if known and max(known) < _SHORT and axis.get_label_text().endswith("(s)"):
+    if axis.get_label_text().endswith("(s)"):
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{1000 * value:,.6g}"))
         axis.set_label_text(f"{axis.get_label_text().removesuffix('(s)')}(ms)")
 

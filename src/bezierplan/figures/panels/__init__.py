@@ -144,6 +144,11 @@ class Panel(Model, ABC):
         """What it draws from, as `data` of its kind takes it."""
 
     @property
+    def measured(self) -> str | None:
+        """The metric whose numbers the column `value` of its data has, if they are of one."""
+        return None
+
+    @property
     def place(self) -> str:
         """Where it stands in the list of panels in the file: the keys that lead to it."""
         return self._place

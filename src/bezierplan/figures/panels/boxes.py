@@ -59,6 +59,11 @@ class Options(RunsPanel):
     )
     limit: Number = Field(None, description="the published limit of the metric, a number")
 
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.metric
+
 
 def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per part of a box; columns: those of `lines.constants`, `by` by its own name, runs
@@ -193,7 +198,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     )
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=True, axis="x")
-    style.in_milliseconds(axes.xaxis, frame["value"])
+    if scene.milliseconds:
+        style.in_milliseconds(axes.xaxis)
     return Note("", runs_note(frame, "box", "method" if by == "method" else "row"))
 
 

@@ -33,13 +33,6 @@ _FILLED = 0.8
 # Height of a row, and of each of its dots, as a share of the panel's width.
 _ROW, _DOT = 0.035, 0.014
 
-_HOLLOW = {
-    "linestyle": "",
-    "marker": "o",
-    "markersize": 3.5,
-    "color": style.BLACK,
-    "markerfacecolor": style.FREE,
-}
 _NONE = {"linestyle": "", "marker": "x", "markersize": 3.5, "color": style.BLACK}
 
 
@@ -57,6 +50,11 @@ class Options(RunsPanel):
     statistic: Literal["mean", "median", "share"] = Field(
         "mean", description="mean (left out: this), median or share"
     )
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.metric
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -123,7 +121,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         [*frame["value"], *frame["low95"], *frame["high95"]],
         frame.groupby(hue)["value"].median(),
     )
-    style.in_milliseconds(axes.xaxis, frame["value"])
+    if scene.milliseconds:
+        style.in_milliseconds(axes.xaxis)
     bounds = frame[frame["bound"].notna()].groupby(x)["bound"].mean()
     for row, bound in bounds.items():
         middle = rows.index(row)
@@ -152,7 +151,7 @@ def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> N
             zorder=4,
             **look | {"markerfacecolor": style.FREE, "label": None},
         )
-        axes.plot([], [], label="hollow: some runs are not feasible", **_HOLLOW)
+        axes.plot([], [], label="hollow: some runs are not feasible", **style.HOLLOW)
     if none.any():
         at_edge = {"transform": axes.get_yaxis_transform(), "clip_on": False, "zorder": 4}
         axes.plot(np.ones(none.sum()), at[none], **_NONE | at_edge | {"color": look["color"]})

@@ -26,8 +26,8 @@ _DRAWS = 1000
 _APART = 0.18
 
 # Distance of the place for what never happens from the largest finite value and from the last
-# label, as shares of the axis. Times below this, in seconds, are printed in milliseconds.
-_NEVER, _CLEAR, _SHORT = 0.12, 0.2, 0.1
+# label, as shares of the axis.
+_NEVER, _CLEAR = 0.12, 0.2
 
 _NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)"}
 
@@ -40,6 +40,11 @@ class Options(RunsPanel):
     cost: Literal["evaluations", "cpu_s"] = Field(
         description="what is counted: evaluations or cpu_s"
     )
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.cost
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -176,7 +181,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         ],
         never / low,
     )
-    thousand = 1000 if options.cost == "cpu_s" and high < _SHORT else 1
+    thousand = 1000 if options.cost == "cpu_s" and scene.milliseconds else 1
     if thousand > 1:
         axes.set_xlabel(f"{_NAMES['cpu_s'].removesuffix('(s)')}(ms)")
     axes.xaxis.set_major_locator(FixedLocator([*ticks, never]))

@@ -77,13 +77,25 @@ class Options(TablePanel):
         description="whether lines join points, true or false: false where x is a name in "
         "numbers, without order",
     )
+    sorted_by: NumberColumn = Field(
+        None,
+        description="of runs, with joined: false, a column of numbers of the runs table: values of "
+        "x stand in the order of its means, each at the same distance from the next",
+    )
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
         exactly_one(self, "experiment", "data")
         if self.printed is not None and self.experiment is None:
             raise wrong("printed: needs experiment")
+        if self.sorted_by is not None and (self.joined or self.experiment is None):
+            raise wrong("sorted_by: needs experiment and joined: false")
         return self
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.metric
 
     @property
     def published_drawn(self) -> bool:
@@ -101,7 +113,7 @@ class Options(TablePanel):
 
 def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
     """One row per point; columns: hue (if one is given) and x, both by their own names; part
-    (statistic, repeat, published or value), value.
+    (statistic, repeat, published or value), value; with `sorted_by`, the place of x (0, 1, ...).
 
     For runs: the columns of `summary` for the statistic, and repeat, the number of a single run.
     For a table: the column `metric`, as is.
@@ -134,7 +146,12 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
             for value in values
         ]
         parts.append(pd.DataFrame(marked, columns=[*keys, "part", "value"]))
-    return pd.concat(parts, ignore_index=True)
+    drawn = pd.concat(parts, ignore_index=True)
+    if options.sorted_by is None:
+        return drawn
+    means = source.runs.sort_values("id").groupby(options.x)[options.sorted_by].mean()
+    places = means.rank(method="first").astype(int) - 1
+    return drawn.assign(place=drawn[options.x].map(places))
 
 
 def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
@@ -265,7 +282,7 @@ def _range(low: float, high: float) -> str:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    x, hue = options.x, options.hue
+    hue, x = options.hue, options.x if options.sorted_by is None else "place"
     of_runs = options.experiment is not None
     statistic = options.statistic if of_runs else ""
     groups = [None] if hue is None else style.in_order(frame[hue], options.where)
@@ -293,13 +310,19 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)
-    axes.set_xlabel(axis_label(x, scene))
+    axes.set_xlabel(axis_label(options.x, scene))
+    if options.sorted_by is not None:
+        named = frame.drop_duplicates("place").sort_values("place")[options.x]
+        axes.set_xticks(values, [f"{value:g}" for value in named])
+        by = style.column_name(options.sorted_by, scene.labels)
+        axes.set_xlabel(f"{axis_label(options.x, scene)}, sorted by {by}")
     axes.set_ylabel(axis_label(options.metric, scene, statistic))
     axes.grid(visible=True)
     style.fit(
         axes.yaxis, frame["value"], [] if hue is None else frame.groupby(hue)["value"].median()
     )
-    style.in_milliseconds(axes.yaxis, frame["value"])
+    if scene.milliseconds:
+        style.in_milliseconds(axes.yaxis)
     return (
         Note("", runs_note(frame[frame["part"] == "statistic"], statistic, "point"))
         if of_runs
@@ -338,6 +361,19 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, band
             label="95 % interval",
         )
     axes.plot(frame[x], frame["value"], zorder=3, **look)
+    _draw_hollow(axes, frame[x], frame, look)
+
+
+def _draw_hollow(axes: Axes, places: pd.Series, frame: pd.DataFrame, look: dict) -> None:
+    """Open the marks of statistics of the feasible runs alone, where there are others: a method
+    that rarely succeeds may have the best mean.
+    """
+    partial = (frame["feasible_runs"] < frame["runs"]) & (frame["n"] < frame["runs"])
+    if not partial.any():
+        return
+    hollow = look | {"linestyle": "", "markerfacecolor": style.FREE, "label": None}
+    axes.plot(places[partial], frame["value"][partial], zorder=3.1, **hollow)
+    axes.plot([], [], label="hollow: some runs are not feasible", **style.HOLLOW)
 
 
 def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dict) -> None:
@@ -353,6 +389,7 @@ def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dic
         label="95 % interval",
     )
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
+    _draw_hollow(axes, places, frame, look)
 
 
 def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str) -> None:
