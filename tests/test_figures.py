@@ -778,6 +778,41 @@ def test_boxes_show_published_ends_and_a_limit(tmp_path):
     assert {"published minimum and maximum", "published limit: 33.5 units"} <= set(words(figure))
 
 
+def test_boxes_of_feasible_runs_alone_say_how_many_there_are(tmp_path):
+    found = comparison()
+    found.runs.loc[found.runs["method"] == "coarse", "feasible"] = True
+    named = {}
+    for metric in ("length", "objective"):
+        panel = {"kind": "boxes", "experiment": "routes", "metric": metric}
+        axes = drawn(found, [panel], 1, tmp_path).axes[0]
+        named[metric] = [label.get_text() for label in axes.get_yticklabels()]
+    assert named["length"] == ["coarse", "random (75 %)", "smooth (quadratic pieces) (75 %)"]
+    assert named["objective"] == ["coarse", "random", "smooth (quadratic pieces)"]
+
+
+def test_a_share_is_not_rounded_up_to_all():
+    counts = pd.DataFrame({"runs": [1000, 1000, 10], "feasible_runs": [999, 1000, 0]})
+    assert boxes._partial_shares(counts) == {0: "99 %", 2: "0 %"}
+
+
+def test_intervals_on_a_logarithmic_axis_stay_within_the_panel(tmp_path):
+    found = comparison()
+    found.runs["length"] *= np.where(found.runs["method"] == "random", 1e3, 1)
+    found.runs.loc[found.runs["repeat"] == 1, "length"] *= 30
+    for kind in ("lines", "dots"):
+        panel = {"kind": kind, "experiment": "routes", "x": "points", "hue": "method"}
+        (panel,) = panels_of([panel | {"metric": "length"}])
+        frame = kinds_of_panel.kind_module(kind).data(found, panel)
+        axes = sheet.draw([panel], frame.assign(panel=0), scene(found), 1).axes[0]
+        scale, ends = (
+            (axes.get_yscale(), axes.get_ylim())
+            if kind == "lines"
+            else (axes.get_xscale(), axes.get_xlim())
+        )
+        assert scale == "log"
+        assert ends[0] < frame["low95"].min() < frame["high95"].max() < ends[1], kind
+
+
 def test_boxes_end_at_the_last_value_within_reach():
     found = comparison()
     values = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 90.0])

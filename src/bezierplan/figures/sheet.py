@@ -71,7 +71,7 @@ def draw(
     panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, width: float | None = None
 ) -> Figure:
     """The figure of a table made by `data`. Its label is its caption: for each panel the run that
-    it shows, and what it counts.
+    it shows, and what it counts; in a second line, if anything can be told of it, what is seen.
 
     frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its
     content. columns: panels per row. width: of the sheet, in inches; left out: one text column for
@@ -113,7 +113,11 @@ def draw(
         headings = [_heading(*each, room) for each in zip(letters, titles, notes)]
         for first in range(0, len(panels), columns):
             _write_headings(grid.flat[first : first + columns], headings[first : first + columns])
-        figure.set_label(_caption(letters, [heading.told for heading in headings]))
+        lines = [
+            _caption(letters, [heading.told for heading in headings]),
+            _caption(letters, [[note.seen] if note.seen else [] for note in notes]),
+        ]
+        figure.set_label("\n".join(filter(None, lines)))
         _lay_out(figure, grid, legend, 2)  # headings change only the heights of rows
     return figure
 

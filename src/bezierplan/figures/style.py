@@ -136,8 +136,8 @@ NARROW_PANEL = 2.0
 MOST_BANDS = 5
 
 # A figure all of whose lengths of time are shorter than this, in seconds, shows them in
-# milliseconds. Values that differ by more than this factor are drawn on a logarithmic axis. An axis shows at
-# least this share of its values.
+# milliseconds. Values that differ by more than this factor are drawn on a logarithmic axis. An axis
+# shows at least this share of its values.
 _SHORT, _WIDE_RANGE, _LEAST_SPAN = 0.1, 10.0, 0.01
 
 # Height of a panel with two unlike axes, as a share of its width: by default, and if names beside

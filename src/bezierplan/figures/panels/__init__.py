@@ -62,11 +62,13 @@ class Note(NamedTuple):
 
     shown: a few words below its title, if two lines are enough for both. told: what belongs into
     the figure's caption, such as the run that it shows and the runs that it counts, in clauses
-    joined by semicolons.
+    joined by semicolons. seen: what a glance at it shows, such as the best method, for those who do
+    not see it.
     """
 
     shown: str = ""
     told: str = ""
+    seen: str = ""
 
 
 EACH = (

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import metrics
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.figures.panels.lines import (
     LIMITS,
@@ -193,14 +193,37 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         }
         axes.plot(np.ones(len(none)), none, transform=axes.get_yaxis_transform(), **cross)
     axes.set_ylim(len(groups) - 0.4, -0.6)
+    names = [style.printed(group, by, scene.labels) for group in groups]
+    partial = {}
+    if metrics.METRICS[options.metric].feasible_only:
+        partial = _partial_shares(frame.dropna(subset=[by]).groupby(by).first())
     axes.set_yticks(
-        range(len(groups)), [style.printed(group, by, scene.labels) for group in groups]
+        range(len(groups)),
+        [
+            f"{name} ({partial[group]})" if group in partial else name
+            for name, group in zip(names, groups)
+        ],
     )
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=True, axis="x")
     if scene.milliseconds:
         style.in_milliseconds(axes.xaxis)
-    return Note("", runs_note(frame, "box", "method" if by == "method" else "row"))
+    told = runs_note(frame, "box", "method" if by == "method" else "row")
+    if partial:
+        told += "; in parentheses: share of feasible runs, below 100 %"
+    middles = [parts.get("median", [np.nan])[0] for parts in boxes]
+    return Note("", told, seen.extremes("median", dict(zip(names, middles))))
+
+
+def _partial_shares(counts: pd.DataFrame) -> dict[Any, str]:
+    """The share of feasible runs of each group that has others: the box is of them alone.
+
+    counts: by group, with runs and feasible_runs.
+    """
+    some = counts[counts["feasible_runs"] < counts["runs"]]
+    # Rounded down, so that none is printed as all.
+    shares = np.floor(100 * some["feasible_runs"] / some["runs"])
+    return {group: f"{share:g} %" for group, share in shares.items()}
 
 
 def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:

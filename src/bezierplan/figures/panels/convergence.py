@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import statistics
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.lines import (
     LIMITS,
@@ -258,7 +258,13 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
     style.fit(axes.yaxis, frame["objective"], [])
     ends = [rows.iloc[-1] for rows in lines]
     _draw_ends(axes, ends, looks, statistic)
-    return Note("", f"{runs_note(frame, statistic, 'line')}; right: last values")
+    names = [style.printed(group, hue, scene.labels) for group in groups]
+    last = dict(zip(names, (end["objective"] for end in ends)))
+    return Note(
+        "",
+        f"{runs_note(frame, statistic, 'line')}; right: last values",
+        seen.extremes(f"final {statistic}", last),
+    )
 
 
 def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: str) -> None:

@@ -7,12 +7,13 @@ edge stands for no feasible run.
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.figures.panels.lines import axis_label, published, runs_note, summary
 from bezierplan.schema.model import Column, Metric
@@ -118,7 +119,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.autoscale_view(scaley=False)
     style.fit(
         axes.xaxis,
-        [*frame["value"], *frame["low95"], *frame["high95"]],
+        itertools.chain(*(frame[end] for end in ("value", "low95", "high95", "published"))),
         frame.groupby(hue)["value"].median(),
     )
     if scene.milliseconds:
@@ -134,7 +135,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             zorder=1.5,
             **style.BOUND,
         )
-    return Note("", runs_note(frame, options.statistic, "dot"))
+    table = frame.pivot(index=x, columns=hue, values="value")
+    names = [style.printed(value, hue, scene.labels) for value in table]
+    metric = f"{options.statistic} {style.column_name(options.metric, scene.labels)}"
+    told = runs_note(frame, options.statistic, "dot")
+    return Note("", told, seen.mostly(metric, table.set_axis(names, axis=1)))
 
 
 def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> None:

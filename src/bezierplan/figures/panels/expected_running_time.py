@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import running_time
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.workspaces.seeds import generator
 
@@ -204,18 +204,33 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_box_aspect(min(1.4, 0.14 + 0.12 * len(methods)))
     axes.grid(visible=True, axis="x")
     first = frame.iloc[0]
+    names = [scene.labels.get(method, method) for method in methods]
     if first["problems"] > 1:
         return Note(
             "",
             f"median over {first['problems']:g} problems; never: at least half of them are not "
             "solved in any run",
+            _seen(frame, methods, names),
         )
     fewest, most = frame["runs"].min(), frame["runs"].max()
     return Note(
         "",
         f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; "
         "never: no run gets there",
+        _seen(frame, methods, names),
     )
+
+
+def _seen(frame: pd.DataFrame, methods: list[str], names: list[str]) -> str:
+    """Which method gets to the widest target first, and which never do."""
+    target = frame["within"].max()
+    times = frame[frame["within"] == target].set_index("method")["value"].reindex(methods)
+    never = [name for name, time in zip(names, times) if not np.isfinite(time)]
+    clauses = [
+        seen.extremes(f"expected work to {100 * target:g} %", dict(zip(names, times))),
+        f"never: {', '.join(never)}" if never else "",
+    ]
+    return "; ".join(filter(None, clauses))
 
 
 def _thinned(ticks: list[float], span: float) -> list[float]:

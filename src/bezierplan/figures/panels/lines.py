@@ -4,13 +4,14 @@ columns of a table against each other.
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, Sources, TablePanel, exactly_one
 from bezierplan.schema.model import (
     Column,
@@ -318,16 +319,29 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.set_xlabel(f"{axis_label(options.x, scene)}, sorted by {by}")
     axes.set_ylabel(axis_label(options.metric, scene, statistic))
     axes.grid(visible=True)
+    ends = [frame[end] for end in ("value", "low95", "high95") if end in frame]
     style.fit(
-        axes.yaxis, frame["value"], [] if hue is None else frame.groupby(hue)["value"].median()
+        axes.yaxis,
+        itertools.chain(*ends),
+        [] if hue is None else frame.groupby(hue)["value"].median(),
     )
     if scene.milliseconds:
         style.in_milliseconds(axes.yaxis)
-    return (
-        Note("", runs_note(frame[frame["part"] == "statistic"], statistic, "point"))
-        if of_runs
-        else Note()
-    )
+    if not of_runs:
+        return Note()
+    ours = frame[frame["part"] == "statistic"]
+    return Note("", runs_note(ours, statistic, "point"), _seen(ours, scene, options))
+
+
+def _seen(statistics: pd.DataFrame, scene: Any, options: Options) -> str:
+    """Which line is lowest and highest at most places, or where the only line is."""
+    name = f"{options.statistic} {style.column_name(options.metric, scene.labels)}"
+    if options.hue is None:
+        at = [style.printed(value, options.x, scene.labels) for value in statistics[options.x]]
+        return seen.extremes(name, dict(zip(at, statistics["value"])))
+    table = statistics.pivot(index=options.x, columns=options.hue, values="value")
+    columns = [style.printed(value, options.hue, scene.labels) for value in table]
+    return seen.mostly(name, table.set_axis(columns, axis=1))
 
 
 def _looks(groups: list[Any], frame: pd.DataFrame, scene: Any) -> list[dict]:
