@@ -24,6 +24,7 @@ from bezierplan.figures.panels import (
     Sources,
     along_path,
     boxes,
+    clearance,
     convergence,
     dots,
     drawing,
@@ -811,6 +812,28 @@ def test_intervals_on_a_logarithmic_axis_stay_within_the_panel(tmp_path):
         )
         assert scale == "log"
         assert ends[0] < frame["low95"].min() < frame["high95"].max() < ends[1], kind
+
+
+def test_the_end_of_a_drive_says_whether_it_arrived():
+    drives = {"mine": [3.0, 2.0, 1.0], "other": [3.0, -1.0]}
+    frame = pd.concat(
+        pd.DataFrame(
+            {
+                "method": method,
+                "run": f"study/moving/field/{method}/0",
+                "step": range(1, len(clear) + 1),
+                "clearance": clear,
+                "arrived": method == "mine",
+            }
+        )
+        for method, clear in drives.items()
+    )
+    axes = Figure().subplots()
+    clearance.draw(axes, frame, scene(results()), options_of(clearance))
+    ends = [line for line in axes.lines if line.get_marker() != "" and len(line.get_xdata()) == 1]
+    assert [(*line.get_xydata()[0],) for line in ends] == [(3, 1), (2, -1)]
+    assert [line.get_markerfacecolor() == style.FREE for line in ends] == [False, True]
+    assert "hollow: ends without arrival" in axes.get_legend_handles_labels()[1]
 
 
 def test_boxes_end_at_the_last_value_within_reach():

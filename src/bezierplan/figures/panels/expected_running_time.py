@@ -141,7 +141,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         style.in_order(frame["method"], options.where),
         sorted(frame["within"].unique()),
     )
-    finite = frame["value"][np.isfinite(frame["value"]) & (frame["value"] > 0)]
+    # Intervals as well, so that none leaves the panel but those without an end.
+    shown = frame[["value", "low95", "high95"]].to_numpy(dtype=float)
+    finite = shown[np.isfinite(shown) & (shown > 0)]
     low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
     never = high * max((high / low) ** _NEVER, 4.0)
     axes.set_xscale("log")
