@@ -873,7 +873,7 @@ def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
             "metric": "objective",
             "statistic": "mean",
             "n": 10,
-            "value": [400.0, 900.0, 650.0, 0.25, 500.0],
+            "value": [150.0, 240.0, 180.0, 0.25, 200.0],
         }
     )
     told = words(
@@ -884,8 +884,8 @@ def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
             tmp_path,
         )
     )
-    numbers = {"400 to 900", "0.25", "500", "400", "650", "900"}
-    assert sorted(text for text in told if text in numbers) == ["0.25", "400 to 900", "500"]
+    numbers = {"150 to 240", "0.25", "200", "150", "180", "240"}
+    assert sorted(text for text in told if text in numbers) == ["0.25", "150 to 240", "200"]
     assert "published mean, off the scale" in told
 
 
@@ -1002,6 +1002,88 @@ def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
     assert [axes.get_ylabel() for axes in figure.axes] == [*["y (m)", "", "", "", ""] * 2]
     assert [axes.get_xlabel() for axes in figure.axes] == [""] * 5 + ["x (m)"] * 5
     assert figure.axes[0].get_title(loc="left") == "(a) n = 0, smooth\n(quadratic pieces)"
+
+
+@pytest.mark.parametrize(
+    ("own", "columns"),
+    [
+        (gallery(2), 1),
+        (gallery(3), 2),
+        (panels()[1:3], 1),
+        (comparing_panels()[:1] * 6, 1),
+        (comparing_panels()[2:3] * 4, 1),
+        (comparing_panels()[2:3] * 5, 2),
+        (panels()[1:2] * 6, 2),
+    ],
+)
+def test_a_narrow_sheet_is_no_longer_than_a_page_where_half_a_column_is_enough(own, columns):
+    assert sheet.narrow_columns(panels_of(own)) == columns
+
+
+def test_a_method_stands_on_a_line_of_its_own_if_one_line_is_too_short(tmp_path):
+    named = panels()[0] | {"title": "from 0 to 15"}
+    figure = drawn(results(), [named, panels()[1], panels()[1]], 3, tmp_path)
+    titles = [axes.get_title(loc="left") for axes in figure.axes[:2]]
+    assert titles[0] == "(a) from 0 to 15,\nsmooth (quadratic pieces)"
+
+
+def test_panels_of_one_metric_have_one_kind_of_axis(tmp_path):
+    """In one of them values differ by more than ten."""
+    found = comparison()
+    found.runs["length"] *= np.where(found.runs["method"] == "random", 1e3, 1)
+    own = [
+        {"kind": kind, "experiment": "routes", "x": "points", "hue": "method", "metric": metric}
+        | {"where": {"method": methods}}
+        for kind, metric, methods in (
+            ("dots", "length", ["smooth", "coarse"]),
+            ("dots", "length", ["smooth", "random"]),
+            ("dots", "objective", ["smooth", "coarse"]),
+        )
+    ]
+    figure = drawn(found, own, 3, tmp_path)
+    assert [axes.get_xscale() for axes in figure.axes] == ["log", "log", "linear"]
+    assert all(axes.get_xlabel() for axes in figure.axes), "also those that are drawn again"
+    assert [len(axes.get_yticks()) for axes in figure.axes] == [3, 3, 3]
+
+
+def test_boxes_that_reach_zero_are_seen_beside_large_ones(tmp_path):
+    found = comparison()
+    exact = found.runs["method"] == "random"
+    found.runs["length"] = np.where(exact, 18.5, 18.5 + 0.01 * 4.0 ** found.runs["repeat"])
+    panel = {"kind": "boxes", "experiment": "routes", "metric": "gap"}
+    figure = drawn(found, [panel], 1, tmp_path)
+    (axes,) = figure.axes
+    assert axes.get_xscale() == "symlog"
+    assert axes.get_xlim()[0] < 0 < axes.get_xlim()[1]
+    assert axes.get_xticks()[0] == 0
+    assert "the axis is linear up to the first number after 0" in figure.get_label()
+
+
+def test_a_row_without_a_box_says_why(tmp_path):
+    found = comparison()
+    found.runs["feasible"] &= found.runs["method"] != "random"
+    panel = {"kind": "boxes", "experiment": "routes", "metric": "length"}
+    (axes,) = drawn(found, [panel], 1, tmp_path).axes
+    assert [(*text.get_position(), text.get_text()) for text in axes.texts] == [
+        (0.5, 1, "no feasible run")
+    ]
+    assert axes.get_yticklabels()[1].get_text() == "random (0 %)"
+
+
+@pytest.mark.parametrize(
+    ("lines", "offset"),
+    [
+        ([[8.0, 0.5]], (5, 13)),
+        ([[0.5, 8.0]], (13, 5)),
+        ([[8.0, 0.2], [0.2, 8.0]], (11, 11)),
+        ([], (13, 5)),
+    ],
+)
+def test_a_letter_stands_aside_of_the_lines_that_end_there(lines, offset):
+    axes = Figure().subplots()
+    axes.set(xlim=(0, 40), ylim=(0, 40))
+    paths._write_letter(axes, np.zeros(2), "S", np.reshape(lines, (-1, 2)))
+    assert tuple(axes.texts[0].xyann) == offset
 
 
 def test_along_path_leaves_out_where_the_curve_stands_still(tmp_path):

@@ -33,7 +33,8 @@ class Scene(NamedTuple):
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels:
     how names are printed. unit: name of the study's unit of length. looks: method -> the name of
     its look (`style.LOOKS`). Set by `draw`: narrow, whether panels are too narrow for more than the
-    shortest notes, and milliseconds, whether all panels print lengths of time in these.
+    shortest notes; milliseconds, whether all panels print lengths of time in these; and wide, the
+    metrics whose axes are logarithmic in all panels, because one of them needs it.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -43,6 +44,7 @@ class Scene(NamedTuple):
     looks: Mapping[str, str] = MappingProxyType({})
     narrow: bool = False
     milliseconds: bool = False
+    wide: frozenset[str] = frozenset()
 
 
 def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
@@ -93,11 +95,17 @@ def draw(
             # each question.
         )
         grid = _places(figure, panels, rows, columns)
-        titles, notes = [], []
-        for number, panel in enumerate(panels):
-            own = frame[frame["panel"] == number]
-            notes.append(kind_module(panel.kind).draw(grid.flat[number], own, scene, panel))
-            titles.append(_title(panel, own, scene))
+        rows_of = [frame[frame["panel"] == number] for number in range(len(panels))]
+        drawn = list(zip(grid.flat, rows_of, panels))
+        notes = [
+            kind_module(panel.kind).draw(axes, own, scene, panel) for axes, own, panel in drawn
+        ]
+        scene = scene._replace(wide=_wide(grid, panels))
+        for number, (axes, own, panel) in enumerate(drawn):
+            if panel.measured in scene.wide and _is_linear(axes):
+                axes.clear()
+                notes[number] = kind_module(panel.kind).draw(axes, own, scene, panel)
+        titles = [_title(panel, own, scene) for _, own, panel in drawn]
         for axes in grid.flat[len(panels) :]:
             axes.set_visible(False)
         if scene.narrow:
@@ -110,7 +118,8 @@ def draw(
             if len(panels) > 1
             else [""]
         )
-        headings = [_heading(*each, room) for each in zip(letters, titles, notes)]
+        most = _MOST_NARROW_LINES if scene.narrow else _MOST_LINES
+        headings = [_heading(*each, room, most) for each in zip(letters, titles, notes)]
         for first in range(0, len(panels), columns):
             _write_headings(grid.flat[first : first + columns], headings[first : first + columns])
         lines = [
@@ -120,6 +129,19 @@ def draw(
         figure.set_label("\n".join(filter(None, lines)))
         _lay_out(figure, grid, legend, 2)  # headings change only the heights of rows
     return figure
+
+
+def _wide(grid: np.ndarray, panels: list[Panel]) -> frozenset[str]:
+    """The metrics that some panel shows on a logarithmic axis."""
+    return frozenset(
+        panel.measured
+        for axes, panel in zip(grid.flat, panels)
+        if panel.measured is not None and not _is_linear(axes)
+    )
+
+
+def _is_linear(axes: Axes) -> bool:
+    return {axes.get_xscale(), axes.get_yscale()} == {"linear"}
 
 
 def _seconds(panels: list[Panel], frame: pd.DataFrame) -> list[float]:
@@ -132,15 +154,19 @@ def _seconds(panels: list[Panel], frame: pd.DataFrame) -> list[float]:
     return frame.loc[frame["panel"].isin(timed), "value"].to_list() if timed else []
 
 
-# The most panels without names or last values beside them below each other.
-_MOST_BELOW = 4
+# The most panels without names or last values beside them below each other, and of those the most
+# that are as high as a map.
+_MOST_BELOW, _MOST_MAPS_BELOW = 4, 2
 
 
 def narrow_columns(panels: list[Panel]) -> int:
     """Panels side by side on a sheet of one text column: one, or two of many, which would make the
     sheet longer than a page.
     """
-    return 1 if len(panels) <= _MOST_BELOW or any(panel.named_rows for panel in panels) else 2
+    if any(panel.named_rows for panel in panels):
+        return 1
+    maps = sum(panel.to_scale for panel in panels)
+    return 1 if len(panels) <= _MOST_BELOW and maps <= _MOST_MAPS_BELOW else 2
 
 
 def _places(figure: Figure, panels: list[Panel], rows: int, columns: int) -> np.ndarray:
@@ -168,8 +194,8 @@ def _plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-# Lines above a panel, of its title and the few words below it.
-_MOST_LINES = 2
+# Lines above a panel, of its title and the few words below it, and above a narrow one.
+_MOST_LINES, _MOST_NARROW_LINES = 2, 3
 
 # Rounds after which panels and the labels beside them fit each other.
 _ROUNDS = 3
@@ -187,15 +213,20 @@ def _lines(title: str, room: float) -> int:
     return _broken(title, room, style.TITLE_TEXT).count("\n") + 1
 
 
-def _heading(letter: str, title: list[str], note: Note, room: float) -> _Heading:
-    """What stands above a panel, in lines of a width in points: its title, with its method if that
-    fits, and, if a line is left, the few words. The caption has the rest.
+def _heading(letter: str, title: list[str], note: Note, room: float, most: int) -> _Heading:
+    """What stands above a panel, in at most so many lines of a width in points: its title, with its
+    method if that fits, and, if a line is left, the few words. The caption has the rest.
     """
-    named = _lines(letter + ", ".join(title), room) <= _MOST_LINES
+    named = _lines(letter + ", ".join(title), room) <= most
     told = [*([] if named else title[1:]), *([note.told] if note.told else [])]
-    heading = _broken(letter + ", ".join(title if named else title[:1]), room, style.TITLE_TEXT)
+    shown = title if named else title[:1]
+    # In one line, or else with the method on the second, or else broken anywhere.
+    apart = _broken(letter + ",\n".join(shown), room, style.TITLE_TEXT)
+    heading = _broken(letter + ", ".join(shown), room, style.TITLE_TEXT)
+    if "\n" in heading and apart.count("\n") < most:
+        heading = apart
     words = _broken(note.shown, room, style.SMALLEST_TEXT)
-    if words and heading.count("\n") + words.count("\n") + 2 > _MOST_LINES:
+    if words and heading.count("\n") + words.count("\n") + 2 > most:
         return _Heading(heading, "", [note.shown, *told])
     return _Heading(heading, words, told)
 
@@ -256,13 +287,13 @@ def _width(text: str, size: float) -> float:
 
 
 def _broken(text: str, room: float, size: float) -> str:
-    """Text broken after spaces, commas and slashes into lines that fit a width; width and text size
-    in points.
+    """Text broken after spaces, commas and slashes, but not at a minus, into lines that fit a
+    width; width and text size in points.
     """
     lines = []
     for paragraph in text.splitlines():
         line = ""
-        for word in re.findall(r"[^ ,/]*[ ,/]*", paragraph):
+        for word in re.findall(r"[^ ,/]*(?: - [^ ,/]*)?[ ,/]*", paragraph):
             if line and _width(line + word.rstrip(), size) > room:
                 lines.append(line.rstrip())
                 line = ""

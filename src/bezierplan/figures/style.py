@@ -116,6 +116,15 @@ PUBLISHED_MARK = {
 
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
 
+# In the legend, an interval as a bar or as a band: of no method's colour, because all have one.
+INTERVAL = {"color": "0.35", "linewidth": 0.8, "label": "95 % interval"}
+INTERVAL_BAND = {
+    "facecolor": "0.88",
+    "edgecolor": "0.35",
+    "linewidth": 0.4,
+    "label": "95 % interval",
+}
+
 # In the legend, the mark of a statistic to which not all runs contribute.
 HOLLOW = {
     "linestyle": "",
@@ -139,6 +148,10 @@ MOST_BANDS = 5
 # milliseconds. Values that differ by more than this factor are drawn on a logarithmic axis. An axis
 # shows at least this share of its values.
 _SHORT, _WIDE_RANGE, _LEAST_SPAN = 0.1, 10.0, 0.01
+
+# An axis that is logarithmic down to near 0 shows so many decades below that of its largest value,
+# if its smallest one is less than this share of the largest.
+_DECADES, _NEAR_ZERO = 2, 1e-6
 
 # Height of a panel with two unlike axes, as a share of its width: by default, and if names beside
 # it need height and leave little width. Room between panels, in inches.
@@ -223,20 +236,39 @@ def is_wide(values: Iterable[float]) -> bool:
     return len(known) > 1 and bool(known.min() > 0 and known.max() > _WIDE_RANGE * known.min())
 
 
-def fit(axis: Any, values: Iterable[float], middles: Iterable[float]) -> None:
+def fit(
+    axis: Any,
+    values: Iterable[float],
+    middles: Iterable[float],
+    *,
+    near_zero: bool = False,
+    wide: bool = False,
+) -> None:
     """Scale an axis of measured values: logarithmic, with plain numbers, if what is compared
     differs widely; otherwise no closer than a hundredth of the values, so that what differs by less
     looks equal.
 
-    middles: a typical value of each method or group that is compared.
+    middles: a typical value of each method or group that is compared. near_zero: whether a wide
+    axis of values that reach 0 is linear there and logarithmic beyond. wide: whether they count as
+    differing widely in any case.
     """
     import numpy as np
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
     known = np.array([value for value in values if np.isfinite(value)])
     set_limits = axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim
-    if is_wide(middles) and known.min() > 0:
-        (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
+    set_scale = axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale
+    wide = len(known) > 0 and (wide or is_wide(middles))
+    if wide and near_zero and -_NEAR_ZERO < known.min() / known.max() < _NEAR_ZERO:
+        least = 10.0 ** (np.floor(np.log10(known.max())) - _DECADES)
+        set_scale("symlog", linthresh=least, linscale=0.6)
+        set_limits(-0.15 * least, known.max() * 1.5)
+        decades = least * 10.0 ** np.arange(_DECADES + 2)
+        axis.set_major_locator(FixedLocator([0.0, *decades[decades <= known.max() * 1.5]]))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+        return
+    if wide and known.min() > 0:
+        set_scale("log")
         set_limits(known.min() / 1.5, known.max() * 1.5)
         axis.set_major_locator(
             LogLocator(subs=(1.0,) if known.max() > 300 * known.min() else (1.0, 3.0))

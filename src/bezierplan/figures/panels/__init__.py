@@ -122,6 +122,7 @@ class Panel(Model, ABC):
     of which the runs that it shows have one value. drives: whether these are drives. tracks:
     whether their planner must have `track`. fewest_methods: how many methods it compares at least.
     named_rows: whether names or last values stand beside it, which take the room of a second panel.
+    to_scale: whether it is as high as a map is, and can be drawn in half a text column.
     """
 
     published_drawn: ClassVar[bool] = False
@@ -132,6 +133,7 @@ class Panel(Model, ABC):
     tracks: ClassVar[bool] = False
     fewest_methods: ClassVar[int] = 1
     named_rows: ClassVar[bool] = False
+    to_scale: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Label = Field(

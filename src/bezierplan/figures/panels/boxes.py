@@ -148,8 +148,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     medians = frame.loc[frame["part"] == "median", "value"]
     # Labels such as 0.0025 would touch each other.
     axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
-    if style.is_wide(medians):
-        style.fit(axes.xaxis, frame["value"], medians)
+    # A far outlier would compress all boxes.
+    spread = [*medians[medians > 0], frame["value"].max()]
+    if options.metric in scene.wide or style.is_wide(spread):
+        style.fit(axes.xaxis, frame["value"], spread, near_zero=True, wide=True)
         far = set()
     else:
         far = _draw_far(axes, boxes, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
@@ -170,7 +172,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             "label": "published minimum and maximum",
             "zorder": 5,
         },
-        "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
+        "published": {
+            **style.PUBLISHED_MARK,
+            "clip_on": False,
+            "label": "published mean",
+            "zorder": 5,
+        },
     }
     for part, look in marks.items():
         points = [
@@ -181,21 +188,21 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         ]
         if points:
             axes.plot(*zip(*points), **({"linestyle": ""} | look))
-    none = [height for height, parts in enumerate(boxes) if "none" in parts]
-    if none:
-        cross = {
-            "color": style.BLACK,
-            "linestyle": "",
-            "marker": "x",
-            "markersize": 4,
-            "clip_on": False,
-            "label": "no value",
-        }
-        axes.plot(np.ones(len(none)), none, transform=axes.get_yaxis_transform(), **cross)
+    of_feasible = metrics.METRICS[options.metric].feasible_only
+    for height, parts in enumerate(boxes):
+        if "none" in parts:
+            axes.text(
+                0.5,
+                height,
+                "no feasible run" if of_feasible else "no value",
+                transform=axes.get_yaxis_transform(),
+                ha="center",
+                va="center_baseline",
+            )
     axes.set_ylim(len(groups) - 0.4, -0.6)
     names = [style.printed(group, by, scene.labels) for group in groups]
     partial = {}
-    if metrics.METRICS[options.metric].feasible_only:
+    if of_feasible:
         partial = _partial_shares(frame.dropna(subset=[by]).groupby(by).first())
     axes.set_yticks(
         range(len(groups)),
@@ -209,6 +216,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if scene.milliseconds:
         style.in_milliseconds(axes.xaxis)
     told = runs_note(frame, "box", "method" if by == "method" else "row")
+    if axes.get_xscale() == "symlog":
+        told += "; the axis is linear up to the first number after 0, then logarithmic"
     if partial:
         told += "; in parentheses: share of feasible runs, below 100 %"
     middles = [parts.get("median", [np.nan])[0] for parts in boxes]

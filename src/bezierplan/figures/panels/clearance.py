@@ -75,7 +75,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         if not arrived:
             not_there = style.HOLLOW | {"label": "hollow: ends without arrival"}
             axes.plot([], [], **not_there)
-    axes.axhline(0.0, label="obstacle", **style.BOUND)
+    axes.axhline(0.0, label="surface of an obstacle", **style.BOUND)
     axes.set_xlabel("step")
     axes.set_ylabel(f"least distance to an obstacle ({scene.unit})")
     axes.grid(visible=True)

@@ -121,6 +121,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.xaxis,
         itertools.chain(*(frame[end] for end in ("value", "low95", "high95", "published"))),
         frame.groupby(hue)["value"].median(),
+        wide=options.metric in scene.wide,
     )
     if scene.milliseconds:
         style.in_milliseconds(axes.xaxis)
@@ -145,7 +146,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> None:
     """Dots at heights (n,) with their intervals, and the published numbers."""
     thin = {"color": look["color"], "linewidth": 0.8}
-    axes.hlines(at, frame["low95"], frame["high95"], zorder=3, label="95 % interval", **thin)
+    axes.hlines(at, frame["low95"], frame["high95"], zorder=3, **thin)
+    axes.plot([], [], **style.INTERVAL)
     whole = (frame["feasible_runs"] == frame["runs"]).to_numpy()
     axes.plot(frame["value"][whole], at[whole], zorder=4, **look)
     none = frame["value"].isna().to_numpy()

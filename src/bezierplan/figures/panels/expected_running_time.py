@@ -15,6 +15,8 @@ from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import pandas as pd
     from matplotlib.axes import Axes
 
@@ -28,6 +30,9 @@ _APART = 0.18
 # Distance of the place for what never happens from the largest finite value and from the last
 # label, as shares of the axis.
 _NEVER, _CLEAR = 0.12, 0.2
+
+# The least ratio of the place for what never happens to the largest finite value.
+_LEAST_APART = 4.0
 
 _NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)"}
 
@@ -135,7 +140,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, a line of marks per method. An infinite time stands at the right
     edge.
     """
-    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator
+    from matplotlib.ticker import FixedLocator, FuncFormatter
 
     methods, targets = (
         style.in_order(frame["method"], options.where),
@@ -145,7 +150,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     shown = frame[["value", "low95", "high95"]].to_numpy(dtype=float)
     finite = shown[np.isfinite(shown) & (shown > 0)]
     low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
-    never = high * max((high / low) ** _NEVER, 4.0)
+    never = high * max((high / low) ** _NEVER, _LEAST_APART)
     axes.set_xscale("log")
     axes.set_xlim(low / 2, never * 1.5)
     axes.set_xlabel(_NAMES[options.cost])
@@ -162,8 +167,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             color=look["color"],
             linewidth=0.8,
             zorder=2,
-            label="95 % interval",
         )
+        axes.plot([], [], **style.INTERVAL)
         mark = look | {"linestyle": "", "zorder": 3}
         axes.plot(times["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
         axes.plot(
@@ -173,16 +178,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         )
     axes.axvline(never / 1.8, color="0.5", linewidth=0.6, linestyle=(0, (1, 2)), zorder=1)
     # So far from the last place that their labels do not touch.
-    last = never / (never / low) ** _CLEAR
+    last = never / (3 * never / low) ** _CLEAR
     steps = (1.0,) if high > 100 * low else (1.0, 3.0)
-    ticks = _thinned(
-        [
-            tick
-            for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high)
-            if low / 2 <= tick <= last
-        ],
-        never / low,
-    )
+    decades = 10.0 ** np.arange(np.floor(np.log10(low / 2)), np.ceil(np.log10(high)) + 1)
+    places = np.sort(np.outer(decades, steps).ravel())
+    ticks = _thinned(places[(places >= low / 2) & (places <= last)], never / low)
     thousand = 1000 if options.cost == "cpu_s" and scene.milliseconds else 1
     if thousand > 1:
         axes.set_xlabel(f"{_NAMES['cpu_s'].removesuffix('(s)')}(ms)")
@@ -235,10 +235,8 @@ def _seen(frame: pd.DataFrame, methods: list[str], names: list[str]) -> str:
     return "; ".join(filter(None, clauses))
 
 
-def _thinned(ticks: list[float], span: float) -> list[float]:
-    """Those of increasing ticks whose labels do not touch on an axis that spans a factor: within a
-    decade a locator gives many.
-    """
+def _thinned(ticks: Iterable[float], span: float) -> list[float]:
+    """Those of increasing ticks whose labels do not touch on an axis that spans a factor."""
     kept: list[float] = []
     for tick in ticks:
         if not kept or tick >= kept[-1] * span**_CLEAR:

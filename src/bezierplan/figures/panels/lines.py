@@ -21,6 +21,7 @@ from bezierplan.schema.model import (
     Metric,
     NumberColumn,
     PrintedTable,
+    Quantity,
     Repeat,
     Where,
     listed,
@@ -78,7 +79,7 @@ class Options(TablePanel):
         description="whether lines join points, true or false: false where x is a name in "
         "numbers, without order",
     )
-    sorted_by: NumberColumn = Field(
+    sorted_by: Quantity = Field(
         None,
         description="of runs, with joined: false, a column of numbers of the runs table: values of "
         "x stand in the order of its means, each at the same distance from the next",
@@ -254,11 +255,12 @@ def published(
     return sorted(numbers["value"].unique())
 
 
-def interval_band(
-    axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str, label: str
-) -> None:
+def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str) -> None:
     """The interval of a line as a band in the line's colour."""
-    axes.fill_between(x, low, high, label=label, zorder=1.5, **style.interval_band(colour))
+    from matplotlib.patches import Rectangle
+
+    axes.fill_between(x, low, high, zorder=1.5, **style.interval_band(colour))
+    axes.add_patch(Rectangle((0, 0), 0, 0, **style.INTERVAL_BAND))
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
@@ -324,6 +326,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.yaxis,
         itertools.chain(*ends),
         [] if hue is None else frame.groupby(hue)["value"].median(),
+        wide=options.metric in scene.wide,
     )
     if scene.milliseconds:
         style.in_milliseconds(axes.yaxis)
@@ -361,9 +364,7 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, band
     them.
     """
     if bands:
-        interval_band(
-            axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval"
-        )
+        interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"])
     else:
         axes.vlines(
             frame[x],
@@ -372,8 +373,8 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, band
             color=look["color"],
             linewidth=0.8,
             zorder=2,
-            label="95 % interval",
         )
+        axes.plot([], [], **style.INTERVAL)
     axes.plot(frame[x], frame["value"], zorder=3, **look)
     _draw_hollow(axes, frame[x], frame, look)
 
@@ -400,8 +401,8 @@ def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dic
         color=look["color"],
         linewidth=0.8,
         zorder=2,
-        label="95 % interval",
     )
+    axes.plot([], [], **style.INTERVAL)
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
     _draw_hollow(axes, places, frame, look)
 

@@ -106,9 +106,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         places = np.concatenate([[1.0], own["ratio"], [end]])
         heights = np.concatenate([[0.0], own["share"], own["share"].iloc[-1:]])
         # One mark each, at the end, side by side: lines may end at one height, and marks on the way
-        # would look like data.
+        # would look like data; not before the last step, where the line is lower.
         axes.plot(places, heights, drawstyle="steps-post", clip_on=False, **look | {"marker": ""})
-        aside = end ** (1 - _MARK * (number + 0.5))
+        aside = max(end ** (1 - _MARK * (number + 0.5)), places[-2])
         axes.plot(aside, heights[-1], clip_on=False, **look | {"linestyle": ""})
         axes.plot([], [], label=scene.labels.get(method, method), **look)
     axes.set_xscale("log")

@@ -223,7 +223,8 @@ def _draw_clearance(axes: Axes, path: pd.DataFrame, unit: str) -> Note:
     axes.plot(path["along"], path["clearance"], **_LOOK["path"])
     axes.axhline(0.0, label="surface of a sphere", **style.BOUND)
     axes.set_xlim(0, 1)
-    axes.set_ylim(bottom=min(0.0, path["clearance"].min()))
+    low, high = min(0.0, path["clearance"].min()), path["clearance"].max()
+    axes.set_ylim(bottom=low - _MARGIN * (high - low))  # the line of the surfaces stays visible
     axes.set_xlabel("share of the path's length")
     axes.set_ylabel(f"clearance ({unit})")
     axes.grid(visible=True)
