@@ -996,7 +996,7 @@ def test_view_cuts_what_is_drawn_but_not_what_is_listed(tmp_path):
 
 def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
     figure = drawn(comparison(), gallery(10), 5, tmp_path)
-    assert figure.get_label().count("length 36.00 m") == 1, "no heading has room for it"
+    assert words(figure).count("length 36.00 m") == 10, "a third line has room for it"
     assert "(a), (b), (c)" in figure.get_label(), "what panels have in common is told once"
     assert "run study/routes/field,points=3/smooth/03; " in figure.get_label()
     assert [axes.get_ylabel() for axes in figure.axes] == [*["y (m)", "", "", "", ""] * 2]

@@ -220,10 +220,10 @@ def _heading(letter: str, title: list[str], note: Note, room: float, most: int) 
     named = _lines(letter + ", ".join(title), room) <= most
     told = [*([] if named else title[1:]), *([note.told] if note.told else [])]
     shown = title if named else title[:1]
-    # In one line, or else with the method on the second, or else broken anywhere.
+    # With the method on a line of its own, if that takes no more lines.
     apart = _broken(letter + ",\n".join(shown), room, style.TITLE_TEXT)
     heading = _broken(letter + ", ".join(shown), room, style.TITLE_TEXT)
-    if "\n" in heading and apart.count("\n") < most:
+    if apart.count("\n") <= heading.count("\n"):
         heading = apart
     words = _broken(note.shown, room, style.SMALLEST_TEXT)
     if words and heading.count("\n") + words.count("\n") + 2 > most:
