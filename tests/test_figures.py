@@ -351,10 +351,10 @@ def test_paths_side_by_side(tmp_path):
 def test_paths_side_by_side_say_who_has_none(tmp_path):
     found = results(feasible=(False, False, False))
     panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method"}
-    assert any(
-        "(quadratic pieces) no path" in " ".join(text.split())
-        for text in words(drawn(found, [panel], 1, tmp_path))
-    )
+    told = words(drawn(found, [panel], 1, tmp_path))
+    assert any("(quadratic pieces) no path" in " ".join(text.split()) for text in told)
+    assert "0 of 1 have a path" in told
+    assert not any("have a path" in text for text in words(drawn(results(), [panel], 1, tmp_path)))
 
 
 def test_paths_side_by_side_give_the_measure_that_is_asked_for(tmp_path):
@@ -656,6 +656,18 @@ def test_lines_draw_the_table_of_a_function(tmp_path):
     joined = [axes.lines[0].get_linestyle() for axes in figure.axes]
     assert [len(axes.lines[0].get_xdata()) for axes in figure.axes] == [9, 300]
     assert joined == ["-", "None"], "many points are not joined"
+
+
+def test_few_points_of_a_table_are_marked_and_the_exact_path_looks_as_everywhere():
+    table = pd.DataFrame({"points": [1, 2, 3, 4] * 2, "value": [9.0, 8, 7.5, 7.2] + [7.1] * 4})
+    table["path"] = ["best found"] * 4 + ["exact shortest path"] * 4
+    panel = options_of(lines, data="any", x="points", metric="value", hue="path")
+    axes = Figure().subplots()
+    lines.draw(axes, lines.data(table, panel), scene(results()), panel)
+    looks = {line.get_label(): line for line in axes.lines}
+    assert looks["best found"].get_marker() == "s"
+    assert looks["exact shortest path"].get_marker() == ""
+    assert looks["exact shortest path"].get_color() == style.BOUND["color"]
 
 
 def test_axes_name_their_values_in_full():

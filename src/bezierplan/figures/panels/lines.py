@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 # Where lines do not join points, the groups at one x take this share of the distance to the next.
 _SPREAD = 0.7
 
-# At most so many values, evenly spaced, each get a tick.
+# At most so many values, evenly spaced, each get a tick, and of a table a mark.
 _FEW = 5
 
 # Above this many points, only the points are drawn: lines between jumping values would cover the
@@ -348,9 +348,15 @@ def _seen(statistics: pd.DataFrame, scene: Any, options: Options) -> str:
 
 
 def _looks(groups: list[Any], frame: pd.DataFrame, scene: Any) -> list[dict]:
-    """Looks of lines; of the only line that of its method, if all its runs have one."""
+    """Looks of lines; of the only line that of its method, if all its runs have one; of the exact
+    shortest path that which it has everywhere.
+    """
     if groups != [None]:
-        return style.lines(groups, scene.looks)
+        exact = LIMITS["bound"]["label"]
+        others = style.lines([group for group in groups if group != exact], scene.looks)
+        return [
+            {**style.BOUND, "marker": ""} if group == exact else others.pop(0) for group in groups
+        ]
     methods = frame["method"].dropna().unique() if "method" in frame else []
     return (
         style.lines(list(methods), scene.looks)
@@ -423,9 +429,7 @@ def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str) -> None:
 
 
 def _joined(look: dict, points: int) -> dict:
-    """The style of a line through the given number of points of a table."""
-    return look | (
-        {"marker": ""}
-        if points <= _MOST_JOINED
-        else {"linestyle": "", "marker": ".", "markersize": 1.2}
-    )
+    """The style of a line through the given number of points of a table: few are marked."""
+    if points > _MOST_JOINED:
+        return look | {"linestyle": "", "marker": ".", "markersize": 1.2}
+    return look if points <= _FEW else look | {"marker": ""}

@@ -589,7 +589,11 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
         ["part", "x", "y"]
     )
     draw_parts(axes, once, narrow=scene.narrow, clip=options.view is not None)
-    return Note("", f"{axis_label(options.measure, scene)}: {', '.join(clauses)}")
+    found = frame.loc[frame["part"] == "path", hue].nunique()
+    return Note(
+        "" if found == len(values) else f"{found} of {len(values)} have a path",
+        f"{axis_label(options.measure, scene)}: {', '.join(clauses)}",
+    )
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
