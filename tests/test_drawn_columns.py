@@ -53,6 +53,7 @@ def statistics(method):
             "high95": [own + 8, own + 9, own + 10],
             "part": "statistic",
             "method": method,
+            "n": COUNTS["runs"],
             **COUNTS,
         }
     )

@@ -24,6 +24,7 @@ from bezierplan.figures.panels import (
     Sources,
     along_path,
     boxes,
+    clearance,
     convergence,
     dots,
     drawing,
@@ -350,10 +351,10 @@ def test_paths_side_by_side(tmp_path):
 def test_paths_side_by_side_say_who_has_none(tmp_path):
     found = results(feasible=(False, False, False))
     panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method"}
-    assert any(
-        "(quadratic pieces) no path" in " ".join(text.split())
-        for text in words(drawn(found, [panel], 1, tmp_path))
-    )
+    told = words(drawn(found, [panel], 1, tmp_path))
+    assert any("(quadratic pieces) no path" in " ".join(text.split()) for text in told)
+    assert "0 of 1 have a path" in told
+    assert not any("have a path" in text for text in words(drawn(results(), [panel], 1, tmp_path)))
 
 
 def test_paths_side_by_side_give_the_measure_that_is_asked_for(tmp_path):
@@ -657,6 +658,18 @@ def test_lines_draw_the_table_of_a_function(tmp_path):
     assert joined == ["-", "None"], "many points are not joined"
 
 
+def test_few_points_of_a_table_are_marked_and_the_exact_path_looks_as_everywhere():
+    table = pd.DataFrame({"points": [1, 2, 3, 4] * 2, "value": [9.0, 8, 7.5, 7.2] + [7.1] * 4})
+    table["path"] = ["best found"] * 4 + ["exact shortest path"] * 4
+    panel = options_of(lines, data="any", x="points", metric="value", hue="path")
+    axes = Figure().subplots()
+    lines.draw(axes, lines.data(table, panel), scene(results()), panel)
+    looks = {line.get_label(): line for line in axes.lines}
+    assert looks["best found"].get_marker() == "s"
+    assert looks["exact shortest path"].get_marker() == ""
+    assert looks["exact shortest path"].get_color() == style.BOUND["color"]
+
+
 def test_axes_name_their_values_in_full():
     """No offset such as +1.414e2 above the axis, on which the subtitle stands."""
     with mpl.rc_context(style.SETTINGS):
@@ -678,12 +691,84 @@ def test_what_has_no_order_is_not_joined(tmp_path):
         "joined": False,
     }
     axes = drawn(comparison(), [panel], 1, tmp_path).axes[0]
-    marks = [line for line in axes.lines if len(line.get_xdata()) == 3]
+    marks = [
+        line
+        for line in axes.lines
+        if len(line.get_xdata()) == 3 and line.get_markerfacecolor() != style.FREE
+    ]
     assert [line.get_linestyle() for line in marks] == ["None"] * 3
     places = np.array([line.get_xdata() for line in marks])
     np.testing.assert_allclose(places.mean(axis=0), [2, 3, 5])
     assert (np.diff(places, axis=0) > 0.1).all(), "groups stand beside each other"
     assert list(axes.get_xticks()) == [2, 3, 5]
+
+
+def test_what_has_no_order_can_be_sorted_by_a_number(tmp_path):
+    found = comparison()
+    found.runs["bound"] = found.runs["points"].map({2: 18.0, 3: 19.0, 5: 17.0})
+    panel = {
+        "kind": "lines",
+        "experiment": "routes",
+        "x": "points",
+        "metric": "length",
+        "hue": "method",
+        "joined": False,
+        "sorted_by": "bound",
+    }
+    axes = drawn(found, [panel], 1, tmp_path).axes[0]
+    assert list(axes.get_xticks()) == [0, 1, 2]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["5", "2", "3"]
+    assert axes.get_xlabel() == "points, sorted by bound"
+    frame = lines.data(found, panels_of([panel])[0])
+    assert frame.groupby("points")["place"].unique().map(list).to_dict() == {2: [1], 3: [2], 5: [0]}
+
+
+def test_names_that_lines_join_are_not_sorted():
+    with pytest.raises(ValueError, match="sorted_by: needs experiment and joined: false"):
+        options_of(lines, x="points", metric="length", sorted_by="bound")
+
+
+@pytest.mark.parametrize(("metric", "hollow"), [("length", True), ("objective", False)])
+@pytest.mark.parametrize("joined", [True, False])
+def test_a_statistic_of_some_runs_has_an_open_mark(metric, hollow, joined, tmp_path):
+    """Of the comparison's runs three quarters are feasible, and only these have a length."""
+    panel = {"kind": "lines", "experiment": "routes", "x": "points", "metric": metric}
+    figure = drawn(comparison(), [panel | {"hue": "method", "joined": joined}], 1, tmp_path)
+    assert ("hollow: some runs are not feasible" in words(figure)) == hollow
+    opened = [
+        line
+        for line in figure.axes[0].lines
+        if line.get_markerfacecolor() == style.FREE and len(line.get_xdata())
+    ]
+    assert [len(line.get_xdata()) for line in opened] == ([3, 3, 3] if hollow else [])
+
+
+@pytest.mark.parametrize(("slowest", "unit"), [(0.02, "ms"), (2.0, "s")])
+def test_all_panels_of_a_figure_have_one_unit_of_time(slowest, unit, tmp_path):
+    found = comparison()
+    slow = found.runs["method"] == "random"
+    times = np.where(slow, slowest, 0.001)
+    found = found._replace(
+        runs=found.runs.assign(cpu_s=times, evaluations=100, condition="field", bound=24.0)
+    )
+    kinds = [
+        {"kind": "lines", "x": "points"},
+        {"kind": "boxes"},
+        {"kind": "dots", "x": "points", "hue": "method"},
+    ]
+    own = [
+        panel | {"experiment": "routes", "metric": "cpu_s", "where": {"method": methods}}
+        for panel in kinds
+        for methods in (["random"], ["coarse"])
+    ]
+    own += [
+        {"kind": "expected_running_time", "experiment": "routes", "cost": cost}
+        for cost in ("cpu_s", "evaluations")
+    ]
+    axes = drawn(found, own, 2, tmp_path).axes
+    measured = [each.get_ylabel() for each in axes[:2]] + [each.get_xlabel() for each in axes[2:7]]
+    assert all(label.endswith(f"({unit})") for label in measured), measured
+    assert axes[7].get_xlabel() == "expected evaluations"
 
 
 def test_boxes_show_published_ends_and_a_limit(tmp_path):
@@ -704,6 +789,63 @@ def test_boxes_show_published_ends_and_a_limit(tmp_path):
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
     figure = drawn(comparison(ends), [panel], 1, tmp_path)
     assert {"published minimum and maximum", "published limit: 33.5 units"} <= set(words(figure))
+
+
+def test_boxes_of_feasible_runs_alone_say_how_many_there_are(tmp_path):
+    found = comparison()
+    found.runs.loc[found.runs["method"] == "coarse", "feasible"] = True
+    named = {}
+    for metric in ("length", "objective"):
+        panel = {"kind": "boxes", "experiment": "routes", "metric": metric}
+        axes = drawn(found, [panel], 1, tmp_path).axes[0]
+        named[metric] = [label.get_text() for label in axes.get_yticklabels()]
+    assert named["length"] == ["coarse", "random (75 %)", "smooth (quadratic pieces) (75 %)"]
+    assert named["objective"] == ["coarse", "random", "smooth (quadratic pieces)"]
+
+
+def test_a_share_is_not_rounded_up_to_all():
+    counts = pd.DataFrame({"runs": [1000, 1000, 10], "feasible_runs": [999, 1000, 0]})
+    assert boxes._partial_shares(counts) == {0: "99 %", 2: "0 %"}
+
+
+def test_intervals_on_a_logarithmic_axis_stay_within_the_panel(tmp_path):
+    found = comparison()
+    found.runs["length"] *= np.where(found.runs["method"] == "random", 1e3, 1)
+    found.runs.loc[found.runs["repeat"] == 1, "length"] *= 30
+    for kind in ("lines", "dots"):
+        panel = {"kind": kind, "experiment": "routes", "x": "points", "hue": "method"}
+        (panel,) = panels_of([panel | {"metric": "length"}])
+        frame = kinds_of_panel.kind_module(kind).data(found, panel)
+        axes = sheet.draw([panel], frame.assign(panel=0), scene(found), 1).axes[0]
+        scale, ends = (
+            (axes.get_yscale(), axes.get_ylim())
+            if kind == "lines"
+            else (axes.get_xscale(), axes.get_xlim())
+        )
+        assert scale == "log"
+        assert ends[0] < frame["low95"].min() < frame["high95"].max() < ends[1], kind
+
+
+def test_the_end_of_a_drive_says_whether_it_arrived():
+    drives = {"mine": [3.0, 2.0, 1.0], "other": [3.0, -1.0]}
+    frame = pd.concat(
+        pd.DataFrame(
+            {
+                "method": method,
+                "run": f"study/moving/field/{method}/0",
+                "step": range(1, len(clear) + 1),
+                "clearance": clear,
+                "arrived": method == "mine",
+            }
+        )
+        for method, clear in drives.items()
+    )
+    axes = Figure().subplots()
+    clearance.draw(axes, frame, scene(results()), options_of(clearance))
+    ends = [line for line in axes.lines if line.get_marker() != "" and len(line.get_xdata()) == 1]
+    assert [(*line.get_xydata()[0],) for line in ends] == [(3, 1), (2, -1)]
+    assert [line.get_markerfacecolor() == style.FREE for line in ends] == [False, True]
+    assert "hollow: ends without arrival" in axes.get_legend_handles_labels()[1]
 
 
 def test_boxes_end_at_the_last_value_within_reach():
@@ -743,7 +885,7 @@ def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
             "metric": "objective",
             "statistic": "mean",
             "n": 10,
-            "value": [400.0, 900.0, 650.0, 0.25, 500.0],
+            "value": [150.0, 240.0, 180.0, 0.25, 200.0],
         }
     )
     told = words(
@@ -754,8 +896,8 @@ def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
             tmp_path,
         )
     )
-    numbers = {"400 to 900", "0.25", "500", "400", "650", "900"}
-    assert sorted(text for text in told if text in numbers) == ["0.25", "400 to 900", "500"]
+    numbers = {"150 to 240", "0.25", "200", "150", "180", "240"}
+    assert sorted(text for text in told if text in numbers) == ["0.25", "150 to 240", "200"]
     assert "published mean, off the scale" in told
 
 
@@ -866,12 +1008,94 @@ def test_view_cuts_what_is_drawn_but_not_what_is_listed(tmp_path):
 
 def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
     figure = drawn(comparison(), gallery(10), 5, tmp_path)
-    assert figure.get_label().count("length 36.00 m") == 1, "no heading has room for it"
+    assert words(figure).count("length 36.00 m") == 10, "a third line has room for it"
     assert "(a), (b), (c)" in figure.get_label(), "what panels have in common is told once"
     assert "run study/routes/field,points=3/smooth/03; " in figure.get_label()
     assert [axes.get_ylabel() for axes in figure.axes] == [*["y (m)", "", "", "", ""] * 2]
     assert [axes.get_xlabel() for axes in figure.axes] == [""] * 5 + ["x (m)"] * 5
     assert figure.axes[0].get_title(loc="left") == "(a) n = 0, smooth\n(quadratic pieces)"
+
+
+@pytest.mark.parametrize(
+    ("own", "columns"),
+    [
+        (gallery(2), 1),
+        (gallery(3), 2),
+        (panels()[1:3], 1),
+        (comparing_panels()[:1] * 6, 1),
+        (comparing_panels()[2:3] * 4, 1),
+        (comparing_panels()[2:3] * 5, 2),
+        (panels()[1:2] * 6, 2),
+    ],
+)
+def test_a_narrow_sheet_is_no_longer_than_a_page_where_half_a_column_is_enough(own, columns):
+    assert sheet.narrow_columns(panels_of(own)) == columns
+
+
+def test_a_method_stands_on_a_line_of_its_own_if_one_line_is_too_short(tmp_path):
+    named = panels()[0] | {"title": "from 0 to 15"}
+    figure = drawn(results(), [named, panels()[1], panels()[1]], 3, tmp_path)
+    titles = [axes.get_title(loc="left") for axes in figure.axes[:2]]
+    assert titles[0] == "(a) from 0 to 15,\nsmooth (quadratic pieces)"
+
+
+def test_panels_of_one_metric_have_one_kind_of_axis(tmp_path):
+    """In one of them values differ by more than ten."""
+    found = comparison()
+    found.runs["length"] *= np.where(found.runs["method"] == "random", 1e3, 1)
+    own = [
+        {"kind": kind, "experiment": "routes", "x": "points", "hue": "method", "metric": metric}
+        | {"where": {"method": methods}}
+        for kind, metric, methods in (
+            ("dots", "length", ["smooth", "coarse"]),
+            ("dots", "length", ["smooth", "random"]),
+            ("dots", "objective", ["smooth", "coarse"]),
+        )
+    ]
+    figure = drawn(found, own, 3, tmp_path)
+    assert [axes.get_xscale() for axes in figure.axes] == ["log", "log", "linear"]
+    assert all(axes.get_xlabel() for axes in figure.axes), "also those that are drawn again"
+    assert [len(axes.get_yticks()) for axes in figure.axes] == [3, 3, 3]
+
+
+def test_boxes_that_reach_zero_are_seen_beside_large_ones(tmp_path):
+    found = comparison()
+    exact = found.runs["method"] == "random"
+    found.runs["length"] = np.where(exact, 18.5, 18.5 + 0.01 * 4.0 ** found.runs["repeat"])
+    panel = {"kind": "boxes", "experiment": "routes", "metric": "gap"}
+    figure = drawn(found, [panel], 1, tmp_path)
+    (axes,) = figure.axes
+    assert axes.get_xscale() == "symlog"
+    assert axes.get_xlim()[0] < 0 < axes.get_xlim()[1]
+    assert axes.get_xticks()[0] == 0
+    assert "the axis is linear up to the first number after 0" in figure.get_label()
+
+
+def test_a_row_without_a_box_says_why(tmp_path):
+    found = comparison()
+    found.runs["feasible"] &= found.runs["method"] != "random"
+    panel = {"kind": "boxes", "experiment": "routes", "metric": "length"}
+    (axes,) = drawn(found, [panel], 1, tmp_path).axes
+    assert [(*text.get_position(), text.get_text()) for text in axes.texts] == [
+        (0.5, 1, "no feasible run")
+    ]
+    assert axes.get_yticklabels()[1].get_text() == "random (0 %)"
+
+
+@pytest.mark.parametrize(
+    ("lines", "offset"),
+    [
+        ([[8.0, 0.5]], (5, 13)),
+        ([[0.5, 8.0]], (13, 5)),
+        ([[8.0, 0.2], [0.2, 8.0]], (11, 11)),
+        ([], (13, 5)),
+    ],
+)
+def test_a_letter_stands_aside_of_the_lines_that_end_there(lines, offset):
+    axes = Figure().subplots()
+    axes.set(xlim=(0, 40), ylim=(0, 40))
+    paths._write_letter(axes, np.zeros(2), "S", np.reshape(lines, (-1, 2)))
+    assert tuple(axes.texts[0].xyann) == offset
 
 
 def test_along_path_leaves_out_where_the_curve_stands_still(tmp_path):

@@ -344,3 +344,18 @@ def test_kinds_of_comparison_say_in_the_caption_how_to_read_them():
     assert "methods whose bars overlap cannot be distinguished" in notes[0].told
     assert "never: at least half of them are not solved" in notes[1].told
     assert notes[2].told == "6 problems; solved by the median run of any method: 6"
+
+
+def test_marks_of_profiles_lie_on_their_lines():
+    """Not before the last step, where the line is lower."""
+    profile = all_kinds().query("panel == 2").drop(columns="panel")
+    late = pd.concat([profile, profile.head(1).assign(ratio=1.31, share=0.9)])
+    axes = Figure().subplots()
+    performance_profile.draw(axes, late, scene(results()), panel_of(COMPARED[2]))
+    marks = [line for line in axes.lines if len(line.get_xdata()) == 1]
+    lines = [line for line in axes.lines if len(line.get_xdata()) > 1]
+    assert len(marks) == len(lines) == 3
+    for mark, line in zip(marks, lines):
+        (at,), (height,) = mark.get_xdata(), mark.get_ydata()
+        step = np.searchsorted(line.get_xdata(), at, side="right") - 1
+        assert line.get_ydata()[step] == height

@@ -335,6 +335,24 @@ def test_figure_in_the_page_keeps_its_words_and_its_shape(tmp_path):
     assert pictures.size(tmp_path / "a.svg") == (144, 72)
 
 
+@pytest.mark.parametrize("seen", ["", "(a) lowest mean: b (1), highest: c (2)."])
+def test_a_picture_says_what_is_seen_to_those_who_do_not_see_it(seen, tmp_path):
+    from matplotlib.figure import Figure
+
+    from bezierplan.figures import sheet
+
+    folder = tmp_path / "one" / "figures"
+    folder.mkdir(parents=True)
+    sheet.save(Figure(figsize=(2, 1)), str(folder / "a.svg"), str(folder / "a.png"))
+    (folder / "a.txt").write_text(f"(a) run one/first/b/0.\n{seen}\n")
+    found = gather._figure("one", "a", {"title": "Lengths", "caption": "Lengths."}, tmp_path)
+    assert (found.told, found.seen) == ("(a) run one/first/b/0.", seen)
+    shown = page()
+    studies = {"one": shown.studies["one"].model_copy(update={"figures": [found]})}
+    text = build.html(shown.model_copy(update={"studies": studies}), tmp_path)
+    assert f'alt="a: Lengths{". " if seen else ""}{seen}"' in text
+
+
 # --------------------------------------------------------------------------------------------------
 # Tables
 

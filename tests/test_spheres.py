@@ -282,7 +282,17 @@ def test_the_figure_shows_what_its_runs_are():
             < spheres.length(control[None])
             == free["length"].min()
         )
-    axes = sheet.draw(panels, frame, sheet.Scene({}, bare, {}, "unit"), 2).axes[:2]
+        path = own[own["part"] == "path"]
+        gaps = np.linalg.norm(
+            path[["x", "y", "z"]].to_numpy()[:, None] - bare["spheres"].centres, axis=2
+        )
+        np.testing.assert_allclose(path["clearance"], (gaps - bare["spheres"].radii).min(axis=1))
+        assert path["clearance"].min() > -spheres.TOLERANCE
+        assert path["along"].iloc[[0, -1]].to_list() == [0, 1]
+        assert path["along"].is_monotonic_increasing
+    *axes, clearance = sheet.draw(panels, frame, sheet.Scene({}, bare, {}, "unit"), 3).axes
+    assert clearance.get_ylabel() == "clearance (unit)"
+    assert clearance.lines[0].get_ydata().tolist() == path["clearance"].to_list()
     assert [(each.get_xlabel(), each.get_ylabel()) for each in axes] == [
         ("x (unit)", "y (unit)"),
         ("x (unit)", "z (unit)"),
@@ -293,6 +303,11 @@ def test_the_figure_shows_what_its_runs_are():
     ]
     np.testing.assert_array_equal(drawn[0], control[:, [0, 1]])
     np.testing.assert_array_equal(drawn[1], control[:, [0, 2]])
+
+
+def test_a_wall_may_be_nearer_than_a_sphere():
+    places = np.array([[9.0, 0, 0], [0, 0, -10.5], [0, 3, 0]])
+    assert panel._clearance(places, among((0, 0, 0, 2))).tolist() == [1, -0.5, 1]
 
 
 EXPERIMENTS = {

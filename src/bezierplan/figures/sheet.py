@@ -21,6 +21,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
+from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources, kind_module
 from bezierplan.workspaces.problem import Problem, Workspace
@@ -31,8 +32,9 @@ class Scene(NamedTuple):
 
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels:
     how names are printed. unit: name of the study's unit of length. looks: method -> the name of
-    its look (`style.LOOKS`). narrow: whether panels are too narrow for more than the shortest
-    notes; set by `draw`.
+    its look (`style.LOOKS`). Set by `draw`: narrow, whether panels are too narrow for more than the
+    shortest notes; milliseconds, whether all panels print lengths of time in these; and wide, the
+    metrics whose axes are logarithmic in all panels, because one of them needs it.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -41,6 +43,8 @@ class Scene(NamedTuple):
     unit: str
     looks: Mapping[str, str] = MappingProxyType({})
     narrow: bool = False
+    milliseconds: bool = False
+    wide: frozenset[str] = frozenset()
 
 
 def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
@@ -69,7 +73,7 @@ def draw(
     panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, width: float | None = None
 ) -> Figure:
     """The figure of a table made by `data`. Its label is its caption: for each panel the run that
-    it shows, and what it counts.
+    it shows, and what it counts; in a second line, if anything can be told of it, what is seen.
 
     frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its
     content. columns: panels per row. width: of the sheet, in inches; left out: one text column for
@@ -78,7 +82,11 @@ def draw(
     rows = math.ceil(len(panels) / columns)
     width = width or (style.NARROW if columns == 1 else style.WIDE)
     labels = {name: _plain(label) for name, label in scene.labels.items()}
-    scene = scene._replace(narrow=width / columns < style.NARROW_PANEL, labels=labels)
+    scene = scene._replace(
+        labels=labels,
+        narrow=width / columns < style.NARROW_PANEL,
+        milliseconds=style.are_short(_seconds(panels, frame)),
+    )
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
         FigureCanvasAgg(
@@ -87,11 +95,17 @@ def draw(
             # each question.
         )
         grid = _places(figure, panels, rows, columns)
-        titles, notes = [], []
-        for number, panel in enumerate(panels):
-            own = frame[frame["panel"] == number]
-            notes.append(kind_module(panel.kind).draw(grid.flat[number], own, scene, panel))
-            titles.append(_title(panel, own, scene))
+        rows_of = [frame[frame["panel"] == number] for number in range(len(panels))]
+        drawn = list(zip(grid.flat, rows_of, panels))
+        notes = [
+            kind_module(panel.kind).draw(axes, own, scene, panel) for axes, own, panel in drawn
+        ]
+        scene = scene._replace(wide=_wide(grid, panels))
+        for number, (axes, own, panel) in enumerate(drawn):
+            if panel.measured in scene.wide and _is_linear(axes):
+                axes.clear()
+                notes[number] = kind_module(panel.kind).draw(axes, own, scene, panel)
+        titles = [_title(panel, own, scene) for _, own, panel in drawn]
         for axes in grid.flat[len(panels) :]:
             axes.set_visible(False)
         if scene.narrow:
@@ -104,23 +118,55 @@ def draw(
             if len(panels) > 1
             else [""]
         )
-        headings = [_heading(*each, room) for each in zip(letters, titles, notes)]
+        most = _MOST_NARROW_LINES if scene.narrow else _MOST_LINES
+        headings = [_heading(*each, room, most) for each in zip(letters, titles, notes)]
         for first in range(0, len(panels), columns):
             _write_headings(grid.flat[first : first + columns], headings[first : first + columns])
-        figure.set_label(_caption(letters, [heading.told for heading in headings]))
+        lines = [
+            _caption(letters, [heading.told for heading in headings]),
+            _caption(letters, [[note.seen] if note.seen else [] for note in notes]),
+        ]
+        figure.set_label("\n".join(filter(None, lines)))
         _lay_out(figure, grid, legend, 2)  # headings change only the heights of rows
     return figure
 
 
-# The most panels without names or last values beside them below each other.
-_MOST_BELOW = 4
+def _wide(grid: np.ndarray, panels: list[Panel]) -> frozenset[str]:
+    """The metrics that some panel shows on a logarithmic axis."""
+    return frozenset(
+        panel.measured
+        for axes, panel in zip(grid.flat, panels)
+        if panel.measured is not None and not _is_linear(axes)
+    )
+
+
+def _is_linear(axes: Axes) -> bool:
+    return {axes.get_xscale(), axes.get_yscale()} == {"linear"}
+
+
+def _seconds(panels: list[Panel], frame: pd.DataFrame) -> list[float]:
+    """The lengths of time that panels show: one unit for all of them lets them be compared."""
+    timed = [
+        number
+        for number, panel in enumerate(panels)
+        if panel.measured in metrics.METRICS and metrics.unit(panel.measured, "") == "s"
+    ]
+    return frame.loc[frame["panel"].isin(timed), "value"].to_list() if timed else []
+
+
+# The most panels without names or last values beside them below each other, and of those the most
+# that are as high as a map.
+_MOST_BELOW, _MOST_MAPS_BELOW = 4, 2
 
 
 def narrow_columns(panels: list[Panel]) -> int:
     """Panels side by side on a sheet of one text column: one, or two of many, which would make the
     sheet longer than a page.
     """
-    return 1 if len(panels) <= _MOST_BELOW or any(panel.named_rows for panel in panels) else 2
+    if any(panel.named_rows for panel in panels):
+        return 1
+    maps = sum(panel.to_scale for panel in panels)
+    return 1 if len(panels) <= _MOST_BELOW and maps <= _MOST_MAPS_BELOW else 2
 
 
 def _places(figure: Figure, panels: list[Panel], rows: int, columns: int) -> np.ndarray:
@@ -148,8 +194,8 @@ def _plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-# Lines above a panel, of its title and the few words below it.
-_MOST_LINES = 2
+# Lines above a panel, of its title and the few words below it, and above a narrow one.
+_MOST_LINES, _MOST_NARROW_LINES = 2, 3
 
 # Rounds after which panels and the labels beside them fit each other.
 _ROUNDS = 3
@@ -167,15 +213,20 @@ def _lines(title: str, room: float) -> int:
     return _broken(title, room, style.TITLE_TEXT).count("\n") + 1
 
 
-def _heading(letter: str, title: list[str], note: Note, room: float) -> _Heading:
-    """What stands above a panel, in lines of a width in points: its title, with its method if that
-    fits, and, if a line is left, the few words. The caption has the rest.
+def _heading(letter: str, title: list[str], note: Note, room: float, most: int) -> _Heading:
+    """What stands above a panel, in at most so many lines of a width in points: its title, with its
+    method if that fits, and, if a line is left, the few words. The caption has the rest.
     """
-    named = _lines(letter + ", ".join(title), room) <= _MOST_LINES
+    named = _lines(letter + ", ".join(title), room) <= most
     told = [*([] if named else title[1:]), *([note.told] if note.told else [])]
-    heading = _broken(letter + ", ".join(title if named else title[:1]), room, style.TITLE_TEXT)
+    shown = title if named else title[:1]
+    # With the method on a line of its own, if that takes no more lines.
+    apart = _broken(letter + ",\n".join(shown), room, style.TITLE_TEXT)
+    heading = _broken(letter + ", ".join(shown), room, style.TITLE_TEXT)
+    if apart.count("\n") <= heading.count("\n"):
+        heading = apart
     words = _broken(note.shown, room, style.SMALLEST_TEXT)
-    if words and heading.count("\n") + words.count("\n") + 2 > _MOST_LINES:
+    if words and heading.count("\n") + words.count("\n") + 2 > most:
         return _Heading(heading, "", [note.shown, *told])
     return _Heading(heading, words, told)
 
@@ -236,13 +287,13 @@ def _width(text: str, size: float) -> float:
 
 
 def _broken(text: str, room: float, size: float) -> str:
-    """Text broken after spaces, commas and slashes into lines that fit a width; width and text size
-    in points.
+    """Text broken after spaces, commas and slashes, but not at a minus, into lines that fit a
+    width; width and text size in points.
     """
     lines = []
     for paragraph in text.splitlines():
         line = ""
-        for word in re.findall(r"[^ ,/]*[ ,/]*", paragraph):
+        for word in re.findall(r"[^ ,/]*(?: - [^ ,/]*)?[ ,/]*", paragraph):
             if line and _width(line + word.rstrip(), size) > room:
                 lines.append(line.rstrip())
                 line = ""

@@ -115,6 +115,24 @@ PUBLISHED_MARK = {
 }
 
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
+
+# In the legend, an interval as a bar or as a band: of no method's colour, because all have one.
+INTERVAL = {"color": "0.35", "linewidth": 0.8, "label": "95 % interval"}
+INTERVAL_BAND = {
+    "facecolor": "0.88",
+    "edgecolor": "0.35",
+    "linewidth": 0.4,
+    "label": "95 % interval",
+}
+
+# In the legend, the mark of a statistic to which not all runs contribute.
+HOLLOW = {
+    "linestyle": "",
+    "marker": "o",
+    "markersize": 3.5,
+    "color": BLACK,
+    "markerfacecolor": FREE,
+}
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
@@ -126,10 +144,14 @@ NARROW_PANEL = 2.0
 # more bands on top of each other hide the lines.
 MOST_BANDS = 5
 
-# A panel whose lengths of time are shorter than this, in seconds, shows them in milliseconds.
-# Values that differ by more than this factor are drawn on a logarithmic axis. An axis shows at
-# least this share of its values.
+# A figure all of whose lengths of time are shorter than this, in seconds, shows them in
+# milliseconds. Values that differ by more than this factor are drawn on a logarithmic axis. An axis
+# shows at least this share of its values.
 _SHORT, _WIDE_RANGE, _LEAST_SPAN = 0.1, 10.0, 0.01
+
+# An axis that is logarithmic down to near 0 shows so many decades below that of its largest value,
+# if its smallest one is less than this share of the largest.
+_DECADES, _NEAR_ZERO = 2, 1e-6
 
 # Height of a panel with two unlike axes, as a share of its width: by default, and if names beside
 # it need height and leave little width. Room between panels, in inches.
@@ -214,20 +236,39 @@ def is_wide(values: Iterable[float]) -> bool:
     return len(known) > 1 and bool(known.min() > 0 and known.max() > _WIDE_RANGE * known.min())
 
 
-def fit(axis: Any, values: Iterable[float], middles: Iterable[float]) -> None:
+def fit(
+    axis: Any,
+    values: Iterable[float],
+    middles: Iterable[float],
+    *,
+    near_zero: bool = False,
+    wide: bool = False,
+) -> None:
     """Scale an axis of measured values: logarithmic, with plain numbers, if what is compared
     differs widely; otherwise no closer than a hundredth of the values, so that what differs by less
     looks equal.
 
-    middles: a typical value of each method or group that is compared.
+    middles: a typical value of each method or group that is compared. near_zero: whether a wide
+    axis of values that reach 0 is linear there and logarithmic beyond. wide: whether they count as
+    differing widely in any case.
     """
     import numpy as np
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
 
     known = np.array([value for value in values if np.isfinite(value)])
     set_limits = axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim
-    if is_wide(middles) and known.min() > 0:
-        (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
+    set_scale = axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale
+    wide = len(known) > 0 and (wide or is_wide(middles))
+    if wide and near_zero and -_NEAR_ZERO < known.min() / known.max() < _NEAR_ZERO:
+        least = 10.0 ** (np.floor(np.log10(known.max())) - _DECADES)
+        set_scale("symlog", linthresh=least, linscale=0.6)
+        set_limits(-0.15 * least, known.max() * 1.5)
+        decades = least * 10.0 ** np.arange(_DECADES + 2)
+        axis.set_major_locator(FixedLocator([0.0, *decades[decades <= known.max() * 1.5]]))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+        return
+    if wide and known.min() > 0:
+        set_scale("log")
         set_limits(known.min() / 1.5, known.max() * 1.5)
         axis.set_major_locator(
             LogLocator(subs=(1.0,) if known.max() > 300 * known.min() else (1.0, 3.0))
@@ -242,13 +283,19 @@ def fit(axis: Any, values: Iterable[float], middles: Iterable[float]) -> None:
         set_limits(middle - least / 2, middle + least / 2)
 
 
-def in_milliseconds(axis: Any, values: Iterable[float]) -> None:
-    """Print an axis of seconds in milliseconds if all its values are short."""
+def are_short(seconds: Iterable[float]) -> bool:
+    """Whether all lengths of time that are known are better printed in milliseconds."""
     import numpy as np
+
+    known = [value for value in seconds if np.isfinite(value)]
+    return bool(known) and max(known) < _SHORT
+
+
+def in_milliseconds(axis: Any) -> None:
+    """Print an axis in milliseconds if it is one of seconds."""
     from matplotlib.ticker import FuncFormatter
 
-    known = [value for value in values if np.isfinite(value)]
-    if known and max(known) < _SHORT and axis.get_label_text().endswith("(s)"):
+    if axis.get_label_text().endswith("(s)"):
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{1000 * value:,.6g}"))
         axis.set_label_text(f"{axis.get_label_text().removesuffix('(s)')}(ms)")
 

@@ -113,6 +113,7 @@ class Figure(Record):
     told: str = Field(
         "", description="by panel, the run that it shows, and the runs that it counts"
     )
+    seen: str = Field("", description="by panel, what is lowest and highest, if it compares")
     svg: str = Field(
         description="its picture, relative to the page; "
         "beside it lie others that end in .png and .pdf"

@@ -156,13 +156,14 @@ def _study(
 
 def _figure(study: str, name: str, job: FigureShown, folder: Path) -> content.Figure:
     stem = f"{study}/figures/{name}"
-    told = (folder / f"{stem}.txt").read_text(encoding="utf-8").strip()
+    told, _, seen = (folder / f"{stem}.txt").read_text(encoding="utf-8").strip().partition("\n")
     named = {
         "address": address(study, name),
         "name": name,
         "title": job.title,
         "caption": job.caption,
         "told": told,
+        "seen": seen,
     }
     return content.Figure(**named, svg=f"{stem}.svg", csv=f"{stem}.csv")
 

@@ -62,11 +62,13 @@ class Note(NamedTuple):
 
     shown: a few words below its title, if two lines are enough for both. told: what belongs into
     the figure's caption, such as the run that it shows and the runs that it counts, in clauses
-    joined by semicolons.
+    joined by semicolons. seen: what a glance at it shows, such as the best method, for those who do
+    not see it.
     """
 
     shown: str = ""
     told: str = ""
+    seen: str = ""
 
 
 EACH = (
@@ -120,6 +122,7 @@ class Panel(Model, ABC):
     of which the runs that it shows have one value. drives: whether these are drives. tracks:
     whether their planner must have `track`. fewest_methods: how many methods it compares at least.
     named_rows: whether names or last values stand beside it, which take the room of a second panel.
+    to_scale: whether it is as high as a map is, and can be drawn in half a text column.
     """
 
     published_drawn: ClassVar[bool] = False
@@ -130,6 +133,7 @@ class Panel(Model, ABC):
     tracks: ClassVar[bool] = False
     fewest_methods: ClassVar[int] = 1
     named_rows: ClassVar[bool] = False
+    to_scale: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Label = Field(
@@ -142,6 +146,11 @@ class Panel(Model, ABC):
     @abstractmethod
     def source(self, sources: Sources) -> Any:
         """What it draws from, as `data` of its kind takes it."""
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers the column `value` of its data has, if they are of one."""
+        return None
 
     @property
     def place(self) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import metrics
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.figures.panels.lines import (
     LIMITS,
@@ -58,6 +58,11 @@ class Options(RunsPanel):
         False, description="whether the exact bound and the reference are drawn, true or false"
     )
     limit: Number = Field(None, description="the published limit of the metric, a number")
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.metric
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -143,8 +148,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     medians = frame.loc[frame["part"] == "median", "value"]
     # Labels such as 0.0025 would touch each other.
     axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
-    if style.is_wide(medians):
-        style.fit(axes.xaxis, frame["value"], medians)
+    # A far outlier would compress all boxes.
+    spread = [*medians[medians > 0], frame["value"].max()]
+    if options.metric in scene.wide or style.is_wide(spread):
+        style.fit(axes.xaxis, frame["value"], spread, near_zero=True, wide=True)
         far = set()
     else:
         far = _draw_far(axes, boxes, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
@@ -165,7 +172,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             "label": "published minimum and maximum",
             "zorder": 5,
         },
-        "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
+        "published": {
+            **style.PUBLISHED_MARK,
+            "clip_on": False,
+            "label": "published mean",
+            "zorder": 5,
+        },
     }
     for part, look in marks.items():
         points = [
@@ -176,25 +188,51 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         ]
         if points:
             axes.plot(*zip(*points), **({"linestyle": ""} | look))
-    none = [height for height, parts in enumerate(boxes) if "none" in parts]
-    if none:
-        cross = {
-            "color": style.BLACK,
-            "linestyle": "",
-            "marker": "x",
-            "markersize": 4,
-            "clip_on": False,
-            "label": "no value",
-        }
-        axes.plot(np.ones(len(none)), none, transform=axes.get_yaxis_transform(), **cross)
+    of_feasible = metrics.METRICS[options.metric].feasible_only
+    for height, parts in enumerate(boxes):
+        if "none" in parts:
+            axes.text(
+                0.5,
+                height,
+                "no feasible run" if of_feasible else "no value",
+                transform=axes.get_yaxis_transform(),
+                ha="center",
+                va="center_baseline",
+            )
     axes.set_ylim(len(groups) - 0.4, -0.6)
+    names = [style.printed(group, by, scene.labels) for group in groups]
+    partial = {}
+    if of_feasible:
+        partial = _partial_shares(frame.dropna(subset=[by]).groupby(by).first())
     axes.set_yticks(
-        range(len(groups)), [style.printed(group, by, scene.labels) for group in groups]
+        range(len(groups)),
+        [
+            f"{name} ({partial[group]})" if group in partial else name
+            for name, group in zip(names, groups)
+        ],
     )
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=True, axis="x")
-    style.in_milliseconds(axes.xaxis, frame["value"])
-    return Note("", runs_note(frame, "box", "method" if by == "method" else "row"))
+    if scene.milliseconds:
+        style.in_milliseconds(axes.xaxis)
+    told = runs_note(frame, "box", "method" if by == "method" else "row")
+    if axes.get_xscale() == "symlog":
+        told += "; the axis is linear up to the first number after 0, then logarithmic"
+    if partial:
+        told += "; in parentheses: share of feasible runs, below 100 %"
+    middles = [parts.get("median", [np.nan])[0] for parts in boxes]
+    return Note("", told, seen.extremes("median", dict(zip(names, middles))))
+
+
+def _partial_shares(counts: pd.DataFrame) -> dict[Any, str]:
+    """The share of feasible runs of each group that has others: the box is of them alone.
+
+    counts: by group, with runs and feasible_runs.
+    """
+    some = counts[counts["feasible_runs"] < counts["runs"]]
+    # Rounded down, so that none is printed as all.
+    shares = np.floor(100 * some["feasible_runs"] / some["runs"])
+    return {group: f"{share:g} %" for group, share in shares.items()}
 
 
 def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:

@@ -67,13 +67,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     methods = style.in_order(frame["method"], options.where)
     for method, look in zip(methods, style.lines(methods, scene.looks)):
         own = frame[frame["method"] == method]
-        axes.plot(
-            own["step"],
-            own["clearance"],
-            label=style.printed(method, "method", scene.labels),
-            **look | {"marker": "", "linewidth": 1.0},
-        )
-    axes.axhline(0.0, label="obstacle", **style.BOUND)
+        axes.plot(own["step"], own["clearance"], **look | {"marker": "", "linewidth": 1.0})
+        arrived = bool(own["arrived"].iloc[-1])
+        end = look | ({} if arrived else {"markerfacecolor": style.FREE}) | {"linestyle": ""}
+        axes.plot(own["step"].iloc[-1:], own["clearance"].iloc[-1:], zorder=4, **end)
+        axes.plot([], [], label=style.printed(method, "method", scene.labels), **look)
+        if not arrived:
+            not_there = style.HOLLOW | {"label": "hollow: ends without arrival"}
+            axes.plot([], [], **not_there)
+    axes.axhline(0.0, label="surface of an obstacle", **style.BOUND)
     axes.set_xlabel("step")
     axes.set_ylabel(f"least distance to an obstacle ({scene.unit})")
     axes.grid(visible=True)

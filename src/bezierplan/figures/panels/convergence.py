@@ -6,13 +6,13 @@ A study's label of `generation` names the axis, such as `iteration` for a swarm.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import statistics
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.lines import (
     LIMITS,
@@ -40,6 +40,9 @@ _MARKS = 5
 # width.
 _STRIP, _APART = 0.34, 0.04
 
+# Room beyond last values and their intervals, as a share of the axis, so that marks are seen whole.
+_ROOM = 0.03
+
 _PRINTED = style.PUBLISHED_MARK | {"markersize": 3.5}
 
 # Published means farther beyond our values than this share of their range are drawn at the end of
@@ -49,8 +52,6 @@ _FAR = 0.5
 
 class Options(RunsPanel):
     """Keys of a panel."""
-
-    named_rows: ClassVar[bool] = True
 
     pick: Pick = Field(None, description=PICK)
     hue: Column = Field(
@@ -78,6 +79,11 @@ class Options(RunsPanel):
     def published_drawn(self) -> bool:
         """Whether published numbers are drawn."""
         return self.printed is not None
+
+    @property
+    def named_rows(self) -> bool:
+        """Whether last values stand beside it."""
+        return self.hue is not None
 
     @property
     def one(self) -> tuple[str, ...]:
@@ -211,7 +217,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.grid(visible=True)
     for name, look in LIMITS.items():
         if name in frame and np.isfinite(frame[name].iloc[0]):
-            axes.axhline(frame[name].iloc[0], **look)
+            axes.axhline(frame[name].iloc[0], zorder=3.5, **look)
     if options.hue is not None:
         return _draw_groups(axes, frame, scene, options)
     _draw_one_run(axes, frame)
@@ -243,7 +249,6 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
                 rows["low95"],
                 rows["high95"],
                 look["color"],
-                "95 % interval",
             )
         named = look | {"label": style.printed(group, hue, scene.labels)}
         axes.plot(
@@ -258,7 +263,13 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
     style.fit(axes.yaxis, frame["objective"], [])
     ends = [rows.iloc[-1] for rows in lines]
     _draw_ends(axes, ends, looks, statistic)
-    return Note("", f"{runs_note(frame, statistic, 'line')}; right: last values")
+    names = [style.printed(group, hue, scene.labels) for group in groups]
+    last = dict(zip(names, (end["objective"] for end in ends)))
+    return Note(
+        "",
+        f"{runs_note(frame, statistic, 'line')}; right: last values",
+        seen.extremes(f"final {statistic}", last),
+    )
 
 
 def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: str) -> None:
@@ -275,7 +286,9 @@ def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: 
     reach = _FAR * (max(known) - min(known))
     printed = [each.get("printed", np.nan) for each in ends]
     near = [value for value in printed if min(known) - reach <= value <= max(known) + reach]
-    low, high = min([low, *near]), max([high, *near])
+    least, most = min([*known, *near]), max([*known, *near])
+    room = _ROOM * (max(high, most) - min(low, least))
+    low, high = min(low, least - room), max(high, most + room)
     axes.set_ylim(low, high)
     strip = axes.inset_axes([1 + _APART, 0, _STRIP, 1], sharey=axes)
     strip.tick_params(labelleft=False, left=False)

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import metrics, running_time
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.schema.model import Metric, PrintedTable
 
@@ -143,4 +143,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         f"methods whose bars overlap cannot be distinguished: {tested['units']:g} {units}, "
         f"Friedman's chi-squared {tested['chi2']:.1f}"
     )
-    return Note("", f"{words}, {chance}; critical difference {tested['difference']:.2f}")
+    names = [scene.labels.get(method, method) for method in methods]
+    return Note(
+        "",
+        f"{words}, {chance}; critical difference {tested['difference']:.2f}",
+        seen.extremes("mean rank", dict(zip(names, ranks["value"]))),
+    )

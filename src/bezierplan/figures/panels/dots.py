@@ -7,12 +7,13 @@ edge stands for no feasible run.
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.figures.panels.lines import axis_label, published, runs_note, summary
 from bezierplan.schema.model import Column, Metric
@@ -33,13 +34,6 @@ _FILLED = 0.8
 # Height of a row, and of each of its dots, as a share of the panel's width.
 _ROW, _DOT = 0.035, 0.014
 
-_HOLLOW = {
-    "linestyle": "",
-    "marker": "o",
-    "markersize": 3.5,
-    "color": style.BLACK,
-    "markerfacecolor": style.FREE,
-}
 _NONE = {"linestyle": "", "marker": "x", "markersize": 3.5, "color": style.BLACK}
 
 
@@ -57,6 +51,11 @@ class Options(RunsPanel):
     statistic: Literal["mean", "median", "share"] = Field(
         "mean", description="mean (left out: this), median or share"
     )
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.metric
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -120,10 +119,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.autoscale_view(scaley=False)
     style.fit(
         axes.xaxis,
-        [*frame["value"], *frame["low95"], *frame["high95"]],
+        itertools.chain(*(frame[end] for end in ("value", "low95", "high95", "published"))),
         frame.groupby(hue)["value"].median(),
+        wide=options.metric in scene.wide,
     )
-    style.in_milliseconds(axes.xaxis, frame["value"])
+    if scene.milliseconds:
+        style.in_milliseconds(axes.xaxis)
     bounds = frame[frame["bound"].notna()].groupby(x)["bound"].mean()
     for row, bound in bounds.items():
         middle = rows.index(row)
@@ -135,13 +136,18 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             zorder=1.5,
             **style.BOUND,
         )
-    return Note("", runs_note(frame, options.statistic, "dot"))
+    table = frame.pivot(index=x, columns=hue, values="value")
+    names = [style.printed(value, hue, scene.labels) for value in table]
+    metric = f"{options.statistic} {style.column_name(options.metric, scene.labels)}"
+    told = runs_note(frame, options.statistic, "dot")
+    return Note("", told, seen.mostly(metric, table.set_axis(names, axis=1)))
 
 
 def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> None:
     """Dots at heights (n,) with their intervals, and the published numbers."""
     thin = {"color": look["color"], "linewidth": 0.8}
-    axes.hlines(at, frame["low95"], frame["high95"], zorder=3, label="95 % interval", **thin)
+    axes.hlines(at, frame["low95"], frame["high95"], zorder=3, **thin)
+    axes.plot([], [], **style.INTERVAL)
     whole = (frame["feasible_runs"] == frame["runs"]).to_numpy()
     axes.plot(frame["value"][whole], at[whole], zorder=4, **look)
     none = frame["value"].isna().to_numpy()
@@ -152,7 +158,7 @@ def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> N
             zorder=4,
             **look | {"markerfacecolor": style.FREE, "label": None},
         )
-        axes.plot([], [], label="hollow: some runs are not feasible", **_HOLLOW)
+        axes.plot([], [], label="hollow: some runs are not feasible", **style.HOLLOW)
     if none.any():
         at_edge = {"transform": axes.get_yaxis_transform(), "clip_on": False, "zorder": 4}
         axes.plot(np.ones(none.sum()), at[none], **_NONE | at_edge | {"color": look["color"]})

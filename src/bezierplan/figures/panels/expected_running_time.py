@@ -10,11 +10,13 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import running_time
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import pandas as pd
     from matplotlib.axes import Axes
 
@@ -26,8 +28,11 @@ _DRAWS = 1000
 _APART = 0.18
 
 # Distance of the place for what never happens from the largest finite value and from the last
-# label, as shares of the axis. Times below this, in seconds, are printed in milliseconds.
-_NEVER, _CLEAR, _SHORT = 0.12, 0.2, 0.1
+# label, as shares of the axis.
+_NEVER, _CLEAR = 0.12, 0.2
+
+# The least ratio of the place for what never happens to the largest finite value.
+_LEAST_APART = 4.0
 
 _NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)"}
 
@@ -40,6 +45,11 @@ class Options(RunsPanel):
     cost: Literal["evaluations", "cpu_s"] = Field(
         description="what is counted: evaluations or cpu_s"
     )
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.cost
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -130,15 +140,17 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, a line of marks per method. An infinite time stands at the right
     edge.
     """
-    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator
+    from matplotlib.ticker import FixedLocator, FuncFormatter
 
     methods, targets = (
         style.in_order(frame["method"], options.where),
         sorted(frame["within"].unique()),
     )
-    finite = frame["value"][np.isfinite(frame["value"]) & (frame["value"] > 0)]
+    # Intervals as well, so that none leaves the panel but those without an end.
+    shown = frame[["value", "low95", "high95"]].to_numpy(dtype=float)
+    finite = shown[np.isfinite(shown) & (shown > 0)]
     low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
-    never = high * max((high / low) ** _NEVER, 4.0)
+    never = high * max((high / low) ** _NEVER, _LEAST_APART)
     axes.set_xscale("log")
     axes.set_xlim(low / 2, never * 1.5)
     axes.set_xlabel(_NAMES[options.cost])
@@ -155,8 +167,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             color=look["color"],
             linewidth=0.8,
             zorder=2,
-            label="95 % interval",
         )
+        axes.plot([], [], **style.INTERVAL)
         mark = look | {"linestyle": "", "zorder": 3}
         axes.plot(times["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
         axes.plot(
@@ -166,17 +178,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         )
     axes.axvline(never / 1.8, color="0.5", linewidth=0.6, linestyle=(0, (1, 2)), zorder=1)
     # So far from the last place that their labels do not touch.
-    last = never / (never / low) ** _CLEAR
+    last = never / (3 * never / low) ** _CLEAR
     steps = (1.0,) if high > 100 * low else (1.0, 3.0)
-    ticks = _thinned(
-        [
-            tick
-            for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high)
-            if low / 2 <= tick <= last
-        ],
-        never / low,
-    )
-    thousand = 1000 if options.cost == "cpu_s" and high < _SHORT else 1
+    decades = 10.0 ** np.arange(np.floor(np.log10(low / 2)), np.ceil(np.log10(high)) + 1)
+    places = np.sort(np.outer(decades, steps).ravel())
+    ticks = _thinned(places[(places >= low / 2) & (places <= last)], never / low)
+    thousand = 1000 if options.cost == "cpu_s" and scene.milliseconds else 1
     if thousand > 1:
         axes.set_xlabel(f"{_NAMES['cpu_s'].removesuffix('(s)')}(ms)")
     axes.xaxis.set_major_locator(FixedLocator([*ticks, never]))
@@ -199,24 +206,37 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_box_aspect(min(1.4, 0.14 + 0.12 * len(methods)))
     axes.grid(visible=True, axis="x")
     first = frame.iloc[0]
+    names = [scene.labels.get(method, method) for method in methods]
     if first["problems"] > 1:
         return Note(
             "",
             f"median over {first['problems']:g} problems; never: at least half of them are not "
             "solved in any run",
+            _seen(frame, methods, names),
         )
     fewest, most = frame["runs"].min(), frame["runs"].max()
     return Note(
         "",
         f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; "
         "never: no run gets there",
+        _seen(frame, methods, names),
     )
 
 
-def _thinned(ticks: list[float], span: float) -> list[float]:
-    """Those of increasing ticks whose labels do not touch on an axis that spans a factor: within a
-    decade a locator gives many.
-    """
+def _seen(frame: pd.DataFrame, methods: list[str], names: list[str]) -> str:
+    """Which method gets to the widest target first, and which never do."""
+    target = frame["within"].max()
+    times = frame[frame["within"] == target].set_index("method")["value"].reindex(methods)
+    never = [name for name, time in zip(names, times) if not np.isfinite(time)]
+    clauses = [
+        seen.extremes(f"expected work to {100 * target:g} %", dict(zip(names, times))),
+        f"never: {', '.join(never)}" if never else "",
+    ]
+    return "; ".join(filter(None, clauses))
+
+
+def _thinned(ticks: Iterable[float], span: float) -> list[float]:
+    """Those of increasing ticks whose labels do not touch on an axis that spans a factor."""
     kept: list[float] = []
     for tick in ticks:
         if not kept or tick >= kept[-1] * span**_CLEAR:

@@ -55,6 +55,7 @@ _LOOK = {
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    to_scale: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem",)
 
     data: Function = Field(

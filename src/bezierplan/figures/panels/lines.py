@@ -4,13 +4,14 @@ columns of a table against each other.
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, Sources, TablePanel, exactly_one
 from bezierplan.schema.model import (
     Column,
@@ -20,6 +21,7 @@ from bezierplan.schema.model import (
     Metric,
     NumberColumn,
     PrintedTable,
+    Quantity,
     Repeat,
     Where,
     listed,
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
 # Where lines do not join points, the groups at one x take this share of the distance to the next.
 _SPREAD = 0.7
 
-# At most so many values, evenly spaced, each get a tick.
+# At most so many values, evenly spaced, each get a tick, and of a table a mark.
 _FEW = 5
 
 # Above this many points, only the points are drawn: lines between jumping values would cover the
@@ -77,13 +79,25 @@ class Options(TablePanel):
         description="whether lines join points, true or false: false where x is a name in "
         "numbers, without order",
     )
+    sorted_by: Quantity = Field(
+        None,
+        description="of runs, with joined: false, a column of numbers of the runs table: values of "
+        "x stand in the order of its means, each at the same distance from the next",
+    )
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
         exactly_one(self, "experiment", "data")
         if self.printed is not None and self.experiment is None:
             raise wrong("printed: needs experiment")
+        if self.sorted_by is not None and (self.joined or self.experiment is None):
+            raise wrong("sorted_by: needs experiment and joined: false")
         return self
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.metric
 
     @property
     def published_drawn(self) -> bool:
@@ -101,7 +115,7 @@ class Options(TablePanel):
 
 def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
     """One row per point; columns: hue (if one is given) and x, both by their own names; part
-    (statistic, repeat, published or value), value.
+    (statistic, repeat, published or value), value; with `sorted_by`, the place of x (0, 1, ...).
 
     For runs: the columns of `summary` for the statistic, and repeat, the number of a single run.
     For a table: the column `metric`, as is.
@@ -134,7 +148,12 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
             for value in values
         ]
         parts.append(pd.DataFrame(marked, columns=[*keys, "part", "value"]))
-    return pd.concat(parts, ignore_index=True)
+    drawn = pd.concat(parts, ignore_index=True)
+    if options.sorted_by is None:
+        return drawn
+    means = source.runs.sort_values("id").groupby(options.x)[options.sorted_by].mean()
+    places = means.rank(method="first").astype(int) - 1
+    return drawn.assign(place=drawn[options.x].map(places))
 
 
 def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
@@ -236,11 +255,12 @@ def published(
     return sorted(numbers["value"].unique())
 
 
-def interval_band(
-    axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str, label: str
-) -> None:
+def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str) -> None:
     """The interval of a line as a band in the line's colour."""
-    axes.fill_between(x, low, high, label=label, zorder=1.5, **style.interval_band(colour))
+    from matplotlib.patches import Rectangle
+
+    axes.fill_between(x, low, high, zorder=1.5, **style.interval_band(colour))
+    axes.add_patch(Rectangle((0, 0), 0, 0, **style.INTERVAL_BAND))
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
@@ -265,7 +285,7 @@ def _range(low: float, high: float) -> str:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    x, hue = options.x, options.hue
+    hue, x = options.hue, options.x if options.sorted_by is None else "place"
     of_runs = options.experiment is not None
     statistic = options.statistic if of_runs else ""
     groups = [None] if hue is None else style.in_order(frame[hue], options.where)
@@ -293,24 +313,50 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)
-    axes.set_xlabel(axis_label(x, scene))
+    axes.set_xlabel(axis_label(options.x, scene))
+    if options.sorted_by is not None:
+        named = frame.drop_duplicates("place").sort_values("place")[options.x]
+        axes.set_xticks(values, [f"{value:g}" for value in named])
+        by = style.column_name(options.sorted_by, scene.labels)
+        axes.set_xlabel(f"{axis_label(options.x, scene)}, sorted by {by}")
     axes.set_ylabel(axis_label(options.metric, scene, statistic))
     axes.grid(visible=True)
+    ends = [frame[end] for end in ("value", "low95", "high95") if end in frame]
     style.fit(
-        axes.yaxis, frame["value"], [] if hue is None else frame.groupby(hue)["value"].median()
+        axes.yaxis,
+        itertools.chain(*ends),
+        [] if hue is None else frame.groupby(hue)["value"].median(),
+        wide=options.metric in scene.wide,
     )
-    style.in_milliseconds(axes.yaxis, frame["value"])
-    return (
-        Note("", runs_note(frame[frame["part"] == "statistic"], statistic, "point"))
-        if of_runs
-        else Note()
-    )
+    if scene.milliseconds:
+        style.in_milliseconds(axes.yaxis)
+    if not of_runs:
+        return Note()
+    ours = frame[frame["part"] == "statistic"]
+    return Note("", runs_note(ours, statistic, "point"), _seen(ours, scene, options))
+
+
+def _seen(statistics: pd.DataFrame, scene: Any, options: Options) -> str:
+    """Which line is lowest and highest at most places, or where the only line is."""
+    name = f"{options.statistic} {style.column_name(options.metric, scene.labels)}"
+    if options.hue is None:
+        at = [style.printed(value, options.x, scene.labels) for value in statistics[options.x]]
+        return seen.extremes(name, dict(zip(at, statistics["value"])))
+    table = statistics.pivot(index=options.x, columns=options.hue, values="value")
+    columns = [style.printed(value, options.hue, scene.labels) for value in table]
+    return seen.mostly(name, table.set_axis(columns, axis=1))
 
 
 def _looks(groups: list[Any], frame: pd.DataFrame, scene: Any) -> list[dict]:
-    """Looks of lines; of the only line that of its method, if all its runs have one."""
+    """Looks of lines; of the only line that of its method, if all its runs have one; of the exact
+    shortest path that which it has everywhere.
+    """
     if groups != [None]:
-        return style.lines(groups, scene.looks)
+        exact = LIMITS["bound"]["label"]
+        others = style.lines([group for group in groups if group != exact], scene.looks)
+        return [
+            {**style.BOUND, "marker": ""} if group == exact else others.pop(0) for group in groups
+        ]
     methods = frame["method"].dropna().unique() if "method" in frame else []
     return (
         style.lines(list(methods), scene.looks)
@@ -324,9 +370,7 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, band
     them.
     """
     if bands:
-        interval_band(
-            axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval"
-        )
+        interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"])
     else:
         axes.vlines(
             frame[x],
@@ -335,9 +379,22 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, band
             color=look["color"],
             linewidth=0.8,
             zorder=2,
-            label="95 % interval",
         )
+        axes.plot([], [], **style.INTERVAL)
     axes.plot(frame[x], frame["value"], zorder=3, **look)
+    _draw_hollow(axes, frame[x], frame, look)
+
+
+def _draw_hollow(axes: Axes, places: pd.Series, frame: pd.DataFrame, look: dict) -> None:
+    """Open the marks of statistics of the feasible runs alone, where there are others: a method
+    that rarely succeeds may have the best mean.
+    """
+    partial = (frame["feasible_runs"] < frame["runs"]) & (frame["n"] < frame["runs"])
+    if not partial.any():
+        return
+    hollow = look | {"linestyle": "", "markerfacecolor": style.FREE, "label": None}
+    axes.plot(places[partial], frame["value"][partial], zorder=3.1, **hollow)
+    axes.plot([], [], label="hollow: some runs are not feasible", **style.HOLLOW)
 
 
 def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dict) -> None:
@@ -350,9 +407,10 @@ def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dic
         color=look["color"],
         linewidth=0.8,
         zorder=2,
-        label="95 % interval",
     )
+    axes.plot([], [], **style.INTERVAL)
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
+    _draw_hollow(axes, places, frame, look)
 
 
 def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str) -> None:
@@ -371,9 +429,7 @@ def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str) -> None:
 
 
 def _joined(look: dict, points: int) -> dict:
-    """The style of a line through the given number of points of a table."""
-    return look | (
-        {"marker": ""}
-        if points <= _MOST_JOINED
-        else {"linestyle": "", "marker": ".", "markersize": 1.2}
-    )
+    """The style of a line through the given number of points of a table: few are marked."""
+    if points > _MOST_JOINED:
+        return look | {"linestyle": "", "marker": ".", "markersize": 1.2}
+    return look if points <= _FEW else look | {"marker": ""}

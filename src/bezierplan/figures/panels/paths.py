@@ -7,7 +7,7 @@ Or several paths in one workspace, a picked run for each value of a column.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -54,8 +54,16 @@ _STEPS = 600
 # Widths of the first and of the last of several paths.
 _WIDEST, _NARROWEST = 2.0, 1.0
 
+# Width of a path below another one.
+_WIDE_PATH = 3.4
+
+# Where a letter may stand next to a place, towards the panel's centre, in points; and as a share of
+# the panel's width, how near lines count as being there.
+_LETTER_OFFSETS = [(13, 5), (5, 13), (11, 11)]
+_NEAR_END = 0.25
+
 # Scale factor of marks in a narrow panel.
-_NARROW_MARK = 0.6
+NARROW_MARK = 0.6
 
 _CONTROL_POINT = {
     "color": style.BLUE,
@@ -88,11 +96,11 @@ _LOOK = {
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "optimum": {
-        "color": style.BLACK,
-        "linestyle": (0, (5, 1.5)),
-        "linewidth": 0.9,
+        "color": style.LOOKS["sky"][0],
+        "linestyle": (0, (4, 2)),
+        "linewidth": 1.4,
         "label": "shortest between cell centres",
-        "zorder": 4,
+        "zorder": 3.5,
     },
     "collision": {
         "color": style.BLACK,
@@ -196,6 +204,8 @@ class Explicit(Model):
 
 class Options(RunsPanel):
     """Keys of a panel: of picked runs, or of an explicit path."""
+
+    to_scale: ClassVar[bool] = True
 
     experiment: Experiment = Field(None, description="the name of an experiment")
     pick: Pick = Field(None, description=PICK)
@@ -482,10 +492,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             Note() if options.explicit is not None or options.bare else _note(frame, workspace.unit)
         )
         draw_parts(axes, frame, narrow=scene.narrow, clip=options.view is not None)
+    lines = frame.loc[frame["part"].isin(["path", "bound", "optimum"]), ["x", "y"]]
     for part, letter in zip(("start", "target"), options.letters or ()):
-        _write_letter(
-            axes, frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float), letter
-        )
+        end = frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float)
+        _write_letter(axes, end, letter, lines.to_numpy(dtype=float))
     if options.view is not None:
         axes.axis(options.view)
     if scene.narrow:
@@ -524,11 +534,21 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
             )
 
 
-def _write_letter(axes: Axes, point: np.ndarray, letter: str) -> None:
-    """Write a letter next to a place, on the side towards the panel's centre."""
+def _write_letter(axes: Axes, point: np.ndarray, letter: str, lines: np.ndarray) -> None:
+    """Write a letter next to a place where lines through points (n, 2) end, on the side towards the
+    panel's centre, as far as possible from their direction.
+    """
     inwards = np.where(point <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
+    steps = (lines - point) * inwards
+    distances = np.hypot(*steps.T)
+    near = (distances > 0) & (distances < _NEAR_END * np.ptp(axes.get_xlim()))
+    directions = steps[near] / distances[near, None]
+    clear = [
+        max(directions @ offset / np.hypot(*offset), default=0.0)
+        for offset in np.array(_LETTER_OFFSETS, dtype=float)
+    ]
     beside = {
-        "xytext": (13, 5) * inwards,
+        "xytext": np.array(_LETTER_OFFSETS[int(np.argmin(clear))]) * inwards,
         "textcoords": "offset points",
         "ha": "center",
         "va": "center",
@@ -569,16 +589,27 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
         ["part", "x", "y"]
     )
     draw_parts(axes, once, narrow=scene.narrow, clip=options.view is not None)
-    return Note("", f"{axis_label(options.measure, scene)}: {', '.join(clauses)}")
+    found = frame.loc[frame["part"] == "path", hue].nunique()
+    return Note(
+        "" if found == len(values) else f"{found} of {len(values)} have a path",
+        f"{axis_label(options.measure, scene)}: {', '.join(clauses)}",
+    )
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
-    """Draw the points of each part; anything beyond the panel only if they are not clipped."""
+    """Draw the points of each part; anything beyond the panel only if they are not clipped.
+
+    A path is drawn so wide that it is seen on both sides of a shortest one between cell centres,
+    which it often is.
+    """
+    parts = set(frame["part"])
     for part, look in _LOOK.items():
+        if part == "path" and "optimum" in parts:
+            look = look | {"linewidth": _WIDE_PATH}
         points = frame.loc[frame["part"] == part, ["x", "y"]]
         if not points.empty:
             size = (
-                {"markersize": _NARROW_MARK * look["markersize"]}
+                {"markersize": NARROW_MARK * look["markersize"]}
                 if narrow and "markersize" in look
                 else {}
             )

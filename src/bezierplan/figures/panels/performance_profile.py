@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import running_time
-from bezierplan.figures import style
+from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.schema.model import Positive, wrong
 
@@ -106,9 +106,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         places = np.concatenate([[1.0], own["ratio"], [end]])
         heights = np.concatenate([[0.0], own["share"], own["share"].iloc[-1:]])
         # One mark each, at the end, side by side: lines may end at one height, and marks on the way
-        # would look like data.
+        # would look like data; not before the last step, where the line is lower.
         axes.plot(places, heights, drawstyle="steps-post", clip_on=False, **look | {"marker": ""})
-        aside = end ** (1 - _MARK * (number + 0.5))
+        aside = max(end ** (1 - _MARK * (number + 0.5)), places[-2])
         axes.plot(aside, heights[-1], clip_on=False, **look | {"linestyle": ""})
         axes.plot([], [], label=scene.labels.get(method, method), **look)
     axes.set_xscale("log")
@@ -120,10 +120,20 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.grid(visible=True)
     counts = frame.iloc[0]
     words = f"{counts['problems']:g} problem{'s' if counts['problems'] != 1 else ''}"
+    names = [scene.labels.get(method, method) for method in methods]
+    best = [
+        frame.loc[(frame["method"] == method) & (frame["ratio"] == 1), "share"].max()
+        for method in methods
+    ]
+    at_one = seen.extremes(
+        "share of problems on which it is the best", dict(zip(names, np.nan_to_num(best)))
+    )
     if options.cost == "length":
-        return Note("", f"{words}; solved by the median run of any method: {counts['solved']:g}")
+        return Note(
+            "", f"{words}; solved by the median run of any method: {counts['solved']:g}", at_one
+        )
     target = f"to within {100 * options.within:g} % of the exact shortest path"
-    return Note("", f"{target}; {words}, solved by any method: {counts['solved']:g}")
+    return Note("", f"{target}; {words}, solved by any method: {counts['solved']:g}", at_one)
 
 
 def _name_ratios(axes: Axes, end: float) -> None:

@@ -12,6 +12,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.figures.panels.paths import NARROW_MARK
 from bezierplan.schema.model import is_number, value
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ _FINE = 0.005
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    to_scale: ClassVar[bool] = True
     rerun: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
     drives: ClassVar[bool] = True
@@ -138,7 +140,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     problem = scene.problems[options.experiment][frame["problem"].iloc[0]]
     workspaces.shade(axes, frame)
     workspaces.scale(axes, problem.workspace.unit)
-    show(axes, frame)
+    show(axes, frame, narrow=scene.narrow)
+    if scene.narrow:
+        axes.locator_params(nbins=4, integer=True)
     dropped = frame.loc[frame["part"] == "dropped", "number"].nunique()
     plans = (
         "no plan discarded"
@@ -148,7 +152,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     return Note(f"step {frame['time'].iloc[0]:.0f}, {plans}", f"run {frame['run'].iloc[0]}")
 
 
-def show(axes: Axes, frame: pd.DataFrame) -> None:
+def show(axes: Axes, frame: pd.DataFrame, *, narrow: bool = False) -> None:
     """Draw the rows of a moment over its obstacles."""
     circles = frame[frame["part"] == "circle"]
     if len(circles):
@@ -162,7 +166,7 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
             "scale": 1,
             "color": style.BLACK,
             "width": 0.005,
-            "zorder": 2,
+            "zorder": 2.6,
         }
         axes.quiver(circles["x"], circles["y"], *arrows.T, **look)
         axes.plot(
@@ -178,7 +182,7 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
         axes.plot(
             rows["x"], rows["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan"
         )
-    looks = {
+    looks: dict[str, dict[str, Any]] = {
         "plan": {
             "color": style.BLUE,
             "linewidth": 1.2,
@@ -209,4 +213,7 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
     for part, look in looks.items():
         rows = frame[frame["part"] == part]
         if len(rows):
-            axes.plot(rows["x"], rows["y"], **look)
+            if narrow and "marker" in look:
+                look = look | {"markersize": NARROW_MARK * look["markersize"]}
+            # A mark at the edge is seen whole.
+            axes.plot(rows["x"], rows["y"], clip_on="marker" not in look, **look)

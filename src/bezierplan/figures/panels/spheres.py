@@ -1,4 +1,4 @@
-"""A path that the swarm finds among spheres, projected on a plane.
+"""A path that the swarm finds among spheres, projected on a plane, or its clearance.
 
 The panel plans by itself: problems, runs and bounds of experiments have two dimensions.
 """
@@ -8,14 +8,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, Panel, Sources
+from bezierplan.figures.panels import Note, Panel, Sources, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
-from bezierplan.schema.model import Count, Name, Number, Setting
+from bezierplan.schema.model import Count, Flag, Name, Number, Setting, wrong
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.schema.words import amount
 from bezierplan.workspaces.kinds import of_length
@@ -71,8 +71,20 @@ class Options(Panel):
         "the shortest free path is drawn"
     )
     plane: Literal["xy", "xz", "yz"] = Field(
-        description="the plane on which it is projected: xy, xz or yz"
+        None, description="the plane on which it is projected: xy, xz or yz"
     )
+    clearance: Flag = Field(
+        False,
+        description="in place of plane, true: its distance to the nearest sphere or wall, which no "
+        "projection shows",
+    )
+
+    @model_validator(mode="after")
+    def _check_shown(self) -> Options:
+        exactly_one(self, "plane", "clearance")
+        if self.plane is None and not self.clearance:
+            raise wrong("clearance: false; expected true, or a plane in its place")
+        return self
 
     def source(self, sources: Sources) -> tuple[Spheres, str]:
         """The workspace, and the name of the study."""
@@ -95,8 +107,9 @@ def problem(workspace: Spheres, start: list[float], target: list[float]) -> Prob
 def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
     """What is drawn, and a row for each run; columns: part, x, y, z (in the workspace's unit), size
     and obstacle (a sphere's radius and number), run (its name), length, claimed_feasible (by the
-    planner's own test), feasible (by the exact check), method, straight_line and bound (lengths, in
-    units; `spheres.least_length`).
+    planner's own test), feasible (by the exact check), along and clearance (of places of the path:
+    the length up to there as a share of all, and the distance to the nearest sphere or wall, in
+    units), method, straight_line and bound (lengths, in units; `spheres.least_length`).
 
     Parts: corner (of the bounds), sphere, start, target, line (the straight one), run, and of the
     shortest feasible run path and control. source: the workspace, and the name of the study, from
@@ -153,7 +166,9 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
         path = paths[best]
         samples = curves.sample_matrix(path.curve, len(path.points), _STEPS + 1) @ path.points
         parts += [
-            _places("path", samples).assign(run=best),
+            _places("path", samples).assign(
+                run=best, along=_along(samples), clearance=_clearance(samples, workspace)
+            ),
             _places("control", path.points).assign(run=best),
         ]
     columns = [
@@ -167,6 +182,8 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
         "length",
         "claimed_feasible",
         "feasible",
+        "along",
+        "clearance",
     ]
     drawn = pd.concat(parts, ignore_index=True).reindex(columns=columns)
     return drawn.assign(
@@ -180,10 +197,44 @@ def _places(part: str, points: np.ndarray) -> pd.DataFrame:
     return pd.DataFrame(points, columns=["x", "y", "z"]).assign(part=part)
 
 
+def _along(points: np.ndarray) -> np.ndarray:
+    """The length of chords up to each of points (n, 3), as a share of that of all: (n,)."""
+    lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+    return lengths / lengths[-1]
+
+
+def _clearance(points: np.ndarray, workspace: Spheres) -> np.ndarray:
+    """The distance of points (n, 3) to the nearest sphere or wall, negative beyond it: (n,)."""
+    low, high = np.reshape(workspace.bounds, (3, 2)).T
+    to_centres = np.linalg.norm(points[:, None] - workspace.centres, axis=2)
+    return np.hstack([to_centres - workspace.radii, points - low, high - points]).min(axis=1)
+
+
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    across, up = options.plane
     unit = scene.workspaces[options.workspace].unit
+    if options.clearance:
+        return _draw_clearance(axes, frame[frame["part"] == "path"], unit)
+    _draw_projection(axes, frame, unit, options.plane)
+    return _runs_note(frame, unit)
+
+
+def _draw_clearance(axes: Axes, path: pd.DataFrame, unit: str) -> Note:
+    axes.plot(path["along"], path["clearance"], **_LOOK["path"])
+    axes.axhline(0.0, label="surface of a sphere", **style.BOUND)
+    axes.set_xlim(0, 1)
+    low, high = min(0.0, path["clearance"].min()), path["clearance"].max()
+    axes.set_ylim(bottom=low - _MARGIN * (high - low))  # the line of the surfaces stays visible
+    axes.set_xlabel("share of the path's length")
+    axes.set_ylabel(f"clearance ({unit})")
+    axes.grid(visible=True)
+    if path.empty:
+        return Note("no free path")
+    return Note(f"least clearance {amount(format(path['clearance'].min(), '.3g'), unit)}")
+
+
+def _draw_projection(axes: Axes, frame: pd.DataFrame, unit: str, plane: str) -> None:
+    across, up = plane
     flat = frame.assign(
         part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up]
     )
@@ -196,6 +247,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         own = flat[flat["part"] == part]
         if len(own):
             axes.plot(own["x"], own["y"], **look)
+
+
+def _runs_note(frame: pd.DataFrame, unit: str) -> Note:
+    """The length of the shortest free path, and how many runs are free."""
     runs, row = frame[frame["part"] == "run"], frame.iloc[0]
     free, claimed = runs[runs["feasible"].astype(bool)], runs["claimed_feasible"].astype(bool).sum()
     shortest = amount(f"{free['length'].min():.3f}", unit) if len(free) else "none"

@@ -32,6 +32,9 @@ _LEVELS = 14
 # Room beyond what leaves the workspace, as a share of its side.
 _MARGIN = 0.03
 
+# Side of the square that shows paths, as a share of their extent.
+_CLOSE = 1.2
+
 _NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
 _FIRST = {
     "color": style.BLUE,
@@ -46,6 +49,7 @@ _FIRST = {
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    to_scale: ClassVar[bool] = True
     rerun: ClassVar[bool] = True
     tracks: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
@@ -196,12 +200,24 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             f"{name}: repeat {run.rpartition('/')[2]}, length {own['length'].iloc[0]:.2f} "
             f"{workspace.unit}"
         )
-    _show_all(axes, frame[frame["part"].isin(["way", "path"])])
+    if options.point is None:
+        _look_closer(axes, frame[frame["part"].isin(["path", "start", "target"])])
+    else:
+        _show_all(axes, frame[frame["part"] == "way"])
     row = frame.iloc[0]
     if not len(runs):
         return Note("no feasible run")
     notes.append(f"{row['groups']:g} classes among {row['candidates']:g} feasible runs")
     return Note("", "; ".join(notes))
+
+
+def _look_closer(axes: Axes, drawn: pd.DataFrame) -> None:
+    """Show a square about what is drawn."""
+    places = drawn[["x", "y"]].to_numpy(dtype=float)
+    centre = (places.min(axis=0) + places.max(axis=0)) / 2
+    half = _CLOSE * max(np.ptp(places, axis=0).max(), _MARGIN) / 2
+    axes.set_xlim(centre[0] - half, centre[0] + half)
+    axes.set_ylim(centre[1] - half, centre[1] + half)
 
 
 def _show_all(axes: Axes, drawn: pd.DataFrame) -> None:

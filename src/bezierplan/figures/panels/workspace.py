@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -80,6 +80,8 @@ _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 class Options(Panel):
     """Keys of a panel."""
+
+    to_scale: ClassVar[bool] = True
 
     workspace: Described = Field(description="the name of a workspace")
     numbers: Literal["all", "free", "none"] = Field(
