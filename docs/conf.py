@@ -47,6 +47,6 @@ html_theme_options = {
 }
 html_context = {"default_mode": "auto"}
 # Pages without pages below them.
-html_sidebars = dict.fromkeys(("start", "verdicts", "glossary", "faq", "cite", "changelog"), [])
+html_sidebars = {name: [] for name in ("start", "verdicts", "glossary", "faq", "cite", "changelog")}
 html_static_path = []
 html_show_sourcelink = False
