@@ -351,4 +351,6 @@ def test_what_is_kept_of_a_turning_radius_is_printed(capsys, tmp_path):
         "turning radius"
     ].split(" m asked, ")
     assert asked == "9"
-    assert 0 < float(kept.removesuffix(" m kept")) < 9
+    kept, searched = kept.split(" m kept: no more in a search of ")
+    assert 0 < float(kept) < 9
+    assert int(searched.removesuffix(" paths and places").replace(",", "")) > 1000

@@ -263,6 +263,9 @@ class Answer(Judged):
     planned_radius : float
         Radius of the disc for which the path was planned, in the map's unit: with a footprint, from
         the circle within it to that around it.
+    offset : float
+        Least distance of the path from what the shortest path turns around, where the setting
+        `offset` asks for one; nan elsewhere.
     """
 
     method: str
@@ -274,6 +277,7 @@ class Answer(Judged):
     stop: str
     turning_radius: float
     planned_radius: float
+    offset: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -629,6 +633,7 @@ def plan(
         legs.check_kept(
             planned.settings["turning_radius"], planned.turning_radius, problem.workspace.unit
         )
+        legs.check_offset(planned.settings.get("offset"), planned.offset, problem.workspace.unit)
     return planned
 
 
@@ -677,6 +682,7 @@ def _planned(
         **verdict(home, answer.path, shortest, regions, via, footprint),
         turning_radius=legs.kept(planner, answer, chosen),
         planned_radius=grown.radius if grown else 0.0,
+        offset=answer.extra.get("least_offset", math.nan),
         method=name,
         settings=chosen,
         claimed_feasible=answer.claimed_feasible,

@@ -32,6 +32,10 @@ from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.text_file import is_count
 
+# The first run also loads compiled code, so a second one is timed, unless the first took more CPU
+# seconds than that may take.
+_LONG = 2.0
+
 PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
 LIMITS = ("speed", "lateral_acceleration", "acceleration")
@@ -49,7 +53,7 @@ _FROM_MAPS = (
         "most_pixels",
         "scenario",
     ),
-    *("robot_radius", "footprint", "smooth", "strict", "turning_radius", "via_order"),
+    *("robot_radius", "footprint", "smooth", "strict", "turning_radius", "offset", "via_order"),
     *("speed", "lateral_acceleration", "acceleration", "step"),
 )
 """What messages about a map or a problem may begin with: here these are options."""
@@ -72,7 +76,9 @@ the robot:
                     spot. With --strict a path along which it is not free is refused
   turning radius    a setting of the default planner. Where rounding has no room for it, a path that
                     keeps it is searched; if none is found, the radius that is kept is printed
-                    next to it. With --strict such a path is refused
+                    next to it. With --strict such a path is refused. A search ends after a fixed
+                    number of places, not of seconds: that it finds nothing is no proof. So with the
+                    setting offset, the distance from corners: what is kept of it is printed
   --smooth continuous
                     transitions between lines and arcs, along which the curvature rises and falls,
                     wherever there is room for them. The largest curvature that is printed is
@@ -363,6 +369,11 @@ def _plan(arguments: Namespace) -> None:
                 home.unit,
             )
             legs.check_kept(settings["turning_radius"], kept, home.unit)
+            legs.check_offset(
+                settings.get("offset"),
+                solution.plan.extra.get("least_offset", math.nan),
+                home.unit,
+            )
     for name, text in _told(judged, task, solution, kept):
         print(f"{name:16}{text}")
     if arguments.out and judged.path is None:
@@ -414,7 +425,10 @@ def _solution(task: _Task, problem: Placed) -> _Solution:
             f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
             "that can be reached"
         )
-    for _ in range(2):  # the first run also loads compiled code, so only the second is timed
+    seconds = 0.0
+    for _ in range(2):
+        if seconds > _LONG:
+            break
         if task.planner in legs.TURNING:
             begin = time.process_time()
             plan = legs.solved(task.planner, parts, bounds, blocked, settings, task.smooth)
@@ -514,8 +528,8 @@ def _as_options() -> Iterator[None]:
         name, colon, told = str(error).partition(":")
         if colon and name in _FROM_MAPS:
             option = (
-                "--settings: turning_radius"
-                if name == "turning_radius"
+                f"--settings: {name}"
+                if name in ("turning_radius", "offset")
                 else f"--{name.replace('_', '-')}"
             )
             raise Fault(f"{option}:{told}") from None
@@ -600,7 +614,10 @@ def _told(
         order = " ".join(f"{x:.12g},{y:.12g}" for x, y in judged.via)
         lines.append(("way points", order))
     if judged.path is None:
-        return [*lines, ("path", f"none ({solution.plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
+        told = solution.plan.stop
+        if planner in legs.TURNING:
+            told += f" in a search of {solution.plan.evaluations:,} places"
+        return [*lines, ("path", f"none ({told})"), ("CPU time", f"{seconds:.3g} s")]
     gap = _told_number(100 * abs(judged.gap), 3)
     side = "below" if judged.gap < 0 and gap != "0" else "above"
     lines.append(("length", f"{judged.length:.6g} {unit}, {gap} % {side} the shortest path"))
@@ -608,12 +625,27 @@ def _told(
     if planner in legs.TURNING:
         asked = settings["turning_radius"]
         met = kept >= asked * (1 - 1e-9)
+        searched = f"in a search of {solution.plan.evaluations:,} paths and places"
         lines.append(
             (
                 "turning radius",
-                f"{asked:.6g} {unit} asked{' and kept' if met else f', {kept:.6g} {unit} kept'}",
+                f"{asked:.6g} {unit} asked"
+                + (" and kept" if met else f", {kept:.6g} {unit} kept: no more {searched}"),
             )
         )
+        if "least_offset" in solution.plan.extra:
+            wish, least = settings["offset"], solution.plan.extra["least_offset"]
+            lines.append(
+                (
+                    "offset",
+                    f"{wish:.6g} {unit} asked"
+                    + (
+                        " and kept"
+                        if legs.is_kept(wish, least)
+                        else f", {_told_number(least, 6)} {unit} kept at a corner: no room"
+                    ),
+                )
+            )
     lines.append(
         (
             "clearance",

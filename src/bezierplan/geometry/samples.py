@@ -103,11 +103,29 @@ def speeds(
     lateral: float = math.inf,
     acceleration: float = math.inf,
 ) -> np.ndarray:
-    """The speed (n,) at each sample, in units a second, under a limit of speed and of lateral
-    acceleration, in units a second squared.
+    """The largest speed at each sample that some limits allow.
 
-    acceleration: limit of the change of speed, in units a second squared; with one, the path begins
-    and ends at rest. Raises ValueError for limits that are not above 0.
+    Parameters
+    ----------
+    samples : Samples
+        Of `along`.
+    limit : float
+        Of the speed, in units a second.
+    lateral : float
+        Of the acceleration across the path, in units a second squared.
+    acceleration : float
+        Of the change of speed, in units a second squared; with one, the path begins and ends at
+        rest.
+
+    Returns
+    -------
+    (n,) array
+        Speeds in units a second.
+
+    Raises
+    ------
+    ValueError
+        For limits that are not above 0.
     """
     for name, value in (("limit", limit), ("lateral", lateral), ("acceleration", acceleration)):
         if not value > 0:
@@ -145,10 +163,31 @@ def check_limits(speed: float | None, accelerations: Mapping[str, float | None])
 
 
 def times(samples: Samples, speed: np.ndarray) -> np.ndarray:
-    """When each sample is passed (n,), in seconds from the first, at speeds (n,) that change evenly
-    in time between two samples.
+    """When each sample is passed, at speeds that change evenly in time between two samples.
 
-    Raises ValueError if the robot stands at two in a row.
+    Parameters
+    ----------
+    samples : Samples
+        Of `along`.
+    speed : (n,) array
+        At each of them, in units a second, as of `speeds`.
+
+    Returns
+    -------
+    (n,) array
+        Seconds from the first sample.
+
+    Raises
+    ------
+    ValueError
+        If the robot stands at two samples in a row that are not in the same place.
+
+    Examples
+    --------
+    >>> straight = along(Path("polyline", np.array([[0.0, 0.0], [4.0, 0.0]])), n=3)
+    >>> speed = speeds(straight, limit=2.0, acceleration=1.0)
+    >>> speed.tolist(), times(straight, speed).tolist()
+    ([0.0, 2.0, 0.0], [0.0, 2.0, 4.0])
     """
     apart, both = np.diff(samples.distance), speed[1:] + speed[:-1]
     if ((both == 0) & (apart > 0)).any():
@@ -200,6 +239,7 @@ def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
         ahead = np.where(t < 0.5, t + 1e-3, t)
         behind = np.where(t < 0.5, t, t - 1e-3)
         direction[still] = (_values(pieces, ahead) - _values(pieces, behind))[still]
+        direction[size == 0] = 0.0  # the whole piece is one place: no rounding error is a heading
     return np.arctan2(direction[:, 1], direction[:, 0])
 
 

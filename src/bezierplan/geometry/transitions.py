@@ -76,6 +76,8 @@ def eased(path: Path, blocked: Region) -> Path:
                 else part.pieces[-1, -1],
             )
     chain = np.concatenate(chains)
+    if not len(chain):  # it ends where it begins
+        return path
     return Path("cubic_chain", np.concatenate([chain[0, :1], chain[:, 1:].reshape(-1, 2)]))
 
 

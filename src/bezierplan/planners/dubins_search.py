@@ -10,18 +10,21 @@ if it is free, a path is found. It is then pulled tight: parts of it are replace
 between its own places, and these places are moved as long as it becomes shorter.
 
 Every arc and line is tested by the certified checker's own search, as the cubic pieces that are the
-answer. A search that finds nothing is repeated with finer steps; that it finds nothing is no proof
-that there is no such path.
+answer. A search that finds nothing is repeated with finer steps, then from more places, and with
+wider turns, which lead farther with each step, up to a limit (`MOST_EXPANDED`). That it finds
+nothing is no proof that there is no such path.
 """
 
 import heapq
 import math
+from collections.abc import Callable, Iterator
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry import checker, curves, shortest_paths
-from bezierplan.geometry.checker import TOLERANCE, first_collision, is_free
+from bezierplan.geometry.any_collision import collides
+from bezierplan.geometry.checker import TOLERANCE, is_free
 from bezierplan.geometry.region import GridRegion, Region, from_origin, region
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
@@ -34,12 +37,17 @@ extra = ("expanded",)
 exact = True
 deterministic = True
 
+MOST_EXPANDED = 400_000
+"""Most places from which all searches for one path drive on."""
+
 # A step turns by at most this angle, in radians, and is at most this share of the map's longer
 # side. Searches follow each other with steps shorter by a factor, and drive on from at most so many
-# places.
+# places; then with wider turns, on a scale that does not depend on the radius.
 _STEP_ANGLE = math.pi / 8
 _STEP_SHARE = 1 / 60
-_SEARCHES = ((1.0, 6_000), (0.5, 9_000), (0.25, 12_000))
+_SEARCHES = ((1.0, 6_000), (0.5, 9_000), (0.25, 12_000), (1.0, 60_000))
+_WIDER = (1.0, 60_000)
+_WIDER_PER_OCTAVE = 2
 
 # The length ahead counts so much more than that driven: what is found first need not be shortest,
 # since it is pulled tight.
@@ -144,9 +152,18 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def searched(
-    problem: Problem, settings: Settings, bound: shortest_paths.Bound, blocked: Region
+    problem: Problem,
+    settings: Settings,
+    bound: shortest_paths.Bound,
+    blocked: Region,
+    ahead: Callable[[], Lattice] | None = None,
+    only_radius: bool = False,
 ) -> Plan:
-    """The same, where the exact shortest path and the region of the map are known."""
+    """The same, where the exact shortest path and the region of the map are known.
+
+    ahead: makes their `lattice_of`, for who searches several times. only_radius: one search with
+    the radius itself, from as many places as any.
+    """
     if math.isinf(bound.length):
         return _answer(problem, None, 0, "no way", blocked)
     radius = settings.turning_radius
@@ -155,17 +172,23 @@ def searched(
     direct = _chain(ends, radius, 1, blocked)
     if len(direct):
         return _answer(problem, direct, 0, "direct", blocked)
-    lattice = _lattice(problem, bound, blocked)
+    lattice = ahead() if ahead else lattice_of(problem, bound, blocked)
     expanded = 0
-    for factor, most in _SEARCHES:
+    for driven, factor, most in _searches(problem, radius, only_radius):
         poses, count = _search(
-            ends, radius, factor * _step(problem, radius), lattice, most, blocked
+            ends,
+            driven,
+            factor * _step(problem, driven),
+            lattice,
+            min(most, MOST_EXPANDED - expanded),
+            blocked,
         )
         expanded += count
-        if len(poses):
-            return _answer(
-                problem, _pulled_tight(poses, radius, blocked), expanded, "search", blocked
-            )
+        pieces = _pulled_tight(poses, ends, driven, blocked)
+        if len(pieces):
+            if driven > radius:
+                pieces = _tighter(pieces, _places(pieces, ends), radius, blocked)
+            return _answer(problem, pieces, expanded, "search", blocked)
     return _answer(problem, None, expanded, "none found", blocked)
 
 
@@ -188,13 +211,41 @@ def _answer(
     return Plan(path, length, claimed_feasible=free, history=np.array([length]), **told)
 
 
+def _searches(
+    problem: Problem, radius: float, only_radius: bool
+) -> Iterator[tuple[float, float, int]]:
+    """The searches that follow each other: the radius that is driven, the factor of its steps, and
+    the most places.
+    """
+    if only_radius:
+        yield radius, *_WIDER
+        return
+    for search in _SEARCHES:
+        yield radius, *search
+    x_low, x_high, y_low, y_high = problem.workspace.bounds
+    longer_side = max(x_high - x_low, y_high - y_low)
+    below, easiest, above = (
+        math.floor(math.log2(each) * _WIDER_PER_OCTAVE) + 1
+        for each in (radius, easiest_radius(problem), longer_side)
+    )
+    # From where steps lead far enough to tighter turns, which need more of them, then the rest.
+    scale = [*range(max(easiest, below) - 1, below - 1, -1), *range(max(easiest, below), above)]
+    for number in scale:
+        yield 2 ** (number / _WIDER_PER_OCTAVE), *_WIDER
+
+
 def _step(problem: Problem, radius: float) -> float:
     """The longest step of a search."""
+    return _STEP_ANGLE * min(radius, easiest_radius(problem))
+
+
+def easiest_radius(problem: Problem) -> float:
+    """The smallest radius with which the longest steps lead across the map in few."""
     x_low, x_high, y_low, y_high = problem.workspace.bounds
-    return min(_STEP_ANGLE * radius, _STEP_SHARE * max(x_high - x_low, y_high - y_low))
+    return _STEP_SHARE * max(x_high - x_low, y_high - y_low) / _STEP_ANGLE
 
 
-def _lattice(problem: Problem, bound: shortest_paths.Bound, blocked: Region) -> Lattice:
+def lattice_of(problem: Problem, bound: shortest_paths.Bound, blocked: Region) -> Lattice:
     """Distances to the target over a lattice; where the exact shortest path passes, its own."""
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     side = math.sqrt((x_high - x_low) * (y_high - y_low) / _NODES)
@@ -248,10 +299,7 @@ def _distances(low, side, shape, known, blocked):
                     low[0] + side * other_column,
                     low[1] + side * other_row,
                 )
-                if (
-                    _is_clear(row, column, up, right, clear)
-                    or first_collision(link, blocked)[0] == np.inf
-                ):
+                if _is_clear(row, column, up, right, clear) or not collides(link, blocked):
                     ahead[other_row, other_column] = so_far
                     heapq.heappush(heap, (so_far, other_row, other_column))
     return ahead
@@ -325,12 +373,7 @@ def _free_word(a, b, radius, most, blocked, words, pieces):
         if words[best, 7] == np.inf:
             break
         count = pieces_of(a, b, words[best], radius, pieces)
-        free = True
-        for k in range(count):
-            if first_collision(pieces[k : k + 1], blocked)[0] < np.inf:
-                free = False
-                break
-        if free:
+        if not collides(pieces[:count], blocked):
             return best, count
         words[best, 7] = np.inf
     return -1, 0
@@ -398,7 +441,7 @@ def _search(ends, radius, step, lattice, most, blocked):
         if ahead < nearest or expanded % _TRIED == 0:
             nearest = min(nearest, ahead)
             if _free_word(poses[node], target, radius, WORDS, blocked, words, pieces)[0] >= 0:
-                return _way(poses, came_from, node, ends), expanded
+                return _way(poses, came_from, node, target), expanded
         for turn in range(-1, 2):
             pose = poses[count]
             _drive(poses[node], float(turn), step, radius, pose)
@@ -408,7 +451,7 @@ def _search(ends, radius, step, lattice, most, blocked):
                 continue
             word[0], word[1], word[6] = turn, step, poses[node, 2]
             pieces_of(poses[node], pose, word, radius, pieces)
-            if first_collision(pieces[:1], blocked)[0] < np.inf:
+            if collides(pieces[:1], blocked):
                 continue
             came_from[count], length[count] = node, so_far
             nodes[key] = count
@@ -446,22 +489,19 @@ def _key(pose, step, headings):
 
 
 @compiled
-def _way(poses, came_from, last, ends):
-    """The poses (n, 3) from start to a node, and the target; the ends are those that were asked
-    for.
-    """
+def _way(poses, came_from, last, target):
+    """The poses (n, 3) from start to a node, and the target."""
     count = 0
     node = last
     while node >= 0:
         count += 1
         node = came_from[node]
     way = np.empty((count + 1, 3))
-    way[count] = ends[1]
+    way[count] = target
     node = last
     for k in range(count - 1, -1, -1):
         way[k] = poses[node]
         node = came_from[node]
-    way[0] = ends[0]
     return way
 
 
@@ -469,9 +509,30 @@ def _way(poses, came_from, last, ends):
 # Pulling tight
 
 
-def _pulled_tight(poses: np.ndarray, radius: float, blocked: Region) -> np.ndarray:
-    """The pieces of a path along some poses (n, 3), pulled tight."""
-    best = _chain(poses, radius, WORDS, blocked)
+def _pulled_tight(
+    poses: np.ndarray, ends: np.ndarray, radius: float, blocked: Region
+) -> np.ndarray:
+    """The pieces of a path along some poses (n, 3), pulled tight; none without poses.
+
+    ends: (2, 3) as they were asked for. Where the heading at the start is free, the words from
+    there may be others than those that the search drove, and not free: then it is that of the
+    search.
+    """
+    best = np.empty((0, 4, 2))
+    if not len(poses):
+        return best
+    for first in (ends[0], poses[0]):
+        poses = np.vstack([first, poses[1:]])
+        best = _chain(poses, radius, WORDS, blocked)
+        if len(best):
+            return _tighter(best, poses, radius, blocked)
+    return best
+
+
+def _tighter(best: np.ndarray, poses: np.ndarray, radius: float, blocked: Region) -> np.ndarray:
+    """The pieces of a path pulled tight between poses (n, 3) along it, as long as it becomes
+    shorter.
+    """
     length = _length(best)
     for _ in range(_ROUNDS):
         few = _shortcut(poses, radius, blocked)

@@ -10,6 +10,8 @@ path.
 """
 
 import math
+from collections.abc import Callable
+from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -124,43 +126,63 @@ def gentlest(
     """The same, but where the circles have no room for the turning radius, a path that keeps it is
     searched (`dubins_search`).
 
-    If none is found, the largest radius is kept that is: wishes shrink on a fixed scale until the
-    circles have room for one, the largest between it and the one before is found by halving, and
-    from there to the turning radius the search is asked likewise. So a larger wish gives no tighter
-    turn than a smaller one, within `_SAME_SEARCHED`. bound, blocked: the exact shortest path and
-    the region of the map.
+    If none is found, the largest radius is kept that is: of the circles (`_largest`), or of a
+    search (`_widest`). So a larger wish gives no tighter turn than a smaller one, except where a
+    search with just that one finds a path. bound, blocked: the exact shortest path and the region
+    of the map.
     """
     first = _answer(problem, bound, blocked, settings)
     if math.isinf(bound.length) or first.extra["tight_turns"] == 0:
         return first
-    if driven := _searched(problem, bound, blocked, settings.turning_radius):
-        return driven
+    turns = len(turns_of(bound.points, problem.workspace).side)
+    ahead = cache(partial(dubins_search.lattice_of, problem, bound, blocked))
+
+    def search(radius: float, only_radius: bool) -> Plan:
+        poses = dubins_search.Settings(radius, math.nan, math.nan)
+        found = dubins_search.searched(problem, poses, bound, blocked, ahead, only_radius)
+        return found._replace(
+            path=found.path if found.claimed_feasible else None,
+            extra={"turns": turns, "tight_turns": 0, "least_radius": radius},
+        )
+
+    asked = search(settings.turning_radius, only_radius=False)
+    if asked.path:
+        return asked
     best = _largest(problem, bound, blocked, settings, first)
-    x_low, x_high, y_low, y_high = problem.workspace.bounds
-    kept, failed = (
-        best.extra["least_radius"],
-        min(settings.turning_radius, 2 * (x_high - x_low + y_high - y_low)),
+    wider, places = _widest(problem, search)
+    tries = best.evaluations + asked.evaluations + places
+    if wider and wider.extra["least_radius"] > best.extra["least_radius"]:
+        best = wider
+    kept = best.extra["least_radius"] >= settings.turning_radius
+    return best._replace(
+        evaluations=tries, extra=best.extra | {"tight_turns": 0 if kept else turns}
     )
-    while kept > 0 and failed > kept * (1 + _SAME_SEARCHED):
-        wish = math.sqrt(kept * failed)
-        if driven := _searched(problem, bound, blocked, wish):
-            best, kept = driven, wish
+
+
+def _widest(problem: Problem, search: Callable[[float, bool], Plan]) -> tuple[Plan | None, int]:
+    """The path with the largest radius for which a search finds one, to `_SAME_SEARCHED`, and the
+    number of places that were searched.
+
+    The radii that are tried are the same whatever the turning radius. After
+    `dubins_search.MOST_EXPANDED` places no further one is tried.
+    """
+    x_low, x_high, y_low, y_high = problem.workspace.bounds
+    failed = 2 * (x_high - x_low + y_high - y_low)
+    smallest = _SMALLEST_WISH * failed
+    wish, kept, best, places = dubins_search.easiest_radius(problem), 0.0, None, 0
+    while (
+        failed > kept * (1 + _SAME_SEARCHED)
+        and wish > smallest
+        and places < dubins_search.MOST_EXPANDED
+    ):
+        found = search(wish, True)
+        places += found.evaluations
+        if found.path:
+            best, kept = found, wish
         else:
             failed = wish
-    return best._replace(extra=best.extra | {"tight_turns": best.extra["turns"]})
-
-
-def _searched(
-    problem: Problem, bound: shortest_paths.Bound, blocked: Region, radius: float
-) -> Plan | None:
-    """A path that turns no tighter than a radius; None if the search finds none."""
-    candidate = dubins_search.searched(
-        problem, dubins_search.Settings(radius, math.nan, math.nan), bound, blocked
-    )
-    if not candidate.claimed_feasible:
-        return None
-    turns = len(turns_of(bound.points, problem.workspace).side)
-    return candidate._replace(extra={"turns": turns, "tight_turns": 0, "least_radius": radius})
+        wish = math.sqrt(kept * failed) if best else 0.5 * failed
+    return best, places
 
 
 def _largest(
@@ -178,9 +200,11 @@ def _largest(
         if wish < _SMALLEST_WISH * around:
             return first._replace(evaluations=tries)
         number -= 1
-        found = _answer(problem, bound, blocked, settings._replace(turning_radius=wish))
-        tries += found.evaluations
-        if found.extra["tight_turns"]:
+        wished = settings._replace(turning_radius=wish)
+        may_fit, looked_at = _may_fit(problem, bound, blocked, wished)
+        found = _answer(problem, bound, blocked, wished) if may_fit else None
+        tries += looked_at + (found.evaluations if found else 0)
+        if found is None or found.extra["tight_turns"]:
             failed = wish
         else:
             kept = wish, found
@@ -188,6 +212,23 @@ def _largest(
     if best.extra["least_radius"] <= first.extra["least_radius"] * (1 + _SAME_RADIUS):
         best = first
     return best._replace(evaluations=tries)
+
+
+def _may_fit(
+    problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings
+) -> tuple[bool, int]:
+    """Whether `_answer` may have no tight turns, and the number of paths tried for it: circles
+    never grow again, so as soon as one has shrunk below the turning radius they have no room.
+    """
+    looked_at = 0
+    centres, *_ = _discs(problem.workspace)
+    for workspace in (problem.workspace, None) if len(centres) else (None,):
+        turns = turns_of(bound.points, workspace)
+        points, _, tries, _ = _rounded(problem, turns, blocked, settings, give_up=True)
+        looked_at += tries
+        if len(points):
+            return True, looked_at
+    return False, looked_at
 
 
 def _answer(
@@ -223,7 +264,7 @@ def _answer(
         stop="exact",
         extra={
             "turns": len(radii),
-            "tight_turns": int((radii < settings.turning_radius * (1 - 1e-9)).sum()),
+            "tight_turns": int(_is_tight(radii, settings).sum()),
             "least_radius": float(radii.min(initial=math.inf)),
         },
     )
@@ -287,14 +328,15 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 
 
 def _rounded(
-    problem: Problem, turns: Turns, blocked: Region, settings: Settings
+    problem: Problem, turns: Turns, blocked: Region, settings: Settings, give_up: bool = False
 ) -> tuple[np.ndarray, np.ndarray, int, bool]:
     """Control points of the rounded path, radius (n,) of each turn, the number of paths tried, and
     whether the path is free.
 
     Where two circles of the same sense get in each other's way, they become one turn and are pulled
     inwards in the same direction. Where that does not help, circles are pulled inwards less, and
-    only then shrink.
+    only then shrink. With `give_up`, there are no points if one has to be smaller than the turning
+    radius.
     """
     count = len(turns.side)
     # Share of the desired radius, share of the way inwards up to the corner's clearance, and
@@ -304,6 +346,8 @@ def _rounded(
     while True:
         tries += 1
         radii, centres = _circles(turns, begins, share, pulled, settings)
+        if give_up and _is_tight(radii, settings).any():
+            return np.empty((0, 2)), radii, tries, False
         legs, sweeps, bent_back, crowded = _string(problem, turns, centres, radii)
         if bent_back.any() and _join(begins, bent_back, turns):
             continue
@@ -323,6 +367,11 @@ def _rounded(
         if not bad[1:-1].any() or not share[bad[1:-1]].any():
             return points, radii, tries, not bad.any()
         _shrink(share, bad[1:-1], begins)
+
+
+def _is_tight(radii: np.ndarray, settings: Settings) -> np.ndarray:
+    """Whether (n,) radii are smaller than the turning radius."""
+    return radii < settings.turning_radius * (1 - 1e-9)
 
 
 def _shrink(share: np.ndarray, which: np.ndarray, begins: np.ndarray) -> None:

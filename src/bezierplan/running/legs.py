@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan.geometry import curves, shortest_paths, transitions
+from bezierplan.geometry import checker, curves, shortest_paths, transitions
 from bezierplan.geometry.curvature_bound import largest_curvature
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import Plan, dubins_search, rounded_shortest_path
 from bezierplan.planners.parts.settings import filled
 from bezierplan.running import problems
 from bezierplan.running.problems import Placed, Regions
+from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.frames import Frame
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.problem import Path, Problem, Workspace
@@ -38,6 +39,9 @@ _STRAIGHT = 1e-8
 
 # A radius that is smaller by less, as a share, is the same.
 _SAME = 1e-9
+
+# An offset is kept up to this share.
+_OFF_CIRCLE = 1e-3
 
 SMOOTH = ("arcs", "continuous")
 """Whether a path turns along arcs, or with a curvature that changes continuously."""
@@ -133,8 +137,47 @@ def solved(
     settings: dict[str, Any],
     smooth: str = SMOOTH[0],
 ) -> Plan:
-    """The answer of a planner with a turning radius to all legs. Where rounding leaves a corner at
-    a way point, the legs are searched.
+    """The answer of a planner with a turning radius to all legs. With an offset, it has an extra
+    column more: least_offset, how much of it is kept.
+    """
+    plan = _solved(planner, parts, bounds, blocked, settings, smooth)
+    if planner == ROUNDED and plan.path is not None and settings["offset"] > 0:
+        kept = _least_offset(plan.path, parts, bounds)
+        plan = plan._replace(extra=plan.extra | {"least_offset": kept})
+    return plan
+
+
+def _least_offset(
+    path: Path, parts: Sequence[Problem], bounds: Sequence[shortest_paths.Bound]
+) -> float:
+    """Least distance of a path from what the shortest path turns around; infinite without turns."""
+    turns = [
+        rounded_shortest_path.turns_of(bound.points, part.workspace)
+        for part, bound in zip(parts, bounds)
+    ]
+    centres = np.concatenate([each.corner for each in turns])
+    if not len(centres):
+        return math.inf
+    radii = np.concatenate([each.radius for each in turns])
+    x_low, x_high, y_low, y_high = parts[0].workspace.bounds
+    margin = 2 * (x_high - x_low + y_high - y_low)  # no path is as close to the border of this
+    around = (x_low - margin, x_high + margin, y_low - margin, y_high + margin)
+    verdict = checker.check(
+        curves.bezier_pieces(path), region(Circles(around, centres=centres, radii=radii, unit=""))
+    )
+    return verdict.clearance
+
+
+def _solved(
+    planner: str,
+    parts: Sequence[Problem],
+    bounds: Sequence[shortest_paths.Bound],
+    blocked: Region,
+    settings: dict[str, Any],
+    smooth: str,
+) -> Plan:
+    """The same, without this column. Where rounding leaves a corner at a way point, the legs are
+    searched.
 
     With `continuous` curvature, transitions go before and after arcs wherever there is room. They
     shift arcs inwards, so these are planned wider and as much farther from the corners.
@@ -144,7 +187,8 @@ def solved(
         wide = settings | {"turning_radius": radius}
         if planner == ROUNDED:
             wide["offset"] = settings["offset"] + transitions.SHIFT * radius
-        return _eased(planner, solved(planner, parts, bounds, blocked, wide), blocked)
+        arcs = _solved(planner, parts, bounds, blocked, wide, SMOOTH[0])
+        return _eased(planner, arcs, blocked)
     if planner == DRIVEN:
         return joined(_driven(parts, bounds, blocked, settings))
     rounded = joined(
@@ -267,6 +311,22 @@ def check_continuous(smooth: str, jump: float, curvature: float, unit: str) -> N
         raise ValueError(
             f"smooth: continuous: the curvature jumps by {jump:.3g} / {unit}, no room; expected "
             "room, or not strict"
+        )
+
+
+def is_kept(asked: float, kept: float) -> bool:
+    """Whether an offset is kept; arcs are cubic pieces, which lie a little off their circles."""
+    return kept >= asked * (1 - _OFF_CIRCLE)
+
+
+def check_offset(asked: float | None, kept: float, unit: str) -> None:
+    """Raise ValueError if a path comes closer to a corner than the offset that was asked for. kept:
+    nan where none was.
+    """
+    if asked and not math.isnan(kept) and not is_kept(asked, kept):
+        raise ValueError(
+            f"offset: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that can be "
+            "kept, or not strict"
         )
 
 

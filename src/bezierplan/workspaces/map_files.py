@@ -11,7 +11,7 @@ from bezierplan.schema.checked import Fault
 from bezierplan.workspaces import files, frames, raster, robot, ros
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.geojson import polygons_from_geojson
-from bezierplan.workspaces.limits import FARTHEST, check_thickness
+from bezierplan.workspaces.limits import FARTHEST, LARGEST, check_thickness
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.text_file import number, read_text
 
@@ -84,6 +84,8 @@ def described(
             raise ValueError(f"{name}: {length:g}; expected a number above 0")
     if margin is not None and not 0 <= margin < math.inf:
         raise ValueError(f"margin: {margin:g}; expected a number of at least 0")
+    if margin is not None and margin > LARGEST:
+        raise ValueError(f"margin: {margin:g}; expected at most {LARGEST:g}")
     if rule not in (None, "overlap", "centre"):
         raise ValueError(f"rule: {rule}; expected overlap or centre")
     if unknown not in (None, "occupied", "free"):
