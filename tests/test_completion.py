@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from bezierplan.__main__ import COMMANDS
+from bezierplan.__main__ import COMMANDS, main
 from bezierplan.commands import completion
 
 
@@ -62,18 +62,23 @@ def test_every_shell_gets_code_that_names_the_command(shell):
     assert "_ARGCOMPLETE" in told
 
 
-def listed(*words: str) -> subprocess.CompletedProcess:
-    return subprocess.run(
-        [sys.executable, "-m", "bezierplan", "list", *words],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
+@pytest.fixture
+def listed(capsys):
+    """What `list` prints for some words, and its exit code, in this process."""
+
+    def of(*words: str) -> tuple[str, str, object]:
+        code: object = 0
+        try:
+            main(["list", *words])
+        except SystemExit as ended:
+            code = ended.code
+        return *capsys.readouterr(), code
+
+    return of
 
 
-def test_list_shows_the_kinds_and_studies_that_are_named():
-    first, *lines = listed("methods", "song2016").stdout.splitlines()
+def test_list_shows_the_kinds_and_studies_that_are_named(listed):
+    first, *lines = listed("methods", "song2016")[0].splitlines()
     assert first.startswith("song2016: ")
     assert {line.split()[0] for line in lines} == {"method"}
     # One line says what the method is.
@@ -82,16 +87,14 @@ def test_list_shows_the_kinds_and_studies_that_are_named():
     )
     kinds = {
         line.split()[0]
-        for line in listed("claims", "tables").stdout.splitlines()
+        for line in listed("claims", "tables")[0].splitlines()
         if line.startswith("  ")
     }
     assert kinds == {"claim", "table"}
 
 
-def test_list_says_what_an_unknown_word_may_mean():
-    refused = listed("metods")
-    assert refused.returncode == 2
-    assert refused.stderr.startswith(
-        "list: metods: neither a kind nor a study; did you mean methods?"
-    )
-    assert len(refused.stderr.splitlines()) == 1
+def test_list_says_what_an_unknown_word_may_mean(listed):
+    _, errors, code = listed("metods")
+    assert code == 2
+    assert errors.startswith("list: metods: neither a kind nor a study; did you mean methods?")
+    assert len(errors.splitlines()) == 1

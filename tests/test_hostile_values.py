@@ -13,7 +13,7 @@ import pytest
 
 from bezierplan.analysis import headline, metrics, statistics, summary
 from bezierplan.figures import sheet
-from bezierplan.running import digest
+from bezierplan.running import digest, watchdog
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading, targets
 
@@ -1299,8 +1299,12 @@ def test_a_study_without_a_fault(folder):
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_one_line(fault, folder):
+def test_a_fault_is_one_line(fault, folder, monkeypatch):
     name, old, new, expected = FAULTS[fault]
+    if name != "walk.py":
+        # The planner harms nobody, so it needs no processes of its own: they would take most of the
+        # time.
+        monkeypatch.setattr(watchdog, "verdict", lambda name, judge, limit: judge())
     file = folder / name
     text = file.read_text()
     assert old in text

@@ -95,7 +95,9 @@ def table(studies: dict[str, Study], results: Path) -> pd.DataFrame:
 
 
 def runs(study: Study, experiment: str, scale: str) -> int:
-    """Runs of each condition: repeats on each layout, and layouts of the problem with the most."""
+    """Runs of the conditions with the most: repeats on each layout, and layouts. Published numbers
+    that count and claims in their primary variant are of these; others may have fewer.
+    """
     described = study.experiments[experiment]
     layouts = [study.problems[name].layouts for name in described.problems]
     return described.repeats[scale] * max((drawn[scale] for drawn in layouts if drawn), default=1)
