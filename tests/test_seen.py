@@ -20,6 +20,7 @@ from bezierplan.figures import seen
         ({"a": 2.0, "b": np.inf, "c": 3.0}, "lowest median: a (2), highest: c (3)"),
         ({"a": 1.0, "b": 1.0, "c": 3.0}, "lowest median: a and b (1), highest: c (3)"),
         ({"a": 1.0, "b": 1.0}, "median 1 of all"),
+        ({"a": 12345.6, "b": 0.00123456}, "lowest median: b (0.001235), highest: a (12,346)"),
         ({"a": 2.0, "b": np.nan}, ""),
         ({}, ""),
     ],

@@ -34,11 +34,17 @@ def extremes(name: str, values: Mapping[str, float]) -> str:
         return ""
     low, high = min(known.values()), max(known.values())
     if low == high:
-        return f"{name} {low:.4g} of all"
+        return f"{name} {_printed(low)} of all"
     lowest, highest = (
         " and ".join(key for key, value in known.items() if value == end) for end in (low, high)
     )
-    return f"lowest {name}: {lowest} ({low:.4g}), highest: {highest} ({high:.4g})"
+    ends = _printed(low), _printed(high)
+    return f"lowest {name}: {lowest} ({ends[0]}), highest: {highest} ({ends[1]})"
+
+
+def _printed(value: float) -> str:
+    """A number to four digits, without powers of ten where it is large."""
+    return f"{value:.4g}" if abs(value) < 1e4 else f"{value:,.0f}"
 
 
 def mostly(name: str, table: pd.DataFrame) -> str:
