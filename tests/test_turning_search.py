@@ -165,5 +165,60 @@ def test_a_path_that_goes_nowhere(tmp_path):
 def test_the_interface_documents_every_function_of_samples():
     documented = (PACKAGE.parents[1] / "docs" / "api.md").read_text(encoding="utf-8")
     for name, function in inspect.getmembers(samples, inspect.isfunction):
-        if function.__module__ == samples.__name__ and name[0] != "_" and name != "check_limits":
+        if function.__module__ == samples.__name__ and not name.startswith(("_", "check_")):
             assert f"bezierplan.geometry.samples.{name}\n" in documented
+
+
+WRONG = {
+    "so many points": (
+        ("--step", "1e-9", "--out", "path.csv"),
+        "--step: 1e-09: more than 10,000,000 points on 16 units; expected at least 1.6e-06",
+    ),
+    "a rest at both ends": (
+        ("--speed", "1", "--acceleration", "1", "--step", "90", "--out", "path.csv"),
+        "--step: the robot rests at two samples in a row; expected a smaller one",
+    ),
+    "no text": (("--like", ""), "--like: ''; expected some text"),
+    "a large footprint": (
+        ("--footprint", "[[-11, -11], [11, -11], [11, 11], [-11, 11]]"),
+        "--footprint: the circle within it, of radius 11: no place of the map is that far from",
+    ),
+    "text in a footprint": (
+        ("--footprint", "[[0, 0], [1, 0], ['1', 1]]"),
+        "--footprint: [[0, 0], [1, 0], ['1', 1]]; expected [[x, y], ...]",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_what_cannot_be_is_told_in_one_line(case, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words, expected = WRONG[case]
+    with pytest.raises(SystemExit) as ended:
+        planned(capsys, "--target", "18,10", *words)
+    told = capsys.readouterr()
+    assert ended.value.code == 2
+    assert told.err.startswith(expected)
+    assert told.err.count("\n") == 1
+    assert told.out == ""
+
+
+def test_the_map_itself_is_never_overwritten(capsys, tmp_path):
+    file = tmp_path / "gaps.geojson"
+    before = (BENCHMARK_MAPS / file.name).read_bytes()
+    file.write_bytes(before)
+    out = tmp_path / "." / "gaps.geojson"
+    with pytest.raises(SystemExit) as ended:
+        main(["plan", str(file), "--start", "2,10", "--target", "18,10", "--out", str(out)])
+    assert ended.value.code == 2
+    assert "is the map itself; expected another file" in capsys.readouterr().err
+    assert file.read_bytes() == before
+
+
+def test_a_margin_that_no_map_can_have(capsys, tmp_path):
+    ring = [[4, 4], [6, 4], [6, 6], [4, 6], [4, 4]]
+    file = tmp_path / "block.geojson"
+    file.write_text(f'{{"type": "Polygon", "coordinates": [{ring}]}}', encoding="utf-8")
+    with pytest.raises(SystemExit):
+        main(["plan", str(file), "--start", "1,5", "--target", "9,5", "--margin", "1e300"])
+    assert capsys.readouterr().err == "--margin: 1e+300; expected at most 100000\n"

@@ -323,10 +323,12 @@ def _plan(arguments: Namespace) -> None:
         outline = _footprint(arguments)
         described, home = _map(arguments, planner)
         if outline:
-            home = robot.grow(home, footprints.radii(outline)[0])
+            home = _for_disc_within(home, outline)
         problem = _problem(arguments, described, planner, places, home, regions)
         legs.legs(problem, via, regions)
         via = tours.ordered(arguments.via_order, problem, via, regions)
+        if arguments.step is not None:  # known before planning: no path is shorter than that
+            samples.check_step(arguments.step, math.dist(problem.near.start, problem.near.target))
         legs.legs(problem, via, regions)  # two places that are the same may be neighbours only now
     if planner in legs.TURNING:
         settings = legs.preset(planner, problem.near.workspace) | settings
@@ -374,16 +376,25 @@ def _plan(arguments: Namespace) -> None:
                 solution.plan.extra.get("least_offset", math.nan),
                 home.unit,
             )
-    for name, text in _told(judged, task, solution, kept):
-        print(f"{name:16}{text}")
-    if arguments.out and judged.path is None:
-        raise Fault(f"--out: {arguments.out}: not written, {planner} found no path")
-    if arguments.out:
+    if arguments.out and judged.path:  # what cannot be written is told alone
         try:
             with _as_options():
                 _write(arguments, judged)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(arguments.out, error) from None
+    for name, text in _told(judged, task, solution, kept):
+        print(f"{name:16}{text}")
+    if arguments.out and judged.path is None:
+        raise Fault(f"--out: {arguments.out}: not written, {planner} found no path")
+
+
+def _for_disc_within(home: Workspace, outline: Footprint) -> Workspace:
+    """A map for the circle within a footprint. Raises Fault if that has no room."""
+    try:
+        return robot.grow(home, footprints.radii(outline)[0])
+    except ValueError as error:
+        told = str(error).removeprefix("robot_radius: ")
+        raise Fault(f"--footprint: the circle within it, of radius {told}") from None
 
 
 class _Task(NamedTuple):
@@ -488,8 +499,13 @@ def _footprint(arguments: Namespace) -> Footprint | None:
 
 def _check_words(arguments: Namespace) -> None:
     """Raise Fault for options that are wrong whatever the map is."""
+    for name in ("like", "planner", "scenario", "start", "target"):
+        if getattr(arguments, name) == "":
+            raise Fault(f"--{name}: ''; expected some text")
     if arguments.out:
         _check_out(arguments.out)
+        if arguments.out.exists() and arguments.out.resolve() == arguments.map.resolve():
+            raise Fault(f"--out: {arguments.out}: is the map itself; expected another file")
     if arguments.unit is not None and not is_line(arguments.unit):
         raise Fault(f"--unit: {arguments.unit!r}; expected a name of one line")
     if arguments.seed < 0:

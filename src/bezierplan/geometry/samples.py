@@ -18,6 +18,10 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NEWTON_STEPS = 4
 
 
+MOST_SAMPLES = 10_000_000
+"""Most samples of a path: a file of them has about half a gigabyte."""
+
+
 class Samples(NamedTuple):
     """Points along a path, each field (n,).
 
@@ -68,8 +72,7 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     cumulative = np.concatenate([[0.0], np.cumsum(speeds)])
     length = cumulative[-1]
     if step is not None:
-        if not 0 < step < math.inf:
-            raise ValueError(f"step: {step}; expected a number above 0")
+        check_step(step, length)
         n = max(2, math.ceil(length / step * (1 - 1e-12)) + 1)
     if not isinstance(n, int | np.integer) or n < 2:
         raise ValueError(f"n: {n!r}; expected a whole number of at least 2")
@@ -95,6 +98,17 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
         _headings(pieces[piece], t),
         _curvatures(pieces[piece], t),
     )
+
+
+def check_step(step: float, length: float) -> None:
+    """Raise ValueError for a step that is not above 0, or with too many samples on a length."""
+    if not 0 < step < math.inf:
+        raise ValueError(f"step: {step:g}; expected a number above 0")
+    if length > step * (MOST_SAMPLES - 1):
+        raise ValueError(
+            f"step: {step:g}: more than {MOST_SAMPLES:,} points on {length:.6g} units; expected at "
+            f"least {length / (MOST_SAMPLES - 1):.3g}"
+        )
 
 
 def speeds(

@@ -75,7 +75,9 @@ def footprint(corners: Sequence[Sequence[float]]) -> Footprint:
 def _points(corners: Sequence[Sequence[float]]) -> np.ndarray:
     """The corners as an array (n, 2) of finite numbers."""
     try:
-        points = np.array(corners, dtype=float)
+        # Text that looks like a number is none.
+        points = np.array(corners)
+        points = points.astype(float) if points.dtype.kind in "iuf" else np.empty(0)
     except (TypeError, ValueError):
         points = np.empty(0)
     if points.ndim != 2 or points.shape[1] != 2 or not 3 <= len(points) <= MOST_CORNERS:
