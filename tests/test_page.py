@@ -38,7 +38,7 @@ from bezierplan.figures.page import (
     runs,
     search,
 )
-from bezierplan.figures.page.page_job import ExperimentShown
+from bezierplan.figures.page.page_job import ExperimentShown, FigureShown
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
@@ -345,7 +345,7 @@ def test_a_picture_says_what_is_seen_to_those_who_do_not_see_it(seen, tmp_path):
     folder.mkdir(parents=True)
     sheet.save(Figure(figsize=(2, 1)), str(folder / "a.svg"), str(folder / "a.png"))
     (folder / "a.txt").write_text(f"(a) run one/first/b/0.\n{seen}\n")
-    found = gather._figure("one", "a", {"title": "Lengths", "caption": "Lengths."}, tmp_path)
+    found = gather._figure("one", "a", FigureShown("Lengths", "Lengths."), tmp_path)
     assert (found.told, found.seen) == ("(a) run one/first/b/0.", seen)
     shown = page()
     studies = {"one": shown.studies["one"].model_copy(update={"figures": [found]})}

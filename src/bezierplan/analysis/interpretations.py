@@ -378,8 +378,8 @@ class Evaluator:
         evaluated = []
         choices = self.stage.choices
         for name, table in self.stage.tables.items():
-            own = [method for method in table.jobs if method in methods]
-            if not own:
+            judged = [method for method in table.jobs if method in methods]
+            if not judged:
                 continue
             placed = [
                 in_world(
@@ -387,7 +387,7 @@ class Evaluator:
                     chunk_under(table.jobs[method], interpretation, choices),
                     interpretation,
                 )
-                for method in own
+                for method in judged
             ]
             if any(_excluded(chunk) for _, chunk in placed):
                 return None
@@ -404,9 +404,9 @@ class Evaluator:
             spec, published = under_metrics(
                 placed[0][0], self._printed(name, interpretation), interpretation, choices
             )
-            if len(own) < len(table.jobs):
-                spec = spec.but(where=spec.where | {"method": own})
-                published = published[published["method"].isin(own)]
+            if len(judged) < len(table.jobs):
+                spec = spec.but(where=spec.where | {"method": judged})
+                published = published[published["method"].isin(judged)]
             numbers, likelihood, resampled = numbers_of(
                 joined(runs, problems, bounds),
                 spec,
