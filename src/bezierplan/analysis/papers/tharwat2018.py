@@ -176,7 +176,7 @@ def flow_chart() -> pd.DataFrame:
         ("none", "particle: control points of a curve (eq. 1)"),
         ("none", "fitness: length and collisions (eqs. 19 to 22)"),
         ("none", "best position p of each, best G of all"),
-        ("accent", "last iteration, or G as ten iterations ago?"),
+        ("accent", "last iteration, or G not better for ten?"),
         ("none", "next number ζ of the map (eqs. 9 to 16)"),
     ]
     boxes = [(middle, -step * i, width, role, text) for i, (role, text) in enumerate(steps)]
