@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from fields import BENCHMARK_MAPS
+from PIL import Image
 
 import bezierplan as bp
 from bezierplan.__main__ import main
@@ -213,6 +214,19 @@ def test_the_map_itself_is_never_overwritten(capsys, tmp_path):
     assert ended.value.code == 2
     assert "is the map itself; expected another file" in capsys.readouterr().err
     assert file.read_bytes() == before
+
+
+def test_nor_is_the_image_of_a_map(capsys, tmp_path):
+    Image.new("L", (20, 20), 254).save(tmp_path / "room.png")
+    file = tmp_path / "room.yaml"
+    file.write_text("image: room.png\nresolution: 0.5\norigin: [0, 0, 0]\n", encoding="utf-8")
+    before = (tmp_path / "room.png").read_bytes()
+    for out in ("room.png", "room.yaml"):
+        words = ["--start", "1,1", "--target", "9,9", "--out", str(tmp_path / out)]
+        with pytest.raises(SystemExit):
+            main(["plan", str(file), *words])
+        assert "is the map itself" in capsys.readouterr().err
+    assert (tmp_path / "room.png").read_bytes() == before
 
 
 def test_a_margin_that_no_map_can_have(capsys, tmp_path):

@@ -24,7 +24,7 @@ from bezierplan.running.problems import Placed, Regions
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
-from bezierplan.workspaces import map_files, robot
+from bezierplan.workspaces import map_files, robot, ros
 from bezierplan.workspaces.footprint import Footprint, footprint
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import grown_of, original
@@ -322,6 +322,7 @@ def _plan(arguments: Namespace) -> None:
         tours.check_order(arguments.via_order, via)
         outline = _footprint(arguments)
         described, home = _map(arguments, planner)
+        _check_no_input(arguments, described)
         if outline:
             home = _for_disc_within(home, outline)
         problem = _problem(arguments, described, planner, places, home, regions)
@@ -504,8 +505,6 @@ def _check_words(arguments: Namespace) -> None:
             raise Fault(f"--{name}: ''; expected some text")
     if arguments.out:
         _check_out(arguments.out)
-        if arguments.out.exists() and arguments.out.resolve() == arguments.map.resolve():
-            raise Fault(f"--out: {arguments.out}: is the map itself; expected another file")
     if arguments.unit is not None and not is_line(arguments.unit):
         raise Fault(f"--unit: {arguments.unit!r}; expected a name of one line")
     if arguments.seed < 0:
@@ -565,6 +564,15 @@ def _check_out(out: File) -> None:
             tempfile.TemporaryFile(dir=out.parent).close()
     except OSError as error:
         raise _unwritable(out, error) from None
+
+
+def _check_no_input(arguments: Namespace, described: dict[str, Any]) -> None:
+    """Raise Fault for a file to write that is the map, or the image of a map."""
+    inputs = [arguments.map]
+    if described["kind"] == "ros_map":
+        inputs.append(ros.image_of(arguments.map, arguments.map.parent))
+    if arguments.out and arguments.out.resolve() in [file.resolve() for file in inputs]:
+        raise Fault(f"--out: {arguments.out}: is the map itself; expected another file")
 
 
 def _unwritable(out: File, error: OSError) -> Fault:
