@@ -223,8 +223,8 @@ EDITS = {
     ),
     "code of a script": (
         "workflow/scripts/table.py",
-        "    compared = ",
-        "    0\n    compared = ",
+        "    table, comparison = ",
+        "    0\n    table, comparison = ",
         {name: 1 for name in TABLES if name != "claims"},
     ),
     "how a job is logged": (

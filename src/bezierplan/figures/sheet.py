@@ -21,7 +21,6 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
-from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources, kind_module
 from bezierplan.workspaces.problem import Problem, Workspace
@@ -146,11 +145,7 @@ def _is_linear(axes: Axes) -> bool:
 
 def _seconds(panels: list[Panel], frame: pd.DataFrame) -> list[float]:
     """The lengths of time that panels show: one unit for all of them lets them be compared."""
-    timed = [
-        number
-        for number, panel in enumerate(panels)
-        if panel.measured in metrics.METRICS and metrics.unit(panel.measured, "") == "s"
-    ]
+    timed = [number for number, panel in enumerate(panels) if panel.timed]
     return frame.loc[frame["panel"].isin(timed), "value"].to_list() if timed else []
 
 

@@ -153,6 +153,11 @@ class Panel(Model, ABC):
         return None
 
     @property
+    def timed(self) -> bool:
+        """Whether these are lengths of time, in seconds."""
+        return False
+
+    @property
     def place(self) -> str:
         """Where it stands in the list of panels in the file: the keys that lead to it."""
         return self._place

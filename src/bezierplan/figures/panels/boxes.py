@@ -14,6 +14,7 @@ from bezierplan.figures.panels.lines import (
     LIMITS,
     axis_label,
     constants,
+    is_time,
     published,
     runs_note,
     shared_limits,
@@ -63,6 +64,11 @@ class Options(RunsPanel):
     def measured(self) -> str | None:
         """The metric whose numbers are drawn."""
         return self.metric
+
+    @property
+    def timed(self) -> bool:
+        """Whether these are seconds."""
+        return is_time(self.metric)
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
-from bezierplan.figures.panels.lines import axis_label, published, runs_note, summary
+from bezierplan.figures.panels.lines import axis_label, is_time, published, runs_note, summary
 from bezierplan.schema.model import Column, Metric
 
 if TYPE_CHECKING:
@@ -56,6 +56,11 @@ class Options(RunsPanel):
     def measured(self) -> str | None:
         """The metric whose numbers are drawn."""
         return self.metric
+
+    @property
+    def timed(self) -> bool:
+        """Whether these are seconds."""
+        return is_time(self.metric)
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:

@@ -51,6 +51,11 @@ class Options(RunsPanel):
         """The metric whose numbers are drawn."""
         return self.cost
 
+    @property
+    def timed(self) -> bool:
+        """Whether these are seconds."""
+        return self.cost == "cpu_s"
+
 
 def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per method and target; columns: method, within, value, low95, high95, problems,

@@ -100,6 +100,11 @@ class Options(TablePanel):
         return self.metric
 
     @property
+    def timed(self) -> bool:
+        """Whether these are seconds."""
+        return is_time(self.metric)
+
+    @property
     def published_drawn(self) -> bool:
         """Whether published numbers are drawn."""
         return self.printed is not None
@@ -253,6 +258,11 @@ def published(
         )
         numbers = numbers[numbers[column].isna() | fits]
     return sorted(numbers["value"].unique())
+
+
+def is_time(metric: str) -> bool:
+    """Whether a metric is a length of time, in seconds; a column of a table is none."""
+    return metric in metrics.METRICS and metrics.unit(metric, "") == "s"
 
 
 def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str) -> None:
