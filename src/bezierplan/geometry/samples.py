@@ -200,7 +200,7 @@ def times(samples: Samples, speed: np.ndarray) -> np.ndarray:
     --------
     >>> straight = along(Path("polyline", np.array([[0.0, 0.0], [4.0, 0.0]])), n=3)
     >>> speed = speeds(straight, limit=2.0, acceleration=1.0)
-    >>> speed.tolist(), times(straight, speed).tolist()
+    >>> speed.round(9).tolist(), times(straight, speed).round(9).tolist()
     ([0.0, 2.0, 0.0], [0.0, 2.0, 4.0])
     """
     apart, both = np.diff(samples.distance), speed[1:] + speed[:-1]
