@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from bezierplan.analysis import audit, sensitivity
+from bezierplan.analysis.jobs import Tried
 
 
 def claims(**verdicts):
@@ -26,22 +27,8 @@ def claims(**verdicts):
 def test_a_verdict_changes_where_the_alternative_has_another_one():
     in_force = claims(C1="supported", C2="contradicted", C3="no effect")
     described = {
-        "O2_8": {
-            "study": "paper",
-            "assumption": "O2",
-            "detail": "neighbours",
-            "setting": "k",
-            "default": {"mine": 4},
-            "alternative": 8,
-        },
-        "O3_0": {
-            "study": "paper",
-            "assumption": "O3",
-            "detail": "memory",
-            "setting": "m",
-            "default": 1,
-            "alternative": 0,
-        },
+        "O2_8": Tried("paper", "O2", "neighbours", "k", {"mine": 4}, 8),
+        "O3_0": Tried("paper", "O3", "memory", "m", 1, 0),
     }
     tried = {
         "O2_8": pd.DataFrame(
