@@ -122,6 +122,12 @@ def test_same_content_gives_the_same_bytes(text):
     assert build.html(page(), Path()) == text
 
 
+def test_blanks_before_tags_go_except_where_they_mean_something():
+    text = "<p>\n    <b>a</b>\n  b</p>\n  <pre>\n  <i></pre>\n  <script>\n  '<i>'\n  </script>"
+    short = "<p>\n<b>a</b>\n  b</p>\n<pre>\n  <i></pre>\n<script>\n  '<i>'\n  </script>"
+    assert build._unindented(text) == short
+
+
 def test_scripts_never_insert_markup():
     for file in HERE.glob("static/*.js"):
         assert not re.search(
@@ -458,7 +464,7 @@ def test_numbers_and_claims_stand_next_to_those_of_the_readme():
     assert second.extended is None
     mean, count, other = found.tables[0].numbers
     assert (mean.extended.ours, count.extended.ours, other.extended) == (10.9, 4.0, None)
-    assert "at scale extended, as in the README: ours 10.9, n 4000, disagrees" in build.tip(mean)
+    assert "README, at scale extended: ours 10.9, n 4000, disagrees" in build.tip(mean)
     assert "README" not in build.tip(other)
 
 

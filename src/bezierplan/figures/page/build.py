@@ -3,6 +3,7 @@ file.
 """
 
 import base64
+import re
 import zlib
 from collections import Counter
 from importlib import resources
@@ -45,6 +46,11 @@ MARKS = {
     "0": ("part", "neither holds"),
     "?": ("open", "not known"),
 }
+
+
+# Elements whose blanks mean something.
+_AS_WRITTEN = ("<script", "<style", "<pre")
+_PARTS = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)", re.DOTALL)
 
 
 def html(page: content.Page, folder: Path) -> str:
@@ -103,7 +109,16 @@ def html(page: content.Page, folder: Path) -> str:
         ),
     }
     data, schema = page.model_dump(mode="json"), content.Page.model_json_schema()
-    return environment.get_template("page.html.jinja").render(page=page, data=data, schema=schema)
+    template = environment.get_template("page.html.jinja")
+    return _unindented(template.render(page=page, data=data, schema=schema))
+
+
+def _unindented(text: str) -> str:
+    """A page without the blanks before its tags, except where these mean something."""
+    return "".join(
+        part if part.startswith(_AS_WRITTEN) else re.sub(r"\n +(?=<|\Z)", "\n", part)
+        for part in _PARTS.split(text)
+    )
 
 
 def _packed(text: str) -> str:
@@ -268,7 +283,7 @@ def tip(number: content.Number) -> str:
     if number.extended:
         more = number.extended
         parts.append(
-            f"at scale extended, as in the README: ours {short(more.ours, 5)}, n {short(more.n)}, "
+            f"README, at scale extended: ours {short(more.ours, 5)}, n {short(more.n)}, "
             f"{more.verdict or 'not judged'}"
         )
     return "; ".join(parts)

@@ -80,7 +80,7 @@ class Number(Record):
         description="exact shortest length of the problem, in the unit of length"
     )
     gap: float | None = Field(description="median over the feasible runs of length / bound - 1")
-    extended: Extended | None = None
+    extended: Extended | None = Field(None, exclude_if=lambda extended: extended is None)
 
     @property
     def beside(self) -> float | None:
