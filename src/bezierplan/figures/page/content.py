@@ -59,6 +59,7 @@ class Number(Record):
     ours: float | None
     scaled: float | None = Field(
         None,
+        exclude_if=lambda scaled: scaled is None,
         description="ours as the published number of runs would print it: a count in proportion, "
         "a median extreme",
     )
@@ -70,7 +71,7 @@ class Number(Record):
     verdict: str = Field(
         description="identified, agrees, disagrees or inconclusive; empty if not judged"
     )
-    why: str = Field("", description="why it is inconclusive")
+    why: str = Field("", exclude_if=lambda why: not why, description="why it is inconclusive")
     primary: bool = Field(description="whether the row is the paper's interpretation")
     counted: bool = Field(description="whether it counts in the outcome")
     share_feasible: float | None = Field(
