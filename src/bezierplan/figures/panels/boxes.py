@@ -12,9 +12,9 @@ from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.figures.panels.lines import (
     LIMITS,
+    OfMetric,
     axis_label,
     constants,
-    is_time,
     published,
     runs_note,
     shared_limits,
@@ -44,7 +44,7 @@ _FAR = 0.25
 _BEHIND_TEXT = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6}
 
 
-class Options(RunsPanel):
+class Options(OfMetric, RunsPanel):
     """Keys of a panel."""
 
     named_rows: ClassVar[bool] = True
@@ -59,16 +59,6 @@ class Options(RunsPanel):
         False, description="whether the exact bound and the reference are drawn, true or false"
     )
     limit: Number = Field(None, description="the published limit of the metric, a number")
-
-    @property
-    def measured(self) -> str | None:
-        """The metric whose numbers are drawn."""
-        return self.metric
-
-    @property
-    def timed(self) -> bool:
-        """Whether these are seconds."""
-        return is_time(self.metric)
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from bezierplan.figures import seen, style
 from bezierplan.figures.panels import Note, RunsPanel
-from bezierplan.figures.panels.lines import axis_label, is_time, published, runs_note, summary
+from bezierplan.figures.panels.lines import OfMetric, axis_label, published, runs_note, summary
 from bezierplan.schema.model import Column, Metric
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ _ROW, _DOT = 0.035, 0.014
 _NONE = {"linestyle": "", "marker": "x", "markersize": 3.5, "color": style.BLACK}
 
 
-class Options(RunsPanel):
+class Options(OfMetric, RunsPanel):
     """Keys of a panel."""
 
     named_rows: ClassVar[bool] = True
@@ -51,16 +51,6 @@ class Options(RunsPanel):
     statistic: Literal["mean", "median", "share"] = Field(
         "mean", description="mean (left out: this), median or share"
     )
-
-    @property
-    def measured(self) -> str | None:
-        """The metric whose numbers are drawn."""
-        return self.metric
-
-    @property
-    def timed(self) -> bool:
-        """Whether these are seconds."""
-        return is_time(self.metric)
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:

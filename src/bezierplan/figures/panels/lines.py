@@ -47,7 +47,23 @@ _FEW = 5
 _MOST_JOINED = 100
 
 
-class Options(TablePanel):
+class OfMetric:
+    """What a panel that draws the numbers of its key `metric` says of them."""
+
+    metric: str
+
+    @property
+    def measured(self) -> str | None:
+        """The metric whose numbers are drawn."""
+        return self.metric
+
+    @property
+    def timed(self) -> bool:
+        """Whether these are seconds; a column of a table is no metric."""
+        return self.metric in metrics.METRICS and metrics.unit(self.metric, "") == "s"
+
+
+class Options(OfMetric, TablePanel):
     """Keys of a panel: of runs, or of a table."""
 
     experiment: Experiment = Field(None, description="the name of an experiment")
@@ -93,16 +109,6 @@ class Options(TablePanel):
         if self.sorted_by is not None and (self.joined or self.experiment is None):
             raise wrong("sorted_by: needs experiment and joined: false")
         return self
-
-    @property
-    def measured(self) -> str | None:
-        """The metric whose numbers are drawn."""
-        return self.metric
-
-    @property
-    def timed(self) -> bool:
-        """Whether these are seconds."""
-        return is_time(self.metric)
 
     @property
     def published_drawn(self) -> bool:
@@ -258,11 +264,6 @@ def published(
         )
         numbers = numbers[numbers[column].isna() | fits]
     return sorted(numbers["value"].unique())
-
-
-def is_time(metric: str) -> bool:
-    """Whether a metric is a length of time, in seconds; a column of a table is none."""
-    return metric in metrics.METRICS and metrics.unit(metric, "") == "s"
 
 
 def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str) -> None:
