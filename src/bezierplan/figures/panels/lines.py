@@ -48,9 +48,9 @@ _MOST_JOINED = 100
 
 
 class OfMetric:
-    """What a panel that draws the numbers of its key `metric` says of them."""
-
-    metric: str
+    """What a panel that draws the numbers of its key `metric` says of them. It does not declare the
+    key: each kind describes its own.
+    """
 
     @property
     def measured(self) -> str | None:
