@@ -13,7 +13,7 @@ import planted
 import pytest
 from pivots import pivot_of
 
-from bezierplan.analysis import explained, interpretations, statistics
+from bezierplan.analysis import comparison, explained, interpretations, statistics
 from bezierplan.analysis.explained import Evaluated
 from bezierplan.analysis.results import Results
 from bezierplan.analysis.search import confirm, search, within_reach
@@ -260,13 +260,26 @@ def test_a_number_of_an_unstated_number_of_runs_is_as_likely_by_many_of_ours_as_
     assert likelihood(4000) == pytest.approx(likelihood(100), abs=3)
 
 
-def test_too_few_runs_explain_nothing():
-    found, likelihood, resampled = interpretations.numbers_of(
-        results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table", 5
+@pytest.mark.parametrize(("failed", "explains"), [(4, True), (5, False)])
+def test_an_interpretation_under_which_most_runs_fail_explains_nothing(failed, explains):
+    eight = results(5.0, runs=8)
+    runs = eight.runs.assign(
+        objective=eight.runs["objective"].where(eight.runs["repeat"] >= failed)
     )
-    assert not found["in_range"].any()
-    assert math.isfinite(likelihood)
-    assert np.isfinite(resampled).all()
+    found, likelihood, resampled = interpretations.numbers_of(
+        eight._replace(runs=runs), SPEC, printed(5.0, 6.0), "study/table", 5
+    )
+    assert found["in_range"].all() == explains
+    assert found[["low", "high"]].notna().all(axis=None) == explains
+    assert (likelihood > -50) == explains
+    assert np.isfinite([likelihood, *resampled]).all()
+
+
+def test_mean_ranks_that_do_not_add_up_have_no_vote():
+    ranks = printed(1.0, 1.5).assign(metric="rank", decimals=1)
+    assert comparison.impossible_ranks(ranks, SPEC).tolist() == [True, True]
+    assert not comparison.impossible_ranks(ranks.assign(value=[1.4, 1.6]), SPEC).any()
+    assert not comparison.impossible_ranks(ranks.assign(metric="objective"), SPEC).any()
 
 
 def test_a_metric_takes_the_place_of_the_printed_word():
@@ -359,7 +372,8 @@ ALONE = [Part(["a"], [choice.id for choice in CHOICES])]
 
 def evaluated(chosen: dict, planted: dict) -> Evaluated:
     """As many numbers in range as choices agree with the planted interpretation."""
-    agree = [chosen.get(choice.id) == planted.get(choice.id) for choice in CHOICES]
+    known = dict.fromkeys([choice.id for choice in CHOICES]) | planted
+    agree = [chosen.get(choice) == value for choice, value in known.items()]
     return Evaluated(chosen, numbers(agree), {"table1": float(sum(agree))})
 
 
@@ -411,16 +425,18 @@ def test_an_interpretation_names_no_choice_that_its_world_makes_itself():
         return search(
             [*grid, world],
             parts,
-            lambda tasks: [evaluated(task.interpretation, {"O2": 1}) for task in tasks],
+            lambda tasks: [
+                evaluated(task.interpretation, {"O2": 1, "world": "other"}) for task in tasks
+            ],
             "study",
             most=60,
-        ).interpretations
+        )
 
     for grid in (CHOICES[:2], CHOICES):
-        made = [each.interpretation for each in tried(grid)]
+        made = [each.interpretation for each in tried(grid).interpretations]
         assert any("world" in interpretation for interpretation in made)
         assert not any({"world", "O1"} <= interpretation.keys() for interpretation in made)
-    assert len(tried(CHOICES[:2])) == 9 + 3
+    assert tried(CHOICES[:2]).tried == 9 + 3
 
 
 def test_interpretations_that_exclude_themselves_are_left_out_and_the_budget_is_kept():
@@ -500,6 +516,25 @@ def test_finalists_are_limited_and_the_rest_is_not_asked_for():
     assert asked == [{"O0": 0}]
 
 
+def test_a_choice_that_changes_nothing_stands_for_no_other_experiment():
+    """Neither among those listed nor among those that may become finalists."""
+
+    def evaluate(tasks):
+        return [
+            Evaluated(
+                task.interpretation,
+                numbers([True]),
+                {"table1": float(task.interpretation.get("O0", 0))},
+            )
+            for task in tasks
+        ]
+
+    found = search(CHOICES[:2], [Part(["a"], ["O0", "O1"])], evaluate, "study", most=100)
+    assert found.tried == math.prod(len(choice.values) for choice in CHOICES[:2])
+    assert all("O1" not in each.interpretation for each in found.interpretations)
+    assert len(found.interpretations) == len(CHOICES[0].values)
+
+
 def test_finalists_are_no_interpretations_that_are_ruled_out_and_no_other_name_of_one():
     assert reached([0.0, -1.0, -2.0], 3, apart=[9, 0, 9], impossible=[0]) == [1, 2]
     assert reached([0.0, -1.0], 3, apart=[9, 9], impossible=[0, 1]) == []
@@ -577,10 +612,12 @@ def test_luck_does_not_choose_the_best_of_many(monkeypatch):
     assert best["score"] == pytest.approx(
         max(generator(f"finalists/{name}").normal(0.0, 1.0) for name in asked["finalists"])
     )
-    assert asked["fresh"] == [best["interpretation"]]
-    assert best["fresh_score"] == pytest.approx(
-        generator(f"fresh/{best['interpretation']}").normal(0.0, 1.0)
-    )
+    assert asked["fresh"] == ["default", best["interpretation"]]
+    for row in (best, table[table["interpretation"] == "default"].iloc[0]):
+        assert row["fresh_score"] == pytest.approx(
+            generator(f"fresh/{row['interpretation']}").normal(0.0, 1.0)
+        )
+    assert best["tried"] == 27
 
 
 PLANTED = [("song2016", 0), ("ma2020", 0), ("meledje", 0), ("meledje", 1), ("ma2020", 1)]
@@ -629,7 +666,7 @@ def test_tables_of_interpretations_numbers_and_tables_left_out():
         {"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -5.0}
     )
     found = explained.interpretations_table(
-        "study", [default, other], [default, other], other, CHOICES
+        "study", [default, other], [default, other], 2, [default, other], CHOICES
     )
     assert found["interpretation"].to_list() == ["default", "O1=2"]
     assert found[["in_range", "in_range_table1", "in_range_table2"]].to_numpy().tolist() == [
@@ -675,7 +712,9 @@ def told(*tried, lines=None):
     numbers_found = explained.explained_table("one", confirmed, [confirmed], set())
     leave_one_table_out = explained.leave_one_table_out_table("one", confirmed, lines or {})
     (*_, text) = explained.section(
-        explained.interpretations_table("one", confirmed, [], confirmed[-1], CHOICES),
+        explained.interpretations_table(
+            "one", confirmed, [], len(confirmed), [confirmed[0], confirmed[-1]], CHOICES
+        ),
         numbers_found,
         leave_one_table_out,
         {"one": "The first"},
@@ -686,7 +725,9 @@ def told(*tried, lines=None):
 def test_a_row_for_each_study_says_which_interpretation_is_most_likely(tmp_path):
     default = Evaluated({}, numbers([True, False]), {"table1": -9.0})
     better = Evaluated({"O1": 2}, numbers([True, True]), {"table1": 0.0})
-    found = explained.interpretations_table("one", [default, better], [], better, CHOICES)
+    found = explained.interpretations_table(
+        "one", [default, better], [], 2, [default, better], CHOICES
+    )
     found.to_csv(tmp_path / "found.csv", index=False)
     (row,) = explained.brief(pd.read_csv(tmp_path / "found.csv")).reset_index().to_dict("records")
     assert row == {
@@ -699,7 +740,7 @@ def test_a_row_for_each_study_says_which_interpretation_is_most_likely(tmp_path)
         "likelihood over the default's": "10^4 times",
     }
     (row,) = explained.brief(
-        explained.interpretations_table("one", [default], [], default, CHOICES)
+        explained.interpretations_table("one", [default], [], 1, [default], CHOICES)
     ).to_dict("records")
     assert row["most likely interpretation"] == "the default"
 
@@ -717,7 +758,11 @@ def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
         "are most likely from an experiment in which these choices differ from ours: : 2 (O1=2)"
         in text
     )
-    assert "log-likelihood ratio against the default +5.0 (10^2 times as likely)" in text
+    assert (
+        "log-likelihood ratio against the default, by runs that chose neither, +5.0 "
+        "(10^2 times as likely)" in text
+    )
+    assert "it gains table2 +4.0, table1 +1.0." in text
     assert (
         "Judged again by runs with new seeds, it has 3 of 4 in range and a log-likelihood of "
         "-1.0 (by the runs" in text
@@ -757,7 +802,7 @@ def test_an_interpretation_under_which_a_printed_number_is_impossible_is_ruled_o
         {"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0}
     )
     assert max([default, likely], key=lambda each: each.rank) is default
-    found = explained.interpretations_table("study", [default, likely], [], likely, CHOICES)
+    found = explained.interpretations_table("study", [default, likely], [], 2, [likely], CHOICES)
     assert found[["interpretation", "impossible"]].to_numpy().tolist() == [
         ["default", 0],
         ["O1=2", 1],
@@ -811,7 +856,7 @@ def test_a_line_predicts_numbers_on_it_and_not_others():
 
 def test_figure_shows_every_choice_that_some_interpretation_makes():
     judged = [evaluated(chosen, {}) for chosen in ({}, {"O1": 2}, {"O3": 1})]
-    table = explained.interpretations_table("study", judged, [], judged[0], CHOICES)
+    table = explained.interpretations_table("study", judged, [], 1, judged[:1], CHOICES)
     above, below = specification.draw(table, [choice.id for choice in CHOICES]).axes
     assert [label.get_text() for label in below.get_yticklabels()] == ["O1 = 2", "O3 = 1"]
     assert above.lines[0].get_ydata().tolist() == sorted(table["in_range"])

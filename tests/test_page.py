@@ -511,6 +511,7 @@ def test_best_interpretations_and_the_one_in_force_are_shown_with_what_they_expl
         score=range(21, 0, -1),
         fresh_in_range=20,
         fresh_score=21.0,
+        tried=21,
     )
     explained = pd.DataFrame(
         {
@@ -520,7 +521,9 @@ def test_best_interpretations_and_the_one_in_force_are_shown_with_what_they_expl
             "interpretations": [9, 2, 0],
         }
     ).assign(missed_by=[0.0, 0.0, 1.0], value_published=10.0)
-    leave_one_table_out = pd.DataFrame({"table": ["a"], "score_line": [np.nan]})
+    leave_one_table_out = pd.DataFrame(
+        {"table": ["a"], "score_line": [np.nan], "score_best": [1.0], "score_default": [0.0]}
+    )
     found = other.of_interpretations(tried, explained, leave_one_table_out)
     assert [each.interpretation for each in found["explanations"]] == [
         *(f"O1={n}" for n in range(10)),

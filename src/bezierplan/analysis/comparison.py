@@ -154,7 +154,8 @@ def compare(
     beside = _beside(spec, variant_of, baselines) if "method" in keys else []
     spec = spec.but(where=spec.where | {"method": _methods(spec) + beside}) if beside else spec
     ours = tables.cells(results, spec, keys, beside)
-    both = _side_by_side(ours, published, key_columns, variant_of)
+    marked = published.assign(impossible=impossible_ranks(published, spec))
+    both = _side_by_side(ours, marked, key_columns, variant_of)
     order = (
         tables.in_order(both, spec, list(results.problems))
         .sort_values([*keys, "value", "metric", "statistic"])
@@ -173,7 +174,7 @@ def compare(
     ]
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
-    table.loc[_impossible_ranks(both, published, spec), "possible"] = False
+    table.loc[both["impossible"].eq(True), "possible"] = False
     identities = pd.Series(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
@@ -231,27 +232,25 @@ def _undefined(both: pd.DataFrame, spec: Pivot) -> pd.Series:
     return both["metric"].isin({entry.metric for entry in spec.values if not entry.defined})
 
 
-def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: Pivot) -> np.ndarray:
-    """Which rows (n,) hold published mean ranks that no runs have, for those of all rows of the
+def impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
+    """Which published numbers (n,) are mean ranks that no runs have, for those of all rows of the
     table do not add up.
+
+    published: as from `read_published`.
     """
-    impossible = np.zeros(len(both), dtype=bool)
-    ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
-    ours = (
-        (both["metric"] == "rank")
-        & (both["statistic"] == "mean")
-        & both["value_published"].notna()
-        & both["decimals"].notna()
-    )
-    if ranks.empty or not ours.any():
-        return impossible
-    half = Fraction(10) ** -int(both.loc[ours, "decimals"].iloc[0]) / 2
+    ranks = published[
+        (published["metric"] == "rank")
+        & (published["statistic"] == "mean")
+        & published["decimals"].notna()
+    ]
     within = [column for column in spec.across if column in published]
-    for place, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
-        if len(own) > 1 and not possible.are_ranks(
-            [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
-        ):
-            impossible |= (ours & (both[within] == list(place)).all(axis=1)).to_numpy()
+    impossible = np.zeros(len(published), dtype=bool)
+    for _, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
+        if len(own) > 1:
+            half = Fraction(10) ** -int(own["decimals"].iloc[0]) / 2
+            printed = [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
+            if not possible.are_ranks(printed):
+                impossible |= published.index.isin(own.index)
     return impossible
 
 

@@ -4,7 +4,8 @@ the summary.
 Columns of interpretations.csv, one row per interpretation, the best first:
 
 - study, interpretation: its changes, such as `O2=0.9, O7=clamp`; `default` without any
-- in_words: what the paper's experiment would have been: each choice made, in words
+- in_words: what the paper's experiment would have been: each choice made, in words, and whether it
+  departs from what the paper prints
 - confirmed: whether it was a finalist, or the default, which are judged by many runs; only these
   are compared in what follows
 - one column per choice: its value, empty for the default
@@ -16,8 +17,10 @@ Columns of interpretations.csv, one row per interpretation, the best first:
 - score: sum of the logarithms of the tables' likelihoods, by which interpretations that are not
   ruled out are compared
 - in_range_<table>: in_range by table
-- fresh_in_range, fresh_score: those of the best interpretation by as many runs with other seeds,
-  that chose nothing
+- fresh_in_range, fresh_score: those of the best interpretation and of the default by as many runs
+  with other seeds, that chose nothing
+- tried: in the first row, how many interpretations were tried; of those with one score only the one
+  with the fewest choices has a row, and only the best 500 have
 
 Columns of explained.csv, one row per published number, those that no interpretation gives first:
 study, table, the table's keys, metric, statistic, value_published; default and best, whether it
@@ -103,6 +106,7 @@ def in_words(interpretation: Interpretation, choices: list[Choice]) -> str:
     """The choices that an interpretation makes, each with what the paper leaves open."""
     made = [
         f"{choice.detail}: {interpretation[choice.id]}"
+        + (" (not as printed)" if choice.printed else "")
         for choice in choices
         if choice.id in interpretation
     ]
@@ -113,12 +117,13 @@ def interpretations_table(
     study: str,
     confirmed: list[Evaluated],
     screened: list[Evaluated],
-    fresh: Evaluated,
+    tried: int,
+    fresh: list[Evaluated],
     choices: list[Choice],
 ) -> pd.DataFrame:
     """interpretations.csv. confirmed: the default and the finalists, judged by many runs. screened:
-    all, of which those confirmed are left out. fresh: the best finalist, judged by as many runs
-    with other seeds.
+    the best of all, of which those confirmed are left out. tried: how many all are. fresh: the
+    default and the best finalist, judged by as many runs with other seeds.
     """
     rows, again = [], {name_of(evaluated.interpretation) for evaluated in confirmed}
     rest = [evaluated for evaluated in screened if name_of(evaluated.interpretation) not in again]
@@ -145,8 +150,14 @@ def interpretations_table(
             | {"impossible": evaluated.impossible, "score": evaluated.score}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
-    rows[0] |= {"fresh_in_range": int(fresh.numbers["in_range"].sum()), "fresh_score": fresh.score}
-    return pd.DataFrame(rows).astype({"fresh_in_range": "Int64"})
+    rows[0]["tried"] = tried
+    by_name = {row["interpretation"]: row for row in rows}
+    for evaluated in fresh:
+        by_name[name_of(evaluated.interpretation)] |= {
+            "fresh_in_range": int(evaluated.numbers["in_range"].sum()),
+            "fresh_score": evaluated.score,
+        }
+    return pd.DataFrame(rows).astype({"fresh_in_range": "Int64", "tried": "Int64"})
 
 
 def by_chance(numbers: pd.DataFrame) -> float:
@@ -340,7 +351,7 @@ def brief(interpretations: pd.DataFrame) -> pd.DataFrame:
     for study, own in interpretations.groupby("study", sort=False):
         best, default = own.iloc[0], own[own["interpretation"] == DEFAULT].iloc[0]
         named = _named(best)
-        ratio = "impossible" if default["impossible"] else _times(best["score"] - default["score"])
+        ratio = "impossible" if default["impossible"] else _times(_gain(best, default))
         rows[study] = {
             "most likely interpretation": named,
             "numbers in range": f"{best['in_range']} of {best['numbers']}",
@@ -374,8 +385,9 @@ def sentences(
         filter(
             None,
             [
-                _most_likely(best, default, len(interpretations)),
+                _most_likely(best, default),
                 _judged_anew(best),
+                "" if best["interpretation"] == DEFAULT else _by_table(leave_one_table_out),
                 _beside_a_line(leave_one_table_out),
                 _never(explained),
                 _searched(explained),
@@ -386,10 +398,11 @@ def sentences(
     )
 
 
-def _most_likely(best: pd.Series, default: pd.Series, tried: int) -> str:
+def _most_likely(best: pd.Series, default: pd.Series) -> str:
     """Which experiment the numbers are most likely from, and how much more likely than from the
     default.
     """
+    tried = f"{best['tried']:,}"
     if best["impossible"]:
         return f"Under each of {tried} interpretations some printed number is impossible."
     if best["interpretation"] == DEFAULT:
@@ -430,11 +443,18 @@ def _judged_anew(best: pd.Series) -> str:
 
 def _ratio(best: pd.Series, default: pd.Series) -> str:
     """How much more likely than under the default interpretation the numbers are."""
-    difference = best["score"] - default["score"]
+    difference = _gain(best, default)
     return (
-        "log-likelihood ratio against the default "
+        "log-likelihood ratio against the default, by runs that chose neither, "
         f"{difference:+.1f} ({_times(difference)} as likely)"
     )
+
+
+def _gain(best: pd.Series, default: pd.Series) -> float:
+    """What the best interpretation gains in log-likelihood over the default, by runs that did not
+    choose it.
+    """
+    return best["fresh_score"] - default["fresh_score"]
 
 
 def _counted(row: pd.Series) -> str:
@@ -442,6 +462,17 @@ def _counted(row: pd.Series) -> str:
     return (
         f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} by chance)"
     )
+
+
+def _by_table(leave_one_table_out: pd.DataFrame) -> str:
+    """Which tables gain by the best interpretation, and which lose."""
+    gains = leave_one_table_out.assign(
+        gain=leave_one_table_out["score_best"] - leave_one_table_out["score_default"]
+    ).sort_values("gain", ascending=False)
+    if len(gains) < 2:
+        return ""
+    named = ", ".join(f"{row.table} {row.gain:+.1f}" for row in gains.itertuples())
+    return f"By table, by the runs that chose it, it gains {named}."
 
 
 def _beside_a_line(leave_one_table_out: pd.DataFrame) -> str:

@@ -32,7 +32,7 @@ import pyarrow.parquet as parquet
 from bezierplan.analysis import comparison, explained, metrics, statistics, tables
 from bezierplan.analysis.explained import Evaluated, Interpretation, name_of, together
 from bezierplan.analysis.results import Results, joined, select
-from bezierplan.analysis.search import Evaluate, Task, confirm, search, whole, within_reach
+from bezierplan.analysis.search import Evaluate, Task, confirm, search, within_reach
 from bezierplan.analysis.search_job import Choice, Part, Search, Stage
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
@@ -146,8 +146,8 @@ def numbers_of(
     interpretation's world. published: as from `comparison.read_published`. name: seeds the draws,
     so that interpretations are resampled alike. Columns: the table's keys, metric, statistic,
     value_published, low, high, in_range, possible (it does not lie below what every run has at
-    least). Seconds are left out; with fewer than `statistics.LEAST_RUNS` runs no number is in
-    range.
+    least). Seconds are left out. Where most runs fail, so that fewer than half of them count and
+    fewer than `statistics.LEAST_RUNS`, low and high are nan, and no number is in range.
     """
     keys_printed = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = keys_printed + [key for key in spec.key_columns if key not in keys_printed]
@@ -188,13 +188,14 @@ def numbers_of(
             single,
             row["groups"] or None,
         )
-        # Without enough runs nothing is in range: an interpretation under which most runs fail
-        # explains nothing.
-        enough = len(row["numbers"]) >= statistics.LEAST_RUNS
+        # An interpretation under which most runs fail explains nothing.
+        enough = len(row["numbers"]) >= min(statistics.LEAST_RUNS, math.ceil(row["asked"] / 2))
+        if not enough:
+            low = high = math.nan
         described = {
             key: row[key] for key in [*keys_printed, "metric", "statistic", "value_published"]
         }
-        inside = bool(enough and low - half <= value <= high + half)
+        inside = bool(low - half <= value <= high + half)
         below = (
             row["metric"] in bounded
             and row["statistic"] in _BOUNDED
@@ -291,7 +292,14 @@ def _experiments(sample: _Sample) -> np.ndarray:
     ) % len(units)
     if not np.isnan(units).any():
         return statistics.STATISTICS[statistic](units[chosen])
-    return np.array([statistics.statistic(statistic, own[~np.isnan(own)]) for own in units[chosen]])
+    drawn = np.array(
+        [statistics.statistic(statistic, own[~np.isnan(own)]) for own in units[chosen]]
+    )
+    # An experiment all of whose runs fail prints no number; the one in print did.
+    printed = ~np.isnan(drawn)
+    if printed.any():
+        drawn[~printed] = np.resize(drawn[printed], (~printed).sum())
+    return drawn
 
 
 def _unit_columns(runs: pd.DataFrame) -> list[str]:
@@ -365,9 +373,14 @@ class Evaluator:
         often runs are resampled for the error of the score.
         """
         self.stage, self.maps, self.folder, self.resamples = stage, maps, folder, resamples
-        self.published = {
+        published = {
             name: comparison.read_published(files[name], table.spec)
             for name, table in stage.tables.items()
+        }
+        # Mean ranks that no runs have are no evidence for any interpretation.
+        self.published = {
+            name: printed[~comparison.impossible_ranks(printed, stage.tables[name].spec)]
+            for name, printed in published.items()
         }
         self.worlds: dict[str, tuple[dict, pd.DataFrame]] = {}
 
@@ -540,7 +553,7 @@ def found_by(
         confirmed = confirm(near, parts, evaluate)
     best = max(confirmed, key=lambda each: each.rank).interpretation
     with by("fresh") as evaluate:
-        fresh = whole(best, parts, evaluate)
+        fresh = confirm([best], parts, evaluate)
     shared = {
         choice.id for choice in choices if sum(choice.id in part.choices for part in parts) > 1
     }
@@ -551,7 +564,7 @@ def found_by(
     }
     return {
         "interpretations": explained.interpretations_table(
-            study, confirmed, tried.interpretations, fresh, choices
+            study, confirmed, tried.interpretations, tried.tried, fresh, choices
         ),
         "explained": explained.explained_table(study, confirmed, tried.of_parts, shared),
         "leave_one_table_out": explained.leave_one_table_out_table(study, confirmed, lines),

@@ -17,7 +17,7 @@ share it, and all draws are seeded from names: so the result is the same on any 
 import itertools
 import math
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -47,12 +47,14 @@ class Task(NamedTuple):
 
 
 class Found(NamedTuple):
-    """interpretations: those tried as a whole, the default first, then the best first. of_parts:
-    for each part, all that was evaluated.
+    """interpretations: those tried as a whole, the default first, then the best first; of those
+    with one score, which are one experiment under several names, the one with the fewest choices.
+    of_parts: for each part, all that was evaluated. tried: how many interpretations were.
     """
 
     interpretations: list[Evaluated]
     of_parts: list[list[Evaluated]]
+    tried: int
 
 
 Evaluate = Callable[[list[Task]], list[Evaluated | None]]
@@ -126,19 +128,22 @@ class _Book:
         ]
         return None if None in found else found
 
+    def wholes(self, interpretations: list[Interpretation]) -> list[Evaluated]:
+        """Interpretations from what is known of their parts, without those excluded."""
+        return [
+            together(interpretation, own)
+            for interpretation in interpretations
+            if (own := self.evaluated(interpretation))
+        ]
+
     def found(self, listed: int) -> Found:
         """The best interpretations, up to a number, after the default."""
-        best = sorted(
-            (each for each in self.seen.values() if each and self.evaluated(each)),
-            key=self.value,
-            reverse=True,
-        )
-        interpretations = [
-            together(interpretation, self.evaluated(interpretation))
-            for interpretation in [{}, *best[:listed]]
-        ]
+        possible = [each for each in self.seen.values() if self.evaluated(each)]
+        different = [each for each in _different(possible, self.value, len) if each]
         return Found(
-            interpretations, [[each for each in known.values() if each] for known in self.known]
+            self.wholes([{}, *different[:listed]]),
+            [[each for each in known.values() if each] for known in self.known],
+            len(possible),
         )
 
 
@@ -189,20 +194,14 @@ def within_reach(
     no more than `REACH` standard errors of the difference below the best one.
 
     interpretations: about in the order of their scores, the best first: after a batch of which none
-    may be the best the rest is not asked for. evaluate: with the scores of resampled runs. Of
-    interpretations with one score, which are one experiment under several names, the one with the
-    fewest choices stays.
+    may be the best the rest is not asked for. evaluate: with the scores of resampled runs.
     """
     book = _Book([], parts, evaluate, math.inf)
     asked, near = [], []
     for start in range(0, len(interpretations), most):
         batch = interpretations[start : start + most]
         book.ask(batch)
-        asked += [
-            together(interpretation, own)
-            for interpretation in batch
-            if (own := book.evaluated(interpretation))
-        ]
+        asked += book.wholes(batch)
         near = _near_the_best(asked)
         if len(near) >= most or not any(each in batch for each in near):
             break
@@ -210,17 +209,28 @@ def within_reach(
 
 
 def _near_the_best(evaluated: list[Evaluated]) -> list[Interpretation]:
-    ordered = sorted(
-        (each for each in evaluated if not each.impossible),
-        key=lambda each: (-each.score, len(each.interpretation)),
+    different = _different(
+        [each for each in evaluated if not each.impossible],
+        lambda each: each.score,
+        lambda each: len(each.interpretation),
     )
-    different = {each.score: each for each in reversed(ordered)}.values()
     return [
         each.interpretation
-        for each in reversed(different)
-        if ordered[0].score - each.score
-        <= REACH * np.std(ordered[0].resampled - each.resampled, ddof=1)
+        for each in different
+        if different[0].score - each.score
+        <= REACH * np.std(different[0].resampled - each.resampled, ddof=1)
     ]
+
+
+T = TypeVar("T")
+
+
+def _different(tried: list[T], score: Callable[[T], float], choices: Callable[[T], int]) -> list[T]:
+    """The best first; of those with one score, which are one experiment under several names, the
+    one with the fewest choices.
+    """
+    ordered = sorted(tried, key=lambda each: (-score(each), choices(each)))
+    return [next(same) for _, same in itertools.groupby(ordered, key=score)]
 
 
 def confirm(
@@ -231,14 +241,7 @@ def confirm(
     """
     book = _Book([], parts, evaluate, math.inf)
     book.ask([{}, *interpretations])
-    return book.found(len(interpretations)).interpretations
-
-
-def whole(interpretation: Interpretation, parts: list[Part], evaluate: Evaluate) -> Evaluated:
-    """An interpretation, all of whose parts are evaluated."""
-    book = _Book([], parts, evaluate, len(parts))
-    book.ask([interpretation])
-    return together(interpretation, book.evaluated(interpretation))
+    return book.wholes([{}, *sorted(interpretations, key=book.value, reverse=True)])
 
 
 def _climb_on(choices: list[Choice], book: _Book, name: str) -> None:

@@ -32,6 +32,8 @@ class Choice(NamedTuple):
     """Value -> ids of the choices of settings that this world makes itself."""
     metric: str | None = None
     """The metric with which a printed word is compared."""
+    printed: bool = False
+    """Whether the default is what the paper prints, so that its alternatives depart from it."""
 
 
 class Part(NamedTuple):

@@ -100,6 +100,7 @@ def choices(study: Study) -> list[Choice]:
             value for value in assumption.alternatives if value not in assumption.not_searched
         ]
         if governs and values:
+            governs["printed"] = assumption.source == "published"
             known.append(Choice(assumption.id, assumption.detail, [None, *values], **governs))
     worlds: dict[str, list] = {}
     for table in tables.values():
