@@ -127,11 +127,11 @@ def reference(where, seed, **changes):
     size, dimensions = s["particles"], 2 * s["control_points"]
     x = -10 + 20 * np.array([[initial.random() for _ in range(dimensions)] for _ in range(size)])
     parameters = chaotic_maps.Parameters(*(s[name] for name in chaotic_maps.Parameters._fields))
-    start = (
-        chaotic_maps.random_start(chaos, s["chaotic_map"], parameters)
-        if s["chaotic_start_rule"] == "random"
-        else s["chaotic_start"]
-    )
+    start = {
+        "random": lambda: chaotic_maps.random_start(chaos, s["chaotic_map"], parameters),
+        "uniform": chaos.random,
+        "fixed": lambda: s["chaotic_start"],
+    }[s["chaotic_start_rule"]]()
     zeta = iter(
         chaotic_maps.sequence(
             s["chaotic_map"], start, s["iterations"] * size * dimensions, parameters
@@ -140,11 +140,16 @@ def reference(where, seed, **changes):
     v, p, p_fitness = np.zeros_like(x), x.copy(), np.full(size, np.inf)
     best, history, w, since = (np.inf, None, None, None), [], s["inertia"], 0
     infeasible, samples, best_samples, best_infeasible = 0, 0, 0, 0
+    before_move = [None] * size
     for t in range(s["iterations"] + 1):
         improved, old_best = False, best
         for i in range(size):
             if t > 0:
-                attractor = best[1] if s["update"] == "asynchronous" else old_best[1]
+                attractor = {
+                    "asynchronous": best[1],
+                    "synchronous": old_best[1],
+                    "evaluate_first": before_move[i],
+                }[s["update"]]
                 for d in range(dimensions):
                     if {"dimension": True, "particle": d == 0, "iteration": i == d == 0}[
                         s["random_numbers"]
@@ -176,6 +181,7 @@ def reference(where, seed, **changes):
                 p[i], p_fitness[i] = x[i], f
             if f < best[0]:
                 best, improved = (f, x[i].copy(), violation, colliding), True
+            before_move[i] = best[1]
         history.append(best[0])
         best_infeasible += best[2] > 1e-9
         if t > 0:
@@ -213,6 +219,13 @@ def collisions(found):
         {"bound_rule": "clamp", "random_numbers": "particle"},
         {"bound_rule": "stop", "random_numbers": "iteration"},
         {"bound_rule": "none", "update": "synchronous"},
+        {"random_numbers": "iteration", "update": "evaluate_first"},
+        {
+            "chaotic_term": "social",
+            "chaotic_map": "sinusoidal",
+            "chaotic_start_rule": "uniform",
+            "stall_limit": 0,
+        },
         {"penalty": "add", "d_min": 0.3, "samples": 51},
         {"penalty": "death", "beta": 12.0},
         {"curve": "spline"},
@@ -619,3 +632,17 @@ def test_a_swarm_finds_its_way_round_a_square():
     found = chaotic_pso.plan(task, np.random.default_rng(0), **settings)
     assert found.claimed_feasible
     assert 2 * math.hypot(3, 1) + 2 <= found.objective < 12
+
+
+def test_a_random_start_that_dies_is_redrawn_unless_it_is_kept():
+    """Half of the starts of the Sinusoidal map end at 0."""
+    changes = {"chaotic_term": "social", "chaotic_map": "sinusoidal", "stall_limit": 0}
+
+    def died(rule):
+        return [
+            plan(EQUAL, seed, chaotic_start_rule=rule, **changes).extra["zeta_collapsed_at"] > 0
+            for seed in range(20)
+        ]
+
+    assert not any(died("random"))
+    assert 4 < sum(died("uniform")) < 16

@@ -48,8 +48,8 @@ ChaoticTerm = IntEnum("ChaoticTerm", "none cognitive social", start=0)
 RandomNumbers = IntEnum("RandomNumbers", "dimension particle iteration", start=0)
 BoundRule = IntEnum("BoundRule", "mirror clamp stop none", start=0)
 Curve = IntEnum("Curve", "bezier spline ferguson", start=0)
-Update = IntEnum("Update", "asynchronous synchronous", start=0)
-StartRule = IntEnum("StartRule", "random fixed", start=0)
+Update = IntEnum("Update", "asynchronous synchronous evaluate_first", start=0)
+StartRule = IntEnum("StartRule", "random fixed uniform", start=0)
 ZetaFor = IntEnum("ZetaFor", "iteration particle dimension", start=0)
 
 # This share of the particles starts around a given path, at a distance of about this share of the
@@ -152,8 +152,9 @@ class Settings(NamedTuple):
     update: Annotated[
         Update,
         About(
-            "the swarm's best path is replaced as soon as "
-            "a better one is found, or once all have moved",
+            "which of the swarm's best paths a particle follows: that of now (asynchronous), that "
+            "of the last iteration (synchronous), or that of its own last evaluation, after which "
+            "it moves at once (evaluate_first)",
             PAPER + ", Algorithm 1",
         ),
     ]
@@ -165,7 +166,12 @@ class Settings(NamedTuple):
         chaotic_maps.Map, About("map of the chaotic sequence", PAPER + ", eqs. 9 to 16")
     ]
     chaotic_start_rule: Annotated[
-        StartRule, About("how the chaotic sequence starts", PAPER + ", Figure 3")
+        StartRule,
+        About(
+            "how the chaotic sequence starts: at random, redrawn while it dies (random) or not "
+            "(uniform), or fixed",
+            PAPER + ", Figure 3",
+        ),
     ]
     chaotic_start: Annotated[
         float,
@@ -201,9 +207,10 @@ def check(settings: dict) -> None:
         raise ValueError(
             f"control_points: {settings['control_points']}, beside start and target; {error}"
         ) from None
-    if settings["chaotic_map"] == "constant" and settings["chaotic_start_rule"] == "random":
+    rule = settings["chaotic_start_rule"]
+    if settings["chaotic_map"] == "constant" and rule != "fixed":
         raise ValueError(
-            "chaotic_start_rule: random; a constant map needs fixed, its value is chaotic_start"
+            f"chaotic_start_rule: {rule}; a constant map needs fixed, its value is chaotic_start"
         )
     if settings["particles"] == 1:
         logger.warning(
@@ -383,6 +390,8 @@ def _zeta(
     start = settings.chaotic_start
     if settings.chaotic_start_rule == StartRule.random:
         start = chaotic_maps.random_start(chaos, name, parameters)
+    elif settings.chaotic_start_rule == StartRule.uniform:
+        start = chaos.random()
     found = chaotic_maps.sequence(name, start, math.prod(shape), parameters)
     collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
     return chaotic_maps.Sequence(found.values.reshape(shape), found.clipped, collapsed_in)
@@ -403,6 +412,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     p, p_fitness = np.empty_like(x), np.full(particles, np.inf)
     g, g_fitness = np.empty((iterations + 1, dimensions)), np.full(iterations + 1, np.inf)
     g_violation, g_colliding = np.inf, 0
+    followed = np.empty_like(x)  # the best path when each particle was last evaluated
     r = np.empty(2)
     w = rules.inertia
     infeasible, colliding_samples, best_colliding_samples, best_infeasible = 0, 0, 0, 0
@@ -412,8 +422,12 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
         before = max(t - 1, 0)
         _copy(g[before], g[t])
         g_fitness[t] = g_fitness[before]
-        attractor = g[before] if rules.update == Update.synchronous else g[t]
         for i in range(particles):
+            attractor = g[t]
+            if rules.update == Update.synchronous:
+                attractor = g[before]
+            elif rules.update == Update.evaluate_first:
+                attractor = followed[i]
             if t > 0:
                 if rules.random_numbers == RandomNumbers.particle or (
                     rules.random_numbers == RandomNumbers.iteration and i == 0
@@ -434,22 +448,23 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 _hold(x[i], v[i], low, high, rules.bound_rule)
             length = penalised.length(x[i], objective, curve, scratch)
             if (
-                not rules.count_collisions
-                and penalised.least_fitness(length, objective) >= p_fitness[i]
+                rules.count_collisions
+                or penalised.least_fitness(length, objective) < p_fitness[i]
             ):
-                continue
-            violation, colliding = penalised.violation(curve, objective, scratch)
-            infeasible += violation > FEASIBLE
-            colliding_samples += colliding
-            fitness = penalised.fitness(length, violation, objective)
-            if fitness < p_fitness[i]:
-                _copy(x[i], p[i])
-                p_fitness[i] = fitness
-            if fitness < g_fitness[t]:
-                _copy(x[i], g[t])
-                g_fitness[t] = fitness
-                g_violation, g_colliding = violation, colliding
-                improved_at = t
+                violation, colliding = penalised.violation(curve, objective, scratch)
+                infeasible += violation > FEASIBLE
+                colliding_samples += colliding
+                fitness = penalised.fitness(length, violation, objective)
+                if fitness < p_fitness[i]:
+                    _copy(x[i], p[i])
+                    p_fitness[i] = fitness
+                if fitness < g_fitness[t]:
+                    _copy(x[i], g[t])
+                    g_fitness[t] = fitness
+                    g_violation, g_colliding = violation, colliding
+                    improved_at = t
+            if rules.update == Update.evaluate_first:
+                _copy(g[t], followed[i])
         best_infeasible += g_violation > FEASIBLE
         if t > 0:
             best_colliding_samples += g_colliding
