@@ -24,6 +24,7 @@ SETTINGS = {
     "least_detour": 3,
     "detour_share": 0.125,
     "straight_on": 0.8,
+    "random_step": 0.0,
 }
 
 
@@ -149,9 +150,11 @@ def test_same_seed_gives_the_same_bits():
     assert np.array_equal(one.path.points, other.path.points)
 
 
-def walker(grid, longest_walk=1000, detour=(3, 4), straight_on=0.8):
+def walker(grid, longest_walk=1000, detour=(3, 4), straight_on=0.8, random_step=0.0):
     walled = np.pad(grid, 1, constant_values=True)
-    return grid_genetic._Walker(walled.ravel(), walled.shape[1], longest_walk, *detour, straight_on)
+    return grid_genetic._Walker(
+        walled.ravel(), walled.shape[1], longest_walk, *detour, straight_on, random_step
+    )
 
 
 def is_path(cells, walled, columns):
@@ -186,6 +189,25 @@ def test_a_walk_may_have_as_many_steps_as_allowed_and_no_more():
     free = np.zeros((10, 10), dtype=bool)
     assert grid_genetic._extend(rng, walker(free, longest_walk=9), walk, 1, 10 * columns + 10) == 10
     assert grid_genetic._extend(rng, walker(free, longest_walk=8), walk, 1, 10 * columns + 10) == 0
+
+
+def test_random_steps_lead_away_from_the_straight_walk_and_still_to_the_goal():
+    rng = np.random.default_rng(0)
+    columns = 32
+    free = np.zeros((30, 30), dtype=bool)
+    walk = np.full(20_002, columns + 1)
+    steps = []
+    for share in (0.0, 0.2, 0.5):
+        given = walker(free, longest_walk=20_000, random_step=share)
+        counts = [
+            grid_genetic._extend(rng, given, walk, 1, 30 * columns + 30) for _ in range(100)
+        ]
+        assert walk[counts[-1] - 1] == 30 * columns + 30
+        assert is_path(walk[: counts[-1]], given.walled, columns)
+        steps.append(np.mean(counts) - 1)
+    assert steps[0] == 29
+    # A random step takes the walk nowhere on average, so 1 / (1 - share) times as many are needed.
+    assert steps[1:] == pytest.approx([29 / 0.8, 29 / 0.5], rel=0.15)
 
 
 def test_loops_are_cut_from_the_last_visit_on():
@@ -310,5 +332,6 @@ def test_settings():
         "least_detour": 0,
         "detour_share": -1.0,
         "straight_on": 2.0,
+        "random_step": 2.0,
     }
     assert all(setting_fault(kinds[name], value) for name, value in bad.items())

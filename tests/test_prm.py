@@ -17,7 +17,7 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0}
+SETTINGS = {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0, "attempts": 1}
 
 
 def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
@@ -141,6 +141,20 @@ def test_touching_is_allowed():
     tangent = problem([[2.0, -1.0, 1.0]], target=(4.0, 0.0))
     assert plan(tangent, nodes=0).objective == 4
     assert plan(tangent, nodes=0, d_min=0.01).path is None
+
+
+def test_roadmaps_are_drawn_until_one_connects_start_and_target():
+    few = {"nodes": 6, "links": "nearest", "neighbours": 2}
+    once = [plan(seed=seed, **few) for seed in range(30)]
+    often = [plan(seed=seed, attempts=50, **few) for seed in range(30)]
+    assert 0 < sum(found.path is None for found in once) < 30
+    assert all(found.path is not None for found in often)
+    for first, last in zip(once, often):
+        assert (last.evaluations == 1) == (first.path is not None)
+        if first.path is not None:
+            assert last.objective == first.objective
+    enclosed = [[2 * math.cos(a), 2 * math.sin(a), 1] for a in np.linspace(0, 2 * math.pi, 9)]
+    assert plan(problem(enclosed), attempts=3).evaluations == 3
 
 
 def test_failure_is_a_plan_without_a_path():

@@ -67,13 +67,19 @@ class Settings(NamedTuple):
         Range(0, 1),
         About("probability that a random step keeps the direction, if that cell is free"),
     ]
+    random_step: Annotated[
+        float,
+        Range(0, 1),
+        About("probability that a step of a walk is random where some cell is nearer to the goal"),
+    ]
 
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
     """Cheapest path of cells found, a polyline through their centres.
 
-    A walk goes to the free neighbour nearest to its goal. The best of parents and children survive.
+    A walk goes to the free neighbour nearest to its goal, but for random steps. The best of parents
+    and children survive.
 
     Parameters
     ----------
@@ -108,6 +114,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             settings.least_detour, settings.least_detour - 1 + int(settings.detour_share * columns)
         ),
         straight_on=settings.straight_on,
+        random_step=settings.random_step,
     )
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
@@ -178,6 +185,7 @@ class _Walker(NamedTuple):
     least_detour: int
     most_detour: int
     straight_on: float
+    random_step: float
 
 
 @compiled
@@ -278,6 +286,8 @@ def _extend(rng, walker, walk, count, goal):
     while cell != goal:
         if count == end:
             return 0
+        if detour == 0 and walker.random_step > 0 and rng.random() < walker.random_step:
+            detour, step = 1, -1
         if detour == 0:
             nearest = (goal_row - row) ** 2 + (goal_column - column) ** 2
             nearer = -1

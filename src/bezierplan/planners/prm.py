@@ -55,6 +55,9 @@ class Settings(NamedTuple):
     d_min: Annotated[
         float, Range(0), About("added to every radius; must be 0 on a grid", unit=UNITS)
     ]
+    attempts: Annotated[
+        int, Range(1), About("roadmaps drawn, until one connects start and target")
+    ]
 
 
 @with_settings(Settings)
@@ -74,23 +77,23 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     -------
     Plan
         Its objective is its length in units, infinite if there is no path. Extra column: roads, the
-        number of links.
+        number of links of the last roadmap.
 
     References
     ----------
     tharwat2018, Figure 22; elhoseny2017, Tables 2, 3 and 6.
     """
     neighbours = settings.neighbours if settings.links == Links.nearest else None
-    length, way, roads = roadmap(problem, rng, settings.nodes, neighbours, settings.d_min)
-    path = Path("polyline", way) if len(way) else None
-    found = path is not None
-    history = np.array([length])
+    for attempt in range(settings.attempts):
+        length, way, roads = roadmap(problem, rng, settings.nodes, neighbours, settings.d_min)
+        if len(way):
+            break
     return Plan(
-        path,
+        Path("polyline", way) if len(way) else None,
         length,
-        claimed_feasible=found,
-        evaluations=1,
-        history=history,
+        claimed_feasible=len(way) > 0,
+        evaluations=attempt + 1,
+        history=np.array([length]),
         stop="direct",
         extra={"roads": roads},
     )
