@@ -199,9 +199,7 @@ def test_random_steps_lead_away_from_the_straight_walk_and_still_to_the_goal():
     steps = []
     for share in (0.0, 0.2, 0.5):
         given = walker(free, longest_walk=20_000, random_step=share)
-        counts = [
-            grid_genetic._extend(rng, given, walk, 1, 30 * columns + 30) for _ in range(100)
-        ]
+        counts = [grid_genetic._extend(rng, given, walk, 1, 30 * columns + 30) for _ in range(100)]
         assert walk[counts[-1] - 1] == 30 * columns + 30
         assert is_path(walk[: counts[-1]], given.walled, columns)
         steps.append(np.mean(counts) - 1)

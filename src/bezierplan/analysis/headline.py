@@ -15,7 +15,7 @@ COLUMNS = {
     "paper": "paper",
     "numbers": "published numbers: agree or identified / disagree / inconclusive",
     "deviation": "typical deviation",
-    "claims": "claims: supported / partly / contradicted or no effect / undecided",
+    "claims": "claims: supported / partly / contradicted or no effect / undecided or untestable",
     "robust": "same verdict under every interpretation",
     "feasible": "feasible runs (baseline)",
     "length": "length over the baseline's",
@@ -159,9 +159,11 @@ def beside_baseline(measured: pd.DataFrame) -> str:
 
 def _stable(claims: pd.DataFrame) -> pd.Series:
     """How many of a study's claims have the same verdict under all interpretations, out of those on
-    which alternatives were tried, as text.
+    which alternatives were tried, as text; a claim that no runs decide is none of them.
     """
-    tried = claims[claims["interpretations"].fillna("") != ""]
+    tried = claims[
+        (claims["interpretations"].fillna("") != "") & (claims["verdict"] != "untestable")
+    ]
     agree = tried["interpretations"].str.split(" of ")
     stable = (agree.str[0] == agree.str[1]).groupby(tried["study"]).agg(["sum", "size"])
     return pd.Series(

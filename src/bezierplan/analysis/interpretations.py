@@ -33,7 +33,7 @@ from bezierplan.analysis import comparison, explained, metrics, statistics, tabl
 from bezierplan.analysis.explained import Evaluated, Interpretation, name_of, together
 from bezierplan.analysis.results import Results, joined, select
 from bezierplan.analysis.search import Evaluate, Task, confirm, search, within_reach
-from bezierplan.analysis.search_job import Choice, Part, Search, Stage
+from bezierplan.analysis.search_job import WITHOUT, Choice, Part, Search, Stage
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
@@ -129,7 +129,7 @@ def under_metrics(
     renamed = [entry.but(metric=metric.get(entry.metric, entry.metric)) for entry in spec.values]
     entries = {(entry.metric, str(entry.statistic)): entry for entry in renamed}
     keys = {
-        choice.table: interpretation[choice.id]
+        choice.table: None if interpretation[choice.id] == WITHOUT else interpretation[choice.id]
         for choice in choices
         if choice.table and choice.id in interpretation
     }

@@ -8,6 +8,10 @@ from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 
 
+WITHOUT = "all"
+"""The value of a choice for a key of tables under which they do not have it."""
+
+
 class Choice(NamedTuple):
     """A detail that a paper leaves open and that governs its published numbers."""
 
@@ -25,7 +29,7 @@ class Choice(NamedTuple):
     workspace: Mapping[str, str] = {}
     """Workspace -> its key that it governs."""
     table: str | None = None
-    """The key of the tables that it governs."""
+    """The key of the tables that it governs; the value `WITHOUT` leaves it out."""
     column: str | None = None
     """The column of the tables whose value is the paper's world."""
     overrules: Mapping[str, list[str]] = {}

@@ -207,10 +207,9 @@ def check(settings: dict) -> None:
         raise ValueError(
             f"control_points: {settings['control_points']}, beside start and target; {error}"
         ) from None
-    rule = settings["chaotic_start_rule"]
-    if settings["chaotic_map"] == "constant" and rule != "fixed":
+    if settings["chaotic_map"] == "constant" and settings["chaotic_start_rule"] == "random":
         raise ValueError(
-            f"chaotic_start_rule: {rule}; a constant map needs fixed, its value is chaotic_start"
+            "chaotic_start_rule: random; a constant map needs fixed, its value is chaotic_start"
         )
     if settings["particles"] == 1:
         logger.warning(
@@ -447,10 +446,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 )
                 _hold(x[i], v[i], low, high, rules.bound_rule)
             length = penalised.length(x[i], objective, curve, scratch)
-            if (
-                rules.count_collisions
-                or penalised.least_fitness(length, objective) < p_fitness[i]
-            ):
+            if rules.count_collisions or penalised.least_fitness(length, objective) < p_fitness[i]:
                 violation, colliding = penalised.violation(curve, objective, scratch)
                 infeasible += violation > FEASIBLE
                 colliding_samples += colliding

@@ -55,9 +55,7 @@ class Settings(NamedTuple):
     d_min: Annotated[
         float, Range(0), About("added to every radius; must be 0 on a grid", unit=UNITS)
     ]
-    attempts: Annotated[
-        int, Range(1), About("roadmaps drawn, until one connects start and target")
-    ]
+    attempts: Annotated[int, Range(1), About("roadmaps drawn, until one connects start and target")]
 
 
 @with_settings(Settings)

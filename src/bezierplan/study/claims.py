@@ -12,6 +12,7 @@ from annotated_types import MinLen
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.claim import Claim, ClaimId
+from bezierplan.analysis.search_job import WITHOUT
 from bezierplan.schema.model import (
     MOST_ENTRIES,
     Line,
@@ -55,8 +56,9 @@ class Assumption(Model):
         description="a list of the other values that the setting can take; [] for none"
     )
     reason: Line = Field(description="why the default was chosen, one or two lines")
-    source: Literal["published", "inferred", "assumed"] = Field(
-        description="where the default comes from: published, inferred or assumed"
+    source: Literal["published", "inferred", "fitted", "assumed"] = Field(
+        description="where the default comes from: published, inferred, fitted (chosen because our "
+        "numbers then come nearest to printed ones, so that these confirm nothing) or assumed"
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
     problems: listed(ProblemName) = Field(
@@ -70,8 +72,8 @@ class Assumption(Model):
     )
     table: Literal["within"] = Field(
         None,
-        description="within: it governs this key of tables, instead of a setting; the default is "
-        "then `all`, and each alternative a column",
+        description="within: it governs this key of tables, instead of a setting; `all` is then a "
+        "table without the key, every other value its column",
     )
     along: dict[Name, dict[Name, Setting]] = Field(
         {},
@@ -111,10 +113,10 @@ class Assumption(Model):
                 )
         if self.setting and (self.workspace or self.table):
             raise wrong("setting: beside workspace or table; expected one of them")
-        if self.table and self.default != "all":
+        if self.table and WITHOUT not in (self.default, *self.alternatives):
             raise wrong(
-                f"default: {shown(self.default)}: "
-                f"expected all, since table: {self.table} is not in force"
+                f"default: {shown(self.default)}: expected {WITHOUT}, a table without the key "
+                f"{self.table}, or this among the alternatives"
             )
         if self.setting is None and self.problems:
             raise wrong(

@@ -216,7 +216,9 @@ class Assumption(Record):
     default: str
     alternatives: list[str]
     reason: str
-    source: str = Field(description="where the default comes from: published, inferred or assumed")
+    source: str = Field(
+        description="where the default comes from: published, inferred, fitted or assumed"
+    )
     setting: str = Field(description="the planner's setting that it governs; empty if none")
     claims: list[str] = Field(description="ids of the claims on which the alternatives are tried")
     choices: list[Choice]
