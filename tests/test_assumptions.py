@@ -3,6 +3,7 @@ that nothing reads is a defect.
 """
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import pytest
@@ -25,6 +26,8 @@ STUDIES = studies()
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
 FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
+# Alternatives that matter only under others: how often a roadmap is drawn, where one has few links.
+UNDER = {("elhoseny2017", "O15q_100"): {"prm": {"neighbours": 1}}}
 
 
 def found(study, experiment, method):
@@ -65,9 +68,16 @@ def test_alternative_changes_what_a_run_finds(key, name):
     one.
     """
     study = STUDIES[key]
+    if under := UNDER.get((key, name)):
+        methods = {
+            method: study.methods[method].but(settings=study.methods[method].settings | settings)
+            for method, settings in under.items()
+        }
+        study = replace(study, methods=study.methods | methods)
     changed = with_alternative(study, name)
     assert any(
-        found(changed, home(study, method), method) != found_in_force(key, method)
+        found(changed, home(study, method), method)
+        != (found(study, home(study, method), method) if under else found_in_force(key, method))
         for method in methods_changed(study, name)
     )
 

@@ -7,7 +7,6 @@ from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
 
-
 WITHOUT = "all"
 """The value of a choice for a key of tables under which they do not have it."""
 

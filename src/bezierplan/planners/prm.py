@@ -82,15 +82,15 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     tharwat2018, Figure 22; elhoseny2017, Tables 2, 3 and 6.
     """
     neighbours = settings.neighbours if settings.links == Links.nearest else None
-    for attempt in range(settings.attempts):
+    drawn, way = 0, ()
+    while drawn < settings.attempts and not len(way):
         length, way, roads = roadmap(problem, rng, settings.nodes, neighbours, settings.d_min)
-        if len(way):
-            break
+        drawn += 1
     return Plan(
         Path("polyline", way) if len(way) else None,
         length,
         claimed_feasible=len(way) > 0,
-        evaluations=attempt + 1,
+        evaluations=drawn,
         history=np.array([length]),
         stop="direct",
         extra={"roads": roads},

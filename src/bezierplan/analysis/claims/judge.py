@@ -39,7 +39,7 @@ claim_checks.csv, one row per comparison.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -178,11 +178,7 @@ def _judge_variant(
     summary = {
         "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
-        "where_it_holds": ""
-        if everywhere
-        else verdicts.where_it_holds(
-            [_in_words(each, deciding) for each in deciding], material.labels
-        ),
+        "where_it_holds": "" if everywhere else _where_it_holds(judged, material.labels),
         "published": _published(deciding),
         **{
             key: getattr(finding, key)
@@ -321,6 +317,24 @@ def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
         what = f"{check.statistic_written} {check.measured or check.test}"
         factors["what"] = what.strip().replace("_", " ")
     return verdicts.Marked(factors, judged.mark_family)
+
+
+def _where_it_holds(judged: list[_Judged], labels: Mapping[str, str]) -> str:
+    """`verdicts.where_it_holds` of the comparisons that decide; if all or none of these hold, which
+    they may do because of the closest of several that are taken together, of these one by one.
+    """
+    deciding = [each for each in judged if each.primary]
+    words = verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], labels)
+    taken_together = {each.number for each in deciding if each.parts}
+    single = [
+        each._replace(mark_family=each.mark)
+        for each in judged
+        if not each.primary and each.number in taken_together
+    ]
+    if words or not any(each.mark == "+" for each in single):
+        return words
+    words = verdicts.where_it_holds([_in_words(each, single) for each in single], labels)
+    return f"one by one {words}" if words else ""
 
 
 def _group_in_words(check: Check, group: Any) -> Any:
