@@ -184,6 +184,16 @@ def test_a_superlative_is_one_comparison_at_a_place_and_its_pairs_are_details():
     assert judged(check, third)["replication_probability"] < 0.1
 
 
+def test_a_superlative_that_fails_by_the_closest_alone_says_against_which_it_holds():
+    check = LOWER | {"than": ["b", "c", "d"], "together": True}
+    alike = table({"a": sample("a"), "b": sample("a"), "c": sample("c", 2), "d": sample("d", 3)})
+    row = judged(check, alike)
+    assert row[["verdict", "holds"]].to_list() == ["undecided", "0 of 1"]
+    assert row["where_it_holds"] == "one by one against c and d"
+    third = table({"a": sample("a"), "b": sample("b", -2), "c": sample("c", -2)})
+    assert judged(LOWER | {"than": ["b", "c"], "together": True}, third)["where_it_holds"] == ""
+
+
 def test_a_superlative_holds_in_the_printed_numbers_if_all_of_it_does():
     check = LOWER | {"than": ["b", "c"], "together": True}
     runs = table({name: sample(name, mean) for name, mean in (("a", 0), ("b", 1), ("c", 2))})

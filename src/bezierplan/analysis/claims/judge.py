@@ -325,11 +325,10 @@ def _where_it_holds(judged: list[_Judged], labels: Mapping[str, str]) -> str:
     """
     deciding = [each for each in judged if each.primary]
     words = verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], labels)
-    taken_together = {each.number for each in deciding if each.parts}
     single = [
         each._replace(mark_family=each.mark)
         for each in judged
-        if not each.primary and each.number in taken_together
+        if not each.primary and any(each.check is whole.check for whole in deciding if whole.parts)
     ]
     if words or not any(each.mark == "+" for each in single):
         return words
