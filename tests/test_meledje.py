@@ -393,7 +393,8 @@ settings: {population: 20, generations: 15, stall: 15, initial: feasible, most_n
   selection: linear_rank, crossover_probability: 1.0, cut: same, mutation_probability: 0.3,
   mutation_for: path, without_obstacle: any_node, obstacle_node: edge, neighbourhood: eight,
   keep_better: false, direction: forward, ref21_test: edges, corners: open,
-  random_node: free, penalty: 15.0, elitism: 0, result: last_generation, optimal_within: 1e-6, friction: 1.0}
+  random_node: free, penalty: 15.0, elitism: 0, result: last_generation,
+  optimal_within: 1e-6, friction: 1.0}
 workspaces:
   yard: {kind: grid, file: yard.txt, cell: 0.5, unit: m}
 problems:
