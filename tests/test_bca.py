@@ -23,6 +23,7 @@ SETTINGS = {
     "population": 20,
     "generations": 10,
     "crossover_probability": 0.9,
+    "cut": "gene",
     "mutation_probability": 0.1,
     "mutation": "bit_flip",
     "elitism": 1,
@@ -207,12 +208,14 @@ def test_same_seed_gives_the_same_bits():
     assert np.array_equal(one.path.points, other.path.points)
 
 
+@pytest.mark.parametrize("cut", ["gene", "bit"])
 @pytest.mark.parametrize("mutation", ["bit_flip", "cell", "per_gene"])
 @pytest.mark.parametrize("initial", ["uniform", "sorted", "feasible"])
-def test_genes_are_free_cells(mutation, initial):
+def test_genes_are_free_cells(mutation, initial, cut):
     grid = random_grid(3, 0.4)
     found = plan(
         grid,
+        cut=cut,
         mutation=mutation,
         initial=initial,
         mutation_probability=1.0,
@@ -224,24 +227,47 @@ def test_genes_are_free_cells(mutation, initial):
     assert np.array_equal(found.path.points[1:-1] % 1, np.full((8, 2), 0.5))
 
 
+def bits_of(genes):
+    return "".join(f"{gene:09b}" for gene in genes)
+
+
+def crossed(parents, cut, legal, seed):
+    """The two chromosomes after a crossover, and the cuts of their bits that make them."""
+    mother, father = (np.array(genes) for genes in parents)
+    bca._cross(np.random.default_rng(seed), mother, father, 9, legal, bca.Cut[cut])
+    one, other = map(bits_of, parents)
+    cuts = [
+        point
+        for point in range(1, len(one))
+        if bits_of(mother) == one[:point] + other[point:]
+        and bits_of(father) == other[:point] + one[point:]
+    ]
+    return [mother, father], cuts
+
+
+def test_crossover_cuts_between_genes_or_at_any_bit():
+    """Of chromosomes that differ in every bit, so that the cut is known."""
+    parents, legal = ([0, 0, 0, 0], [511, 511, 511, 511]), np.ones(512, dtype=bool)
+    for cut, places in (("gene", range(9, 36, 9)), ("bit", range(1, 36))):
+        found = [crossed(parents, cut, legal, seed)[1] for seed in range(500)]
+        assert {point for (point,) in found} == set(places)
+
+
 @given(st.integers(0, 10_000))
-def test_a_flip_changes_one_bit_or_nothing(seed):
+def test_a_cut_inside_a_gene_leaves_free_cells(seed):
     rng = np.random.default_rng(seed)
-    legal = rng.random(512) < 0.1
-    genes = rng.choice(np.flatnonzero(legal), 4)
-    before = genes.copy()
-    bca._flip(rng, genes, 2, 9, legal)
-    assert legal[genes].all()
-    assert np.array_equal(np.delete(genes, 2), np.delete(before, 2))
-    assert int(genes[2] ^ before[2]).bit_count() <= 1
+    legal = rng.random(512) < 0.3
+    parents = rng.choice(np.flatnonzero(legal), (2, 4)).tolist()
+    children, cuts = crossed(parents, "bit", legal, seed)
+    assert legal[np.array(children)].all()
+    assert cuts or [genes.tolist() for genes in children] == parents
 
 
-def test_a_gene_without_a_legal_neighbour_stays():
+def test_chromosomes_that_no_cut_leaves_free_stay_as_they_are():
     legal = np.zeros(512, dtype=bool)
-    legal[5] = True
-    genes = np.array([5])
-    bca._flip(np.random.default_rng(0), genes, 0, 9, legal)
-    assert genes.tolist() == [5]
+    legal[[0, 511]] = True
+    children, _ = crossed(([0], [511]), "bit", legal, 0)
+    assert [genes.tolist() for genes in children] == [[0], [511]]
 
 
 def test_sorted_start_follows_the_way_to_the_target():

@@ -2,6 +2,7 @@
 cases, its settings.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -29,6 +30,7 @@ SETTINGS = {
     "penalty": 10.0,
     "penalty_for": "each_sample",
     "occupied_point_penalty": 0.0,
+    "report": "best_so_far",
 }
 SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 601, "bezier": 601}
 OPEN = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
@@ -58,6 +60,44 @@ def reference(path, grid, samples):
     return np.hypot(*np.diff(points, axis=0).T).sum(), grid.occupied[row, column].sum()
 
 
+def entries(points, grid):
+    """How often samples of a path enter an occupied cell, by plain Python."""
+    cells = [grid.cell_of(*(point + 1e-9 * grid.cell)) for point in points]
+    return sum(
+        bool(grid.occupied[cell]) and cell != before for before, cell in itertools.pairwise(cells)
+    )
+
+
+@given(st.integers(0, 10_000), st.sampled_from(curves.B_SPLINES))
+@settings(max_examples=40)
+def test_objective_is_length_plus_penalty_for_each_entry_into_an_occupied_cell(seed, curve):
+    grid, samples = random_grid(seed), SAMPLES[curve]
+    found = plan(
+        grid, seed=seed, curve=curve, samples=samples, generations=3, penalty_for="per_cell"
+    )
+    length, bad = reference(found.path, grid, samples)
+    points = curves.sample_matrix(curve, len(found.path.points), samples) @ found.path.points
+    assert found.objective == pytest.approx(length + 10 * entries(points, grid), rel=1e-12)
+    assert found.extra["bad_samples"] == bad
+
+
+def test_a_cell_is_entered_once_however_fine_the_samples():
+    """A straight line through a wall one cell thick, measured along its length too."""
+    for samples, spacing in itertools.product((50, 701), ("parameter", "arc_length")):
+        found = plan(
+            WALL,
+            start=0,
+            target=7,
+            curve="polyline",
+            samples=samples,
+            spacing=spacing,
+            genes=0,
+            penalty_for="per_cell",
+        )
+        assert found.objective == pytest.approx(7.0 + 10.0)
+        assert found.extra["bad_samples"] > 1
+
+
 @given(st.integers(0, 10_000), st.sampled_from(curves.B_SPLINES))
 @settings(max_examples=40)
 def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
@@ -69,7 +109,7 @@ def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
     assert found.claimed_feasible == (bad == 0)
 
 
-@pytest.mark.parametrize("penalty_for", ["each_sample", "path"])
+@pytest.mark.parametrize("penalty_for", ["each_sample", "path", "per_cell"])
 @pytest.mark.parametrize("curve", curves.B_SPLINES)
 def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, penalty_for):
     """The last generation is measured only as far as it takes to know that a chromosome is not the
@@ -90,7 +130,13 @@ def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, pen
     for cells in starts.integers(0, 256, size=(population, SETTINGS["genes"])):
         points = np.array([grid.centre(cell) for cell in (0, *cells.tolist(), 255)])
         length, bad = reference(Path(curve, points), grid, SAMPLES[curve])
-        costs.append(length + 10 * (bad if penalty_for == "each_sample" else min(bad, 1)))
+        samples = curves.sample_matrix(curve, len(points), SAMPLES[curve]) @ points
+        penalties = {
+            "each_sample": bad,
+            "path": min(bad, 1),
+            "per_cell": entries(samples, grid),
+        }
+        costs.append(length + 10 * penalties[penalty_for])
     assert found.objective == pytest.approx(min(costs), rel=1e-12)
 
 
@@ -125,6 +171,41 @@ def test_history_never_rises_and_counts_the_first_generation():
     assert (np.diff(found.history) <= 0).all()
     assert found.history[-1] == found.objective
     assert found.evaluations == 20 * 26
+
+
+@pytest.mark.parametrize("penalty", [0.0, 10.0])
+def test_the_last_generation_can_be_worse_than_an_earlier_one(penalty):
+    """Of the same runs without elitism: the best so far is the least of the generations."""
+    grid = random_grid(4)
+    lost = {"elitism": 0, "generations": 30, "occupied_point_penalty": penalty}
+    worse = 0
+    for seed in range(5):
+        best = plan(grid, seed=seed, **lost)
+        last = plan(grid, seed=seed, report="last_generation", **lost)
+        assert np.array_equal(np.minimum.accumulate(last.history), best.history)
+        assert (np.diff(last.history) > 0).any()
+        assert last.objective == last.history[-1] >= best.objective
+        worse += last.objective > best.objective
+        length, bad = reference(last.path, grid, 601)
+        column, row = (last.path.points / 10).astype(int).T
+        assert last.objective == pytest.approx(
+            length + 10 * bad + penalty * grid.occupied[row, column].sum()
+        )
+        assert last.extra["bad_samples"] == bad
+        # The best of a generation is what a run that ends with it reports.
+        shorter = plan(grid, seed=seed, report="last_generation", **lost | {"generations": 12})
+        assert np.array_equal(shorter.history, last.history[:13])
+    assert worse > 0
+
+
+def test_with_elitism_the_last_generation_has_the_best_so_far():
+    for seed in range(5):
+        best, last = (
+            plan(random_grid(4), seed=seed, report=report)
+            for report in ("best_so_far", "last_generation")
+        )
+        assert np.array_equal(best.history, last.history)
+        assert np.array_equal(best.path.points, last.path.points)
 
 
 def test_same_seed_gives_the_same_bits():

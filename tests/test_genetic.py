@@ -6,7 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from bezierplan.planners.parts.genetic import complement_bit, redraw_gene, roulette, swap_tails
+from bezierplan.planners.parts.genetic import (
+    complement_bit,
+    flip_bit,
+    redraw_gene,
+    roulette,
+    swap_tails,
+)
 
 BITS = 8
 chromosomes = st.lists(st.integers(0, 255), min_size=6, max_size=6).map(
@@ -59,6 +65,26 @@ def test_redrawn_genes_are_uniform_over_genes_and_alleles():
         (gene,) = np.flatnonzero(chromosome != -1)
         counts[gene] += alleles == chromosome[gene]
     assert stats.chisquare(counts.ravel()).pvalue > 1e-3
+
+
+@given(st.integers(0, 10_000))
+def test_a_flip_changes_one_bit_or_nothing(seed):
+    rng = np.random.default_rng(seed)
+    legal = rng.random(512) < 0.1
+    genes = rng.choice(np.flatnonzero(legal), 4)
+    before = genes.copy()
+    flip_bit(rng, genes, 2, 9, legal)
+    assert legal[genes].all()
+    assert np.array_equal(np.delete(genes, 2), np.delete(before, 2))
+    assert int(genes[2] ^ before[2]).bit_count() <= 1
+
+
+def test_a_gene_without_a_legal_neighbour_stays():
+    legal = np.zeros(512, dtype=bool)
+    legal[5] = True
+    genes = np.array([5])
+    flip_bit(np.random.default_rng(0), genes, 0, 9, legal)
+    assert genes.tolist() == [5]
 
 
 @pytest.mark.parametrize("operator", [roulette, swap_tails, complement_bit, redraw_gene])

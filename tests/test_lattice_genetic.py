@@ -34,6 +34,24 @@ def test_genes_sorted_along_the_way_give_shorter_first_paths():
     assert first["ga_sorted"] < first["ga"] - 5
 
 
+@pytest.mark.parametrize("mutation", ["cell", "bit_flip"])
+def test_mutation_draws_a_cell_or_flips_a_bit(mutation):
+    """Of one gene, to a free cell: any of them, or those whose number differs in one bit."""
+    free = np.array([1, 2, 3, 7, 12])
+    legal = np.isin(np.arange(16), free)
+    found = set()
+    for seed in range(200):
+        genes = np.array([3, 3, 3])
+        lattice_genetic._mutate(
+            np.random.default_rng(seed), genes, 4, free, legal, lattice_genetic.Mutation[mutation]
+        )
+        changed = np.flatnonzero(genes != 3)
+        assert len(changed) <= 1
+        found |= {(gene, int(genes[gene])) for gene in changed.tolist()}
+    others = {1, 2, 7} if mutation == "bit_flip" else {1, 2, 7, 12}
+    assert found == {(gene, cell) for gene in range(3) for cell in others}
+
+
 def test_without_the_best_kept_it_may_be_lost_but_not_forgotten():
     kept, lost = plan("ga", seed=3), plan("ga", seed=3, elitism=0)
     assert (np.diff(lost.history) <= 0).all()

@@ -195,6 +195,7 @@ def test_drawn_mutations_have_the_settings_in_force():
     given, settings = arguments("meledje", "mutations"), STUDY.resolved("proposed")
     assert given["any_node"] == (settings["without_obstacle"] == "any_node")
     assert given["beside_obstacle"] == (settings["obstacle_node"] == "neighbour")
+    assert settings["neighbourhood"] == "eight"
     assert given["same_signs"] == (settings["direction"] == "same_signs")
     assert given["whole_path"] == (settings["ref21_test"] == "path")
     assert (given["keep_better"], given["penalty"]) == (
@@ -390,9 +391,10 @@ methods:
   repaired: {planner: node_genetic, settings: {mutation: random_repair}}
 settings: {population: 20, generations: 15, stall: 15, initial: feasible, most_nodes: 12,
   selection: linear_rank, crossover_probability: 1.0, cut: same, mutation_probability: 0.3,
-  mutation_for: path, without_obstacle: any_node, obstacle_node: edge, keep_better: false,
-  direction: forward, ref21_test: edges, corners: open, random_node: free, penalty: 15.0,
-  elitism: 0, result: last_generation, optimal_within: 1e-6, friction: 1.0}
+  mutation_for: path, without_obstacle: any_node, obstacle_node: edge, neighbourhood: eight,
+  keep_better: false, direction: forward, ref21_test: edges, corners: open,
+  random_node: free, penalty: 15.0, elitism: 0, result: last_generation,
+  optimal_within: 1e-6, friction: 1.0}
 workspaces:
   yard: {kind: grid, file: yard.txt, cell: 0.5, unit: m}
 problems:

@@ -22,7 +22,15 @@ from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces import files
 from bezierplan.workspaces import ground as ground_of_cells
 from bezierplan.workspaces.grid import Grid, from_lines
-from bezierplan.workspaces.ground import cheapest, edge_energy, ground_of, obstacles_met
+from bezierplan.workspaces.ground import (
+    MOST_NEIGHBOURS,
+    Neighbourhood,
+    cheapest,
+    edge_energy,
+    free_neighbours,
+    ground_of,
+    obstacles_met,
+)
 from bezierplan.workspaces.problem import Problem
 
 MAPS = File(__file__).parents[1] / "config" / "studies" / "meledje" / "workspaces"
@@ -47,6 +55,7 @@ SETTINGS = {
     "mutation_for": "path",
     "without_obstacle": "any_node",
     "obstacle_node": "edge",
+    "neighbourhood": "eight",
     "keep_better": False,
     "ref21_test": "edges",
     "corners": "open",
@@ -491,7 +500,7 @@ def mutated(path, grid, mutation, seed=0, **changes):
         drawn,
         ground_of(grid, 1.0),
         rules,
-        np.empty(8, dtype=np.int64),
+        np.empty(MOST_NEIGHBOURS, dtype=np.int64),
     )
     return path.tolist(), tried
 
@@ -503,11 +512,19 @@ def cost(path, grid):
     )
 
 
-def around(cell, grid):
+STEPS = {
+    "eight": list(itertools.product((-1, 0, 1), repeat=2)),
+    "four": [(-1, 0), (0, -1), (0, 1), (1, 0)],
+    "within_two": list(itertools.product((-2, -1, 0, 1, 2), repeat=2)),
+}
+each_neighbourhood = pytest.mark.parametrize("neighbourhood", STEPS)
+
+
+def around(cell, grid, neighbourhood="eight"):
     """Free neighbours of a cell, row by row from the lower left."""
     rows, columns = grid.occupied.shape
     found = []
-    for up, across in itertools.product((-1, 0, 1), repeat=2):
+    for up, across in STEPS[neighbourhood]:
         row, column = cell // columns + up, cell % columns + across
         if (
             (up, across) != (0, 0)
@@ -547,27 +564,42 @@ def test_an_operator_changes_at_most_one_inner_node_to_a_free_cell(mutation):
     assert set(moved) == set(range(1, len(path) - 1))
 
 
+@each_neighbourhood
+def test_neighbours_are_the_free_cells_of_their_neighbourhood(neighbourhood):
+    assert len(Neighbourhood) == len(STEPS)
+    # On a map without obstacles too, so that no place for one is missing.
+    for grid in (random_grid(6), random_grid(6, share=0.0), random_grid(6, shape=(1, 3))):
+        ground, found = ground_of(grid, 1.0), np.empty(MOST_NEIGHBOURS, dtype=np.int64)
+        for cell in range(grid.occupied.size):
+            count = free_neighbours(cell, ground, Neighbourhood[neighbourhood], found)
+            assert found[:count].tolist() == around(cell, grid, neighbourhood)
+
+
+@each_neighbourhood
 @pytest.mark.parametrize(
     ("mutation", "keep_better"), list(itertools.product(["ref12", "proposed"], [False, True]))
 )
-def test_the_best_neighbour_takes_the_place_of_a_node(mutation, keep_better):
+def test_the_best_neighbour_takes_the_place_of_a_node(mutation, keep_better, neighbourhood):
     grid = random_grid(3)
     kept = 0
     for seed, path in enumerate(random_paths(grid)):
-        after, tried = mutated(path, grid, mutation, seed, keep_better=keep_better)
+        after, tried = mutated(
+            path, grid, mutation, seed, keep_better=keep_better, neighbourhood=neighbourhood
+        )
         if after == path:
             kept += 1
-            assert keep_better or any(not around(node, grid) for node in path[1:-1])
+            assert keep_better or any(not around(node, grid, neighbourhood) for node in path[1:-1])
             continue
         (k,) = changed(path, after)
-        costs = [cost([*path[:k], cell, *path[k + 1 :]], grid) for cell in around(path[k], grid)]
+        near = around(path[k], grid, neighbourhood)
+        costs = [cost([*path[:k], cell, *path[k + 1 :]], grid) for cell in near]
         assert tried == len(costs)
         assert cost(after, grid) == pytest.approx(min(costs))
-        assert (
-            after[k] == around(path[k], grid)[int(np.argmax(np.array(costs) < min(costs) + 1e-9))]
-        )
+        assert after[k] == near[int(np.argmax(np.array(costs) < min(costs) + 1e-9))]
         assert not keep_better or cost(after, grid) < cost(path, grid)
-    assert (kept > 0) == keep_better
+    # Of eight neighbours one is always free here; with more, hardly a node is better than all.
+    assert neighbourhood != "eight" or (kept > 0) == keep_better
+    assert kept < 60
 
 
 def test_the_proposed_mutation_changes_a_node_before_an_obstacle():
@@ -591,19 +623,22 @@ def test_a_feasible_path_is_changed_as_by_reference_12_or_not_at_all():
         assert mutated(path, BLOCK, "proposed", seed) == mutated(path, BLOCK, "ref12", seed)
 
 
+@each_neighbourhood
 @pytest.mark.parametrize("direction", ["forward", "same_signs"])
-def test_reference_21_steps_towards_the_target_along_free_edges(direction):
+def test_reference_21_steps_towards_the_target_along_free_edges(direction, neighbourhood):
     grid = random_grid(5, share=0.15)
     columns = grid.occupied.shape[1]
     target = np.array(divmod(grid.occupied.size - 1, columns))
     moved = 0
     for seed, path in enumerate(random_paths(grid)):
-        after, _ = mutated(path, grid, "ref21", seed, direction=direction)
+        after, _ = mutated(
+            path, grid, "ref21", seed, direction=direction, neighbourhood=neighbourhood
+        )
         for k in changed(path, after):
             moved += 1
             way = target - divmod(after[k], columns)
             assert (np.sign(way) == 1).all() if direction == "same_signs" else way @ target > 0
-            assert after[k] in around(path[k], grid)
+            assert after[k] in around(path[k], grid, neighbourhood)
             assert met(after[k - 1], after[k], grid) == met(after[k], after[k + 1], grid) == 0
     assert moved > 3
 

@@ -21,7 +21,7 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
     check_pairs,
-    complement_bit,
+    flip_bit,
     redraw_gene,
     roulette,
     swap_tails,
@@ -42,11 +42,12 @@ Fitness = IntEnum(
     "Fitness", "length repaired literal_weights hard_safety reciprocal_literal as_printed", start=0
 )
 FitnessFeasible = IntEnum("FitnessFeasible", "collision_free clearance", start=0)
+Cut = IntEnum("Cut", "gene bit", start=0)
 Mutation = IntEnum("Mutation", "bit_flip cell per_gene", start=0)
 
-# Maximum number of draws of a bit until the flipped gene is a free cell (after that, the gene stays
-# as it is), and of a chromosome until its curve is free.
-_FLIP_TRIES = 50
+# Maximum number of draws of a cut until the two genes that it goes through are free cells (after
+# that, the chromosomes stay as they are), and of a chromosome until its curve is free.
+_CUT_TRIES = 50
 _FEASIBLE_TRIES = 200
 # If a chord crosses two grid lines at parameters that differ by less than this, it crosses them at
 # their common corner.
@@ -99,7 +100,15 @@ class Settings(NamedTuple):
     crossover_probability: Annotated[
         float,
         Range(0, 1),
-        About("of a pair of parents, cut between two genes", PAPER + ", Section 4"),
+        About("of a pair of parents", PAPER + ", Section 4"),
+    ]
+    cut: Annotated[
+        Cut,
+        About(
+            "the crossover point lies between two genes, or before any bit such that the genes "
+            "stay free cells",
+            PAPER + ", Section 3.4",
+        ),
     ]
     mutation_probability: Annotated[
         float,
@@ -355,7 +364,7 @@ def _search(rng, codes, cells, curve, rules):
             _copy(parents[drawn[i]], codes[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability and genes > 1:
-                swap_tails(codes[i], codes[i + 1], bits * integer(rng, 1, genes), bits)
+                _cross(rng, codes[i], codes[i + 1], bits, cells.legal, rules.cut)
         for i in range(population):
             _mutate(rng, codes[i], bits, cells, rules)
         if rules.elitism:
@@ -376,28 +385,37 @@ def _redraw(rng, codes, cells, curve):
 
 
 @allocation_free
+def _cross(rng, mother, father, bits, legal, cut):
+    """Exchange the tails of two chromosomes, in place, behind a random point (ma2020, Section 3.4).
+
+    A cut inside a gene makes two new genes of bits of both parents; one that leaves the free cells
+    is redrawn.
+    """
+    genes = len(mother)
+    if cut == Cut.gene:
+        swap_tails(mother, father, bits * integer(rng, 1, genes), bits)
+        return
+    for _ in range(_CUT_TRIES):
+        point = integer(rng, 1, bits * genes)
+        swap_tails(mother, father, point, bits)
+        if legal[mother[point // bits]] and legal[father[point // bits]]:
+            return
+        # Exchanged again, they are as before.
+        swap_tails(mother, father, point, bits)
+
+
+@allocation_free
 def _mutate(rng, genes, bits, cells, rules):
     """Change random genes of a chromosome in place (ma2020, Section 3.4)."""
     if rules.mutation == Mutation.per_gene:
         for gene in range(len(genes)):
             if rng.random() < rules.mutation_probability:
-                _flip(rng, genes, gene, bits, cells.legal)
+                flip_bit(rng, genes, gene, bits, cells.legal)
     elif rng.random() < rules.mutation_probability:
         if rules.mutation == Mutation.bit_flip:
-            _flip(rng, genes, integer(rng, 0, len(genes)), bits, cells.legal)
+            flip_bit(rng, genes, integer(rng, 0, len(genes)), bits, cells.legal)
         else:
             redraw_gene(rng, genes, cells.free)
-
-
-@allocation_free
-def _flip(rng, genes, gene, bits, legal):
-    """Flip a random bit of a gene in place; a bit that leaves the free cells is redrawn."""
-    before = genes[gene]
-    for _ in range(_FLIP_TRIES):
-        complement_bit(genes, gene * bits + integer(rng, 0, bits), bits)
-        if legal[genes[gene]]:
-            return
-        genes[gene] = before
 
 
 @allocation_free

@@ -2,8 +2,10 @@
 ma2020 (Section 4.1; its reference 29, no parameters given).
 
 With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted
-midpoints: the algorithm of BCA without the Bézier curve. With `rows` a chromosome is itself a path,
-initially one through a random free cell of each row.
+midpoints. Roulette, crossover between genes and elitism are those of BCA. What differs, beside the
+path: a chromosome whose cells cannot be joined has a fixed length instead of a surcharge for its
+collisions, and mutation draws another cell, unless it flips a bit as in BCA. With `rows` a
+chromosome is itself a path, initially one through a random free cell of each row.
 """
 
 from enum import IntEnum
@@ -11,10 +13,16 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import compiled
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
-from bezierplan.planners.parts.genetic import check_pairs, redraw_gene, roulette, swap_tails
+from bezierplan.planners.parts.genetic import (
+    check_pairs,
+    flip_bit,
+    redraw_gene,
+    roulette,
+    swap_tails,
+)
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
@@ -29,11 +37,12 @@ _MOST_DRAWS = 10_000
 
 Coding = IntEnum("Coding", "via_cells rows", start=0)
 Initial = IntEnum("Initial", "uniform sorted", start=0)
+Mutation = IntEnum("Mutation", "cell bit_flip", start=0)
 
 
 class Settings(NamedTuple):
-    """Settings of the search; ma2020 gives none. The coding rows does not use genes, initial and
-    undecodable_length.
+    """Settings of the search; ma2020 gives none. The coding rows does not use genes, initial,
+    mutation and undecodable_length.
     """
 
     corners: Annotated[
@@ -54,7 +63,14 @@ class Settings(NamedTuple):
         float, Range(0, 1), About("of a pair of parents, cut between two genes or at a shared cell")
     ]
     mutation_probability: Annotated[
-        float, Range(0, 1), About("of a chromosome: a gene or a section gets a random free cell")
+        float, Range(0, 1), About("of a chromosome, in one gene or (rows) one section")
+    ]
+    mutation: Annotated[
+        Mutation,
+        About(
+            "a gene becomes a random free cell, or a bit of its binary number is flipped such that "
+            "it stays a free cell"
+        ),
     ]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
 
@@ -147,6 +163,8 @@ def _search(rng, lattice, free, cells, rules):
     """
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
+    legal = np.zeros(1 << bits, dtype=np.bool_)
+    legal[free] = True
     parents = np.empty_like(cells)
     path, marks = (
         np.empty(rules.longest_join, dtype=np.int64),
@@ -178,10 +196,22 @@ def _search(rng, lattice, free, cells, rules):
                 swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], bits * integer(rng, 1, genes), bits)
         for i in range(population):
             if genes and rng.random() < rules.mutation_probability:
-                redraw_gene(rng, cells[i, 1:-1], free)
+                _mutate(rng, cells[i, 1:-1], bits, free, legal, rules.mutation)
         if rules.elitism:
             cell_paths.put(best, cells[0], 0)
     return best_path, history
+
+
+@allocation_free
+def _mutate(rng, genes, bits, free, legal, mutation):
+    """Change a random gene of a chromosome in place.
+
+    legal: bool (2**bits,), whether a number is that of a free cell.
+    """
+    if mutation == Mutation.bit_flip:
+        flip_bit(rng, genes, integer(rng, 0, len(genes)), bits, legal)
+    else:
+        redraw_gene(rng, genes, free)
 
 
 def _rows_between(places: Lattice) -> list[np.ndarray]:

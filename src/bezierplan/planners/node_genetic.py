@@ -28,6 +28,8 @@ from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import (
+    MOST_NEIGHBOURS,
+    Neighbourhood,
     centres,
     edge_energy,
     ground_of,
@@ -109,6 +111,13 @@ class Settings(NamedTuple):
         About(
             "a node encounters an obstacle if its edge to the next node meets one, or in a cell "
             "next to an occupied one"
+        ),
+    ]
+    neighbourhood: Annotated[
+        Neighbourhood,
+        About(
+            "cells that ref12, ref21 and proposed may move a node to: the eight around it, the "
+            "four beside it, or all at most two columns and rows away"
         ),
     ]
     keep_better: Annotated[
@@ -323,7 +332,8 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             )
     children, child_lengths = paths.copy(), lengths.copy()
     objective, met = np.empty(population), np.empty(population, dtype=np.int64)
-    ranks, neighbours = np.arange(population, 0, -1).astype(np.float64), np.empty(8, dtype=np.int64)
+    ranks = np.arange(population, 0, -1).astype(np.float64)
+    neighbours = np.empty(MOST_NEIGHBOURS, dtype=np.int64)
     history = np.empty(rules.generations + 1)
     best, best_length, best_objective, best_met = paths[0].copy(), 0, np.inf, 0
     improved = evaluations = feasible = spoiled = 0

@@ -751,9 +751,14 @@ def _check_key(study: Study, assumption: Assumption, name: str, key: str, locati
 
 def _check_used(study: Study, assumption: Assumption, methods: list[str], location: str) -> None:
     """The default is what runs use: those of each method that it names; without names, those of the
-    methods without a value of their own or, if all have one, of at least one of them.
+    methods without a value of their own or, if all have one, of at least one of them. Where it is
+    about some problems alone, their own settings come before those of methods.
     """
     used = {method: study.resolved(method)[assumption.setting] for method in methods}
+    for name in assumption.problems:
+        own = study.problems[name].settings
+        if assumption.setting in own:
+            used = dict.fromkeys(used, own[assumption.setting])
     default = assumption.default
     if isinstance(default, dict):
         for method, value in used.items():

@@ -10,6 +10,7 @@ a larger one when they are needed; the numbers are identical to the last bit.
 """
 
 import math
+from enum import IntEnum
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -21,6 +22,12 @@ from bezierplan.workspaces.grid import Grid
 # For a map with more cells than this no table of all edges is made: it would grow with the square
 # of their number.
 TABLE_CELLS = 2048
+
+Neighbourhood = IntEnum("Neighbourhood", "eight four within_two", start=0)
+"""The neighbours of a cell: the eight around it, the four beside it, or all at most two columns and
+rows away."""
+
+MOST_NEIGHBOURS = 24
 
 
 class Ground(NamedTuple):
@@ -234,15 +241,22 @@ def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
 
 
 @allocation_free
-def free_neighbours(cell: int, ground: Ground, neighbours: np.ndarray) -> int:
-    """Write the free cells among the eight around a cell, row by row from the lower left, to
-    `neighbours` (8,); returns their number.
+def free_neighbours(cell: int, ground: Ground, neighbourhood: int, neighbours: np.ndarray) -> int:
+    """Write the free cells among the neighbours of a cell (`Neighbourhood`), row by row from the
+    lower left, to `neighbours` (MOST_NEIGHBOURS,); returns their number.
     """
     rows, columns = ground.occupied.shape
+    own_row, own_column = divmod(cell, columns)
+    reach = 2 if neighbourhood == Neighbourhood.within_two else 1
     count = 0
-    for row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):
-        for column in range(max(cell % columns - 1, 0), min(cell % columns + 2, columns)):
-            if row * columns + column != cell and not ground.occupied[row, column]:
+    for row in range(max(own_row - reach, 0), min(own_row + reach + 1, rows)):
+        for column in range(max(own_column - reach, 0), min(own_column + reach + 1, columns)):
+            if row == own_row and column == own_column:
+                continue
+            diagonal = row != own_row and column != own_column
+            if neighbourhood == Neighbourhood.four and diagonal:
+                continue
+            if not ground.occupied[row, column]:
                 neighbours[count] = row * columns + column
                 count += 1
     return count

@@ -24,7 +24,13 @@ from bezierplan.planners.parts.node_mutation import (
     mutate,
 )
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
+from bezierplan.workspaces.ground import (
+    MOST_NEIGHBOURS,
+    Neighbourhood,
+    centres,
+    ground_of,
+    obstacles_met,
+)
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds import function
@@ -149,6 +155,7 @@ def mutations(
     rules = unread._replace(
         without_obstacle=int(WithoutObstacle.any_node if any_node else WithoutObstacle.none),
         obstacle_node=int(ObstacleNode.neighbour if beside_obstacle else ObstacleNode.edge),
+        neighbourhood=int(Neighbourhood.eight),
         keep_better=keep_better,
         direction=int(Direction.same_signs if same_signs else Direction.forward),
         ref21_test=int(Ref21Test.path if whole_path else Ref21Test.edges),
@@ -180,7 +187,12 @@ def _shown(
     for seed in range(SEEDS):
         after = before.copy()
         mutate(
-            np.random.default_rng(seed), after, drawn, ground, rules, np.empty(8, dtype=np.int64)
+            np.random.default_rng(seed),
+            after,
+            drawn,
+            ground,
+            rules,
+            np.empty(MOST_NEIGHBOURS, dtype=np.int64),
         )
         for k in np.flatnonzero(after != before).tolist():
             blocked = any(

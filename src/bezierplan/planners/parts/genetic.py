@@ -10,6 +10,10 @@ import numpy as np
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.random_integers import integer
 
+# Maximum number of draws of a bit until the flipped gene is an allele; after that, the gene stays
+# as it is.
+_FLIP_TRIES = 50
+
 
 def check_pairs(population: int) -> None:
     """Raise ValueError, naming the setting and what is expected, for a population that cannot be
@@ -64,3 +68,19 @@ def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.nd
     old gene.
     """
     chromosome[integer(rng, 0, len(chromosome))] = alleles[integer(rng, 0, len(alleles))]
+
+
+@allocation_free
+def flip_bit(
+    rng: np.random.Generator, chromosome: np.ndarray, gene: int, bits: int, legal: np.ndarray
+) -> None:
+    """Complement, in place, a random bit of a gene. A bit that makes it no allele is redrawn.
+
+    legal: bool (2**bits,), whether a number is an allele.
+    """
+    before = chromosome[gene]
+    for _ in range(_FLIP_TRIES):
+        complement_bit(chromosome, gene * bits + integer(rng, 0, bits), bits)
+        if legal[chromosome[gene]]:
+            return
+        chromosome[gene] = before

@@ -43,7 +43,7 @@ def mutate(
     evaluated.
 
     drawn: the cells from which random mutation draws. rules: `node_genetic.Settings`. neighbours:
-    (8,) scratch.
+    (MOST_NEIGHBOURS,) scratch.
     """
     if rules.mutation == Mutation.random:
         path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
@@ -112,7 +112,7 @@ def _best_neighbour(path, k, ground, rules, neighbours):
 
     Ties go to the first from the lower left, row by row. Only the two edges of the node change.
     """
-    count = free_neighbours(path[k], ground, neighbours)
+    count = free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
     best, least = path[k], np.inf
     if rules.keep_better:
         least = _cost_through(path, k, path[k], ground, rules.penalty)
@@ -142,7 +142,7 @@ def _ref21(rng, path, ground, rules, neighbours):
     (reference 21).
     """
     k = 1 + below(rng, len(path) - 2)
-    count = free_neighbours(path[k], ground, neighbours)
+    count = free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
     elsewhere = 0
     if rules.ref21_test == Ref21Test.path:
         elsewhere = path_met(path[:k], ground) + path_met(path[k + 1 :], ground)
