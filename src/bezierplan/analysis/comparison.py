@@ -238,19 +238,24 @@ def impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
 
     published: as from `read_published`.
     """
-    ranks = published[
-        (published["metric"] == "rank")
-        & (published["statistic"] == "mean")
-        & published["decimals"].notna()
-    ]
-    within = [column for column in spec.across if column in published]
     impossible = np.zeros(len(published), dtype=bool)
+    decimals = next(
+        (
+            entry.decimals
+            for entry in spec.values
+            if entry.metric == "rank" and "mean" in entry.statistics
+        ),
+        None,
+    )
+    if decimals is None:
+        return impossible
+    half = Fraction(10) ** -decimals / 2
+    ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
+    within = [column for column in spec.across if column in published]
     for _, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
-        if len(own) > 1:
-            half = Fraction(10) ** -int(own["decimals"].iloc[0]) / 2
-            printed = [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
-            if not possible.are_ranks(printed):
-                impossible |= published.index.isin(own.index)
+        printed = [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
+        if len(own) > 1 and not possible.are_ranks(printed):
+            impossible |= published.index.isin(own.index)
     return impossible
 
 
