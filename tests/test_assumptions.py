@@ -14,6 +14,7 @@ from bezierplan.running.chunk import conditions
 from bezierplan.study import choices
 from bezierplan.study.alternatives import (
     alternatives,
+    assumption_of,
     methods_changed,
     methods_of_claims,
     tried,
@@ -27,12 +28,12 @@ FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
 
 
-def found(study, experiment, method):
-    """What a few runs of a method find on the last problem of an experiment, where obstacles are in
-    the way.
+def found(study, experiment, method, place=-1):
+    """What a few runs of a method find on one problem of an experiment, by default the last, where
+    obstacles are in the way.
     """
     described = job(study, experiment, method, "smoke", 0)
-    name = list(described.problems)[-1]
+    name = list(described.problems)[place]
     made = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
     blocked = region(made[name].workspace)
     rows = []
@@ -52,9 +53,9 @@ def home(study, method):
 
 
 @cache
-def found_in_force(key, method):
+def found_in_force(key, method, place):
     """What the few runs of a method find with the defaults."""
-    return found(STUDIES[key], home(STUDIES[key], method), method)
+    return found(STUDIES[key], home(STUDIES[key], method), method, place)
 
 
 @pytest.mark.parametrize(
@@ -62,14 +63,28 @@ def found_in_force(key, method):
 )
 def test_alternative_changes_what_a_run_finds(key, name):
     """Of one method at least: a choice about chaotic sequences does not concern a swarm without
-    one.
+    one. On the last problem, or on the first if the last has a value of its own in force.
     """
     study = STUDIES[key]
     changed = with_alternative(study, name)
     assert any(
-        found(changed, home(study, method), method) != found_in_force(key, method)
+        found(changed, home(study, method), method, place) != found_in_force(key, method, place)
+        for place in _places(study, name)
         for method in methods_changed(study, name)
     )
+
+
+def _places(study, name):
+    """Places of the problems on which an alternative is tried."""
+    identity, value = alternatives(study)[name]
+    setting = assumption_of(study, identity).setting
+    own = {
+        study.problems[list(study.experiments[home(study, method)].problems)[-1]].settings.get(
+            setting
+        )
+        for method in methods_changed(study, name)
+    }
+    return [0] if value in own else [-1]
 
 
 def claims(study, *wanted):
@@ -116,17 +131,19 @@ def test_every_setting_that_a_paper_leaves_open_is_tried(key):
 
 @pytest.mark.parametrize("key", STUDIES)
 def test_defaults_are_the_values_in_force(key):
-    """Of the methods that a default names, or of the study."""
+    """Of the methods that a default names, or of the study; on the problems that it names, if any,
+    which may have settings of their own.
+    """
     study = STUDIES[key]
     for assumption in study.assumptions:
         if "setting" in assumption:
             setting, default = assumption["setting"], assumption["default"]
-            if isinstance(default, dict):
-                assert {method: study.resolved(method)[setting] for method in default} == default, (
-                    assumption["id"]
-                )
-            else:
-                assert study.settings[setting] == default, assumption["id"]
+            for own in [study.problems[name].settings for name in assumption.problems] or [{}]:
+                if isinstance(default, dict):
+                    found = {method: (study.resolved(method) | own)[setting] for method in default}
+                else:
+                    found = (study.settings | own)[setting]
+                assert found == default, assumption["id"]
 
 
 @pytest.mark.parametrize("key", STUDIES)
