@@ -29,6 +29,7 @@ SETTINGS = {
     "penalty": 10.0,
     "penalty_for": "each_sample",
     "occupied_point_penalty": 0.0,
+    "report": "best_so_far",
 }
 SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 601, "bezier": 601}
 OPEN = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
@@ -125,6 +126,41 @@ def test_history_never_rises_and_counts_the_first_generation():
     assert (np.diff(found.history) <= 0).all()
     assert found.history[-1] == found.objective
     assert found.evaluations == 20 * 26
+
+
+@pytest.mark.parametrize("penalty", [0.0, 10.0])
+def test_the_last_generation_can_be_worse_than_an_earlier_one(penalty):
+    """Of the same runs without elitism: the best so far is the least of the generations."""
+    grid = random_grid(4)
+    lost = {"elitism": 0, "generations": 30, "occupied_point_penalty": penalty}
+    worse = 0
+    for seed in range(5):
+        best = plan(grid, seed=seed, **lost)
+        last = plan(grid, seed=seed, report="last_generation", **lost)
+        assert np.array_equal(np.minimum.accumulate(last.history), best.history)
+        assert (np.diff(last.history) > 0).any()
+        assert last.objective == last.history[-1] >= best.objective
+        worse += last.objective > best.objective
+        length, bad = reference(last.path, grid, 601)
+        column, row = (last.path.points / 10).astype(int).T
+        assert last.objective == pytest.approx(
+            length + 10 * bad + penalty * grid.occupied[row, column].sum()
+        )
+        assert last.extra["bad_samples"] == bad
+        # The best of a generation is what a run that ends with it reports.
+        shorter = plan(grid, seed=seed, report="last_generation", **lost | {"generations": 12})
+        assert np.array_equal(shorter.history, last.history[:13])
+    assert worse > 0
+
+
+def test_with_elitism_the_last_generation_has_the_best_so_far():
+    for seed in range(5):
+        best, last = (
+            plan(random_grid(4), seed=seed, report=report)
+            for report in ("best_so_far", "last_generation")
+        )
+        assert np.array_equal(best.history, last.history)
+        assert np.array_equal(best.path.points, last.path.points)
 
 
 def test_same_seed_gives_the_same_bits():

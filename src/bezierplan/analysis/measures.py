@@ -117,7 +117,7 @@ def _held_history(runs: pd.DataFrame) -> np.ndarray:
 
 def lowest_objective(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Lowest objective (n,) of any generation, even if the planner's result comes from another."""
-    return _held_history(runs)[:, -1]
+    return _held_history(runs).min(axis=1)
 
 
 def first_generation_within(

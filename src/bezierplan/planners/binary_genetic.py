@@ -35,6 +35,7 @@ Spacing = IntEnum("Spacing", "parameter arc_length", start=0)
 Cut = IntEnum("Cut", "bit gene", start=0)
 Mutation = IntEnum("Mutation", "one_bit each_gene each_bit", start=0)
 PenaltyFor = IntEnum("PenaltyFor", "each_sample path", start=0)
+Report = IntEnum("Report", "best_so_far last_generation", start=0)
 
 
 class Settings(NamedTuple):
@@ -81,6 +82,13 @@ class Settings(NamedTuple):
     ]
     occupied_point_penalty: Annotated[
         float, Range(0), About("added for each control point in an occupied cell", unit=UNITS)
+    ]
+    report: Annotated[
+        Report,
+        About(
+            "best path of all generations, or of the last one, and then the history is the best of "
+            "each generation"
+        ),
     ]
 
 
@@ -203,7 +211,7 @@ class _Curve(NamedTuple):
 @compiled
 def _search(rng, cells, occupied, places, curve, rules):
     """Cells (control points,) of the best chromosome, the number of its samples in occupied cells,
-    and the best objective so far (generations + 1,).
+    and the best objective so far, or of each generation (generations + 1,).
 
     cells: (population, control points) numbers of cells. places: (cells + 2, 2) the cells' centres,
     then start and target, in cells.
@@ -234,6 +242,9 @@ def _search(rng, cells, occupied, places, curve, rules):
     )
 
     for generation in range(rules.generations + 1):
+        if rules.report == Report.last_generation:
+            # Elitism brings the best of the generation before, so this one is never worse.
+            best_objective = np.inf
         for i in range(population):
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
             length, count = 0.0, 0
