@@ -2,6 +2,7 @@
 cases, its settings.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -59,6 +60,44 @@ def reference(path, grid, samples):
     return np.hypot(*np.diff(points, axis=0).T).sum(), grid.occupied[row, column].sum()
 
 
+def entries(points, grid):
+    """How often samples of a path enter an occupied cell, by plain Python."""
+    cells = [grid.cell_of(*(point + 1e-9 * grid.cell)) for point in points]
+    return sum(
+        bool(grid.occupied[cell]) and cell != before for before, cell in itertools.pairwise(cells)
+    )
+
+
+@given(st.integers(0, 10_000), st.sampled_from(curves.B_SPLINES))
+@settings(max_examples=40)
+def test_objective_is_length_plus_penalty_for_each_entry_into_an_occupied_cell(seed, curve):
+    grid, samples = random_grid(seed), SAMPLES[curve]
+    found = plan(
+        grid, seed=seed, curve=curve, samples=samples, generations=3, penalty_for="per_cell"
+    )
+    length, bad = reference(found.path, grid, samples)
+    points = curves.sample_matrix(curve, len(found.path.points), samples) @ found.path.points
+    assert found.objective == pytest.approx(length + 10 * entries(points, grid), rel=1e-12)
+    assert found.extra["bad_samples"] == bad
+
+
+def test_a_cell_is_entered_once_however_fine_the_samples():
+    """A straight line through a wall one cell thick, measured along its length too."""
+    for samples, spacing in itertools.product((50, 701), ("parameter", "arc_length")):
+        found = plan(
+            WALL,
+            start=0,
+            target=7,
+            curve="polyline",
+            samples=samples,
+            spacing=spacing,
+            genes=0,
+            penalty_for="per_cell",
+        )
+        assert found.objective == pytest.approx(7.0 + 10.0)
+        assert found.extra["bad_samples"] > 1
+
+
 @given(st.integers(0, 10_000), st.sampled_from(curves.B_SPLINES))
 @settings(max_examples=40)
 def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
@@ -70,7 +109,7 @@ def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
     assert found.claimed_feasible == (bad == 0)
 
 
-@pytest.mark.parametrize("penalty_for", ["each_sample", "path"])
+@pytest.mark.parametrize("penalty_for", ["each_sample", "path", "per_cell"])
 @pytest.mark.parametrize("curve", curves.B_SPLINES)
 def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, penalty_for):
     """The last generation is measured only as far as it takes to know that a chromosome is not the
@@ -91,7 +130,13 @@ def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, pen
     for cells in starts.integers(0, 256, size=(population, SETTINGS["genes"])):
         points = np.array([grid.centre(cell) for cell in (0, *cells.tolist(), 255)])
         length, bad = reference(Path(curve, points), grid, SAMPLES[curve])
-        costs.append(length + 10 * (bad if penalty_for == "each_sample" else min(bad, 1)))
+        samples = curves.sample_matrix(curve, len(points), SAMPLES[curve]) @ points
+        penalties = {
+            "each_sample": bad,
+            "path": min(bad, 1),
+            "per_cell": entries(samples, grid),
+        }
+        costs.append(length + 10 * penalties[penalty_for])
     assert found.objective == pytest.approx(min(costs), rel=1e-12)
 
 

@@ -34,7 +34,7 @@ Curve = IntEnum("Curve", "polyline piecewise_quadratic piecewise_cubic bezier", 
 Spacing = IntEnum("Spacing", "parameter arc_length", start=0)
 Cut = IntEnum("Cut", "bit gene", start=0)
 Mutation = IntEnum("Mutation", "one_bit each_gene each_bit", start=0)
-PenaltyFor = IntEnum("PenaltyFor", "each_sample path", start=0)
+PenaltyFor = IntEnum("PenaltyFor", "each_sample path per_cell", start=0)
 Report = IntEnum("Report", "best_so_far last_generation", start=0)
 
 
@@ -78,7 +78,12 @@ class Settings(NamedTuple):
         float, Range(0), About("added for occupied samples", PAPER + ", Section IV", UNITS)
     ]
     penalty_for: Annotated[
-        PenaltyFor, About("each sample in an occupied cell, or once a path with any")
+        PenaltyFor,
+        About(
+            "each sample in an occupied cell, once a path with any, or each time that samples "
+            "enter an occupied cell",
+            PAPER + ", Sections III-D and IV",
+        ),
     ]
     occupied_point_penalty: Annotated[
         float, Range(0), About("added for each control point in an occupied cell", unit=UNITS)
@@ -220,11 +225,17 @@ def _search(rng, cells, occupied, places, curve, rules):
     genes = points - 2
     basis, stretches = curve.basis, curve.stretches
     bits = int(np.log2(occupied.size) + 0.5)
-    lengths, bad = (
-        np.empty((population, len(stretches))),
+    lengths = np.empty((population, len(stretches)))
+    # Of each stretch, how many samples lie in occupied cells, and how often they enter one.
+    bad, entries = (
+        np.empty((population, len(stretches)), dtype=np.int64),
         np.empty((population, len(stretches)), dtype=np.int64),
     )
-    parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
+    parent_lengths, parent_bad, parent_entries = (
+        np.empty_like(lengths),
+        np.empty_like(bad),
+        np.empty_like(entries),
+    )
     # The first generation inherits nothing.
     parents, drawn = (
         np.full_like(cells, -1),
@@ -247,25 +258,35 @@ def _search(rng, cells, occupied, places, curve, rules):
             best_objective = np.inf
         for i in range(population):
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
-            length, count = 0.0, 0
+            length, count, entered = 0.0, 0, 0
             for k in range(len(stretches)):
                 first, last = stretches[k, 0], stretches[k, 1]
                 if _same(cells[i], parents[mother], first, last):
                     lengths[i, k], bad[i, k] = parent_lengths[mother, k], parent_bad[mother, k]
+                    entries[i, k] = parent_entries[mother, k]
                 elif _same(cells[i], parents[father], first, last):
                     lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
+                    entries[i, k] = parent_entries[father, k]
                 elif curve.by_arc_length:
-                    lengths[i, k], bad[i, k] = _measure_by_arc_length(
+                    lengths[i, k], bad[i, k], entries[i, k] = _measure_by_arc_length(
                         cells[i], occupied, places, samples
                     )
                 else:
-                    lengths[i, k], bad[i, k] = _measure(
-                        cells[i], by_number, columns, places, basis, stretches[k], scratch
+                    lengths[i, k], bad[i, k], entries[i, k] = _measure(
+                        cells[i],
+                        by_number,
+                        columns,
+                        places,
+                        basis,
+                        stretches[k],
+                        scratch,
+                        rules.penalty_for == PenaltyFor.per_cell,
                     )
                 length += lengths[i, k]
                 count += bad[i, k]
-                objective[i] = length + rules.penalty * (
-                    count if rules.penalty_for == PenaltyFor.each_sample else min(count, 1)
+                entered += entries[i, k]
+                objective[i] = length + rules.penalty * _penalties(
+                    count, entered, rules.penalty_for
                 )
                 # No other stretch makes it smaller, and only parents need to be measured in full.
                 if generation == rules.generations and objective[i] >= best_objective:
@@ -283,6 +304,7 @@ def _search(rng, cells, occupied, places, curve, rules):
         parents, cells = cells, parents
         parent_lengths, lengths = lengths, parent_lengths
         parent_bad, bad = bad, parent_bad
+        parent_entries, entries = entries, parent_entries
         drawn = roulette(rng, 1.0 / objective, population)
         for i in range(population):
             _copy(parents[drawn[i]], cells[i])
@@ -299,6 +321,18 @@ def _search(rng, cells, occupied, places, curve, rules):
         if rules.elitism:
             _copy(best, cells[0])
     return best, best_bad, history
+
+
+@allocation_free
+def _penalties(bad, entries, penalty_for):
+    """How often the penalty is added for so many samples in occupied cells and so many entries into
+    them (song2016, eq. 9).
+    """
+    if penalty_for == PenaltyFor.each_sample:
+        return bad
+    if penalty_for == PenaltyFor.per_cell:
+        return entries
+    return min(bad, 1)
 
 
 @allocation_free
@@ -336,9 +370,9 @@ def _mutate(rng, genes, bits, probability, mutation):
 
 
 @allocation_free
-def _measure(cells, occupied, columns, places, basis, stretch, scratch):
-    """Length in cells of one stretch of a curve and the number of its samples in occupied cells,
-    not counting the first.
+def _measure(cells, occupied, columns, places, basis, stretch, scratch, with_entries):
+    """Length in cells of one stretch of a curve, the number of its samples in occupied cells, not
+    counting the first, and how often they enter one, 0 if it is not requested.
 
     occupied: (cells,), of a grid with so many columns. basis: (control points, samples). scratch:
     three arrays (samples,) of numbers and one of whole numbers. Start and target lie in free cells,
@@ -382,13 +416,17 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch):
     for s in range(samples - 1):
         length += chords[s]
         bad += occupied[numbers[s + 1]]
-    return length, bad
+    entries = 0
+    if with_entries:
+        for s in range(samples - 1):
+            entries += occupied[numbers[s + 1]] and numbers[s + 1] != numbers[s]
+    return length, bad, entries
 
 
 @compiled
 def _measure_by_arc_length(cells, occupied, places, samples):
-    """Length in cells of a polyline and the number of samples, equally spaced along it, that lie in
-    occupied cells.
+    """Length in cells of a polyline, the number of samples, equally spaced along it, that lie in
+    occupied cells, and how often they enter one.
     """
     points = len(cells)
     x, y, passed = np.empty(points), np.empty(points), np.zeros(points)
@@ -396,7 +434,8 @@ def _measure_by_arc_length(cells, occupied, places, samples):
         x[p], y[p] = places[cells[p], 0], places[cells[p], 1]
         if p:
             passed[p] = passed[p - 1] + np.sqrt((x[p] - x[p - 1]) ** 2 + (y[p] - y[p - 1]) ** 2)
-    bad = 0
+    bad = entries = 0
+    last_row, last_column = int(y[0] + ON_LINE), int(x[0] + ON_LINE)
     p = 0
     for s in range(1, samples):
         along = passed[-1] * s / (samples - 1)
@@ -404,7 +443,9 @@ def _measure_by_arc_length(cells, occupied, places, samples):
             p += 1
         edge = passed[p + 1] - passed[p]
         share = min((along - passed[p]) / edge, 1.0) if edge > 0 else 1.0
-        row = y[p] + share * (y[p + 1] - y[p])
-        column = x[p] + share * (x[p + 1] - x[p])
-        bad += occupied[int(row + ON_LINE), int(column + ON_LINE)]
-    return passed[-1], bad
+        row = int(y[p] + share * (y[p + 1] - y[p]) + ON_LINE)
+        column = int(x[p] + share * (x[p + 1] - x[p]) + ON_LINE)
+        bad += occupied[row, column]
+        entries += occupied[row, column] and (row != last_row or column != last_column)
+        last_row, last_column = row, column
+    return passed[-1], bad, entries
