@@ -484,5 +484,5 @@ def test_the_default_on_some_problems_alone_is_the_value_used_there():
     assert study.problems["environment2"].settings["generations"] == 100
     checks.check_assumption(study, here, "here")
     elsewhere = here.but(default=dict.fromkeys(here.default, 50), alternatives=[100])
-    with pytest.raises(checked.Fault, match="50: not the one that is used; .* is 100"):
+    with pytest.raises(checked.Fault, match=r"50: not the one that is used; .* is 100"):
         checks.check_assumption(study, elsewhere, "here")
