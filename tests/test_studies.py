@@ -475,3 +475,14 @@ def test_every_default_of_an_assumption_is_in_force(key):
         other = dict.fromkeys(assumption.default, "none such") if named else "none such"
         with pytest.raises(checked.Fault, match="not the one that is used"):
             checks.check_assumption(study, assumption.but(default=other), "here")
+
+
+def test_the_default_on_some_problems_alone_is_the_value_used_there():
+    study = shared("ma2020")
+    here = next(each for each in study.assumptions if each.id == "O14h")
+    assert study.settings["generations"] == 50
+    assert study.problems["environment2"].settings["generations"] == 100
+    checks.check_assumption(study, here, "here")
+    elsewhere = here.but(default=dict.fromkeys(here.default, 50), alternatives=[100])
+    with pytest.raises(checked.Fault, match=r"50: not the one that is used; .* is 100"):
+        checks.check_assumption(study, elsewhere, "here")

@@ -394,7 +394,7 @@ FAULTS = {
     ),
     "alternative that is no value": (
         ASSUMPTIONS,
-        "alternatives: [path]",
+        "alternatives: [path, per_cell]",
         "alternatives: [paths]",
         "penalty_for: 'paths'; expected one of",
     ),

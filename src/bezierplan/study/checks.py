@@ -703,7 +703,15 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
             f"{location}: setting: {assumption.setting}: no method has this "
             f"setting{closest(assumption.setting, used)}"
         )
-    _check_used(study, assumption, methods, location)
+    # An assumption about some problems alone has the value that they give, if they give one.
+    for given in [study.problems[name].settings for name in assumption.problems] or [{}]:
+        used = {
+            method: (study.resolved(method) | given | study.methods[method].settings)[
+                assumption.setting
+            ]
+            for method in methods
+        }
+        _check_used(study, assumption, used, location)
     for method, settings in assumption.along.items():
         _known(method, methods, f"{location}: with")
         for setting in settings:
@@ -749,16 +757,12 @@ def _check_key(study: Study, assumption: Assumption, name: str, key: str, locati
                 )
 
 
-def _check_used(study: Study, assumption: Assumption, methods: list[str], location: str) -> None:
+def _check_used(study: Study, assumption: Assumption, used: dict[str, Any], location: str) -> None:
     """The default is what runs use: those of each method that it names; without names, those of the
-    methods without a value of their own or, if all have one, of at least one of them. Where it is
-    about some problems alone, their own settings come before those of methods.
+    methods without a value of their own or, if all have one, of at least one of them.
+
+    used: the value of each method.
     """
-    used = {method: study.resolved(method)[assumption.setting] for method in methods}
-    for name in assumption.problems:
-        own = study.problems[name].settings
-        if assumption.setting in own:
-            used = dict.fromkeys(used, own[assumption.setting])
     default = assumption.default
     if isinstance(default, dict):
         for method, value in used.items():

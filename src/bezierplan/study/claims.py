@@ -62,7 +62,9 @@ class Assumption(Model):
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
     problems: listed(ProblemName) = Field(
-        [], description="the problems on which alone the alternatives of a setting are tried"
+        [],
+        description="the problems on which alone the alternatives of a setting are tried; the "
+        "default is the value that is used on them",
     )
     workspace: dict[Name, Name] = Field(
         {},
