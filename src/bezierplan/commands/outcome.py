@@ -25,10 +25,8 @@ PICTURES = ("song2016/figures/figure3.png", "song2016/figures/identified.png")
 DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
 # Tables of each study at scale full.
-SENSITIVITY, INTERPRETATIONS = (
-    "sensitivity.csv",
-    ("interpretations.csv", "explained.csv", "leave_one_table_out.csv"),
-)
+SENSITIVITY = "sensitivity.csv"
+INTERPRETATIONS = ("interpretations.csv", "explained.csv", "leave_one_table_out.csv")
 LIKELY = (
     "Which experiment was it? All details that a paper leaves open were varied together; these "
     "interpretations make its printed numbers most likely. docs/outcome/summary.md names their "

@@ -150,10 +150,8 @@ def _colony(rng, lattice, heuristic, rules):
     cells = len(lattice.row)
     trail = np.full((cells, 8), rules.initial_trail)
     visits = np.full(cells, -1)
-    paths, sizes = (
-        np.empty((rules.ants, cells), dtype=np.int64),
-        np.empty(rules.ants, dtype=np.int64),
-    )
+    paths = np.empty((rules.ants, cells), dtype=np.int64)
+    sizes = np.empty(rules.ants, dtype=np.int64)
     best, best_size, best_length = np.empty(cells, dtype=np.int64), 0, np.inf
     history = np.empty(rules.iterations)
 

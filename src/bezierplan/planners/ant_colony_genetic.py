@@ -120,10 +120,8 @@ def plan(
 
 def _first_population(colony: ant_colony.Colony, population: int) -> tuple[np.ndarray, np.ndarray]:
     """Paths (population, cells) and their sizes (population,)."""
-    paths, sizes = (
-        np.empty((population, colony.paths.shape[1]), dtype=np.int64),
-        np.full(population, len(colony.best)),
-    )
+    paths = np.empty((population, colony.paths.shape[1]), dtype=np.int64)
+    sizes = np.full(population, len(colony.best))
     paths[:, : len(colony.best)] = colony.best
     arrived = np.flatnonzero(colony.sizes)
     if len(arrived):

@@ -323,10 +323,8 @@ def _search(rng, codes, cells, curve, rules):
     bits = int(np.log2(len(cells.legal)) + 0.5)
     cost, parent_cost = np.empty(population), np.empty(population)
     # The first generation inherits nothing.
-    parents, drawn = (
-        np.full_like(codes, -1),
-        np.zeros(population, dtype=np.int64),
-    )
+    parents = np.full_like(codes, -1)
+    drawn = np.zeros(population, dtype=np.int64)
     best, best_cost = codes[0].copy(), np.inf
     history = np.empty(rules.generations + 1)
     scratch = np.empty((3, curve.ends.shape[1]))

@@ -212,16 +212,12 @@ def _search(rng, cells, occupied, places, curve, rules):
     genes = points - 2
     basis, stretches = curve.basis, curve.stretches
     bits = int(np.log2(occupied.size) + 0.5)
-    lengths, bad = (
-        np.empty((population, len(stretches))),
-        np.empty((population, len(stretches)), dtype=np.int64),
-    )
+    lengths = np.empty((population, len(stretches)))
+    bad = np.empty((population, len(stretches)), dtype=np.int64)
     parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
     # The first generation inherits nothing.
-    parents, drawn = (
-        np.full_like(cells, -1),
-        np.zeros(population, dtype=np.int64),
-    )
+    parents = np.full_like(cells, -1)
+    drawn = np.zeros(population, dtype=np.int64)
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
     history = np.empty(rules.generations + 1)
@@ -347,16 +343,12 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch):
             x[s] += weights[s] * column
             y[s] += weights[s] * row
     for p in range(first_point + fewer, last_point + 1, 3):
-        a, b, c = (
-            basis[p, first : last + 1],
-            basis[p + 1, first : last + 1],
-            basis[p + 2, first : last + 1],
-        )
-        column_a, column_b, column_c = (
-            places[cells[p], 0],
-            places[cells[p + 1], 0],
-            places[cells[p + 2], 0],
-        )
+        a = basis[p, first : last + 1]
+        b = basis[p + 1, first : last + 1]
+        c = basis[p + 2, first : last + 1]
+        column_a = places[cells[p], 0]
+        column_b = places[cells[p + 1], 0]
+        column_c = places[cells[p + 2], 0]
         row_a, row_b, row_c = places[cells[p], 1], places[cells[p + 1], 1], places[cells[p + 2], 1]
         for s in range(samples):
             x[s] = x[s] + a[s] * column_a + b[s] * column_b + c[s] * column_c

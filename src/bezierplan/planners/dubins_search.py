@@ -298,10 +298,8 @@ def _distances(low, side, shape, known, blocked):
                 if so_far >= ahead[other_row, other_column]:
                     continue
                 link[0, 0, 0], link[0, 0, 1] = low[0] + side * column, low[1] + side * row
-                link[0, 1, 0], link[0, 1, 1] = (
-                    low[0] + side * other_column,
-                    low[1] + side * other_row,
-                )
+                link[0, 1, 0] = low[0] + side * other_column
+                link[0, 1, 1] = low[1] + side * other_row
                 if _is_clear(row, column, up, right, clear) or not collides(link, blocked):
                     ahead[other_row, other_column] = so_far
                     heapq.heappush(heap, (so_far, other_row, other_column))
@@ -470,10 +468,8 @@ def _drive(pose, turn, step, radius, reached):
     """The pose that is reached from another by an arc or a straight line."""
     heading = pose[2] + turn * step / radius
     if turn == 0.0:
-        reached[0], reached[1] = (
-            pose[0] + step * math.cos(heading),
-            pose[1] + step * math.sin(heading),
-        )
+        reached[0] = pose[0] + step * math.cos(heading)
+        reached[1] = pose[1] + step * math.sin(heading)
     else:
         reached[0] = pose[0] + turn * radius * (math.sin(heading) - math.sin(pose[2]))
         reached[1] = pose[1] - turn * radius * (math.cos(heading) - math.cos(pose[2]))

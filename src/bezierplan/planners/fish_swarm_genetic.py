@@ -136,14 +136,10 @@ def _release(rng, lattice, swarm):
     (n,), and the number of releases.
     """
     wanted = swarm.population
-    arrivals, arrival_sizes = (
-        np.empty((wanted, swarm.longest_path), dtype=np.int64),
-        np.empty(wanted, dtype=np.int64),
-    )
-    paths, sizes = (
-        np.empty((swarm.fish, swarm.longest_path), dtype=np.int64),
-        np.empty(swarm.fish, dtype=np.int64),
-    )
+    arrivals = np.empty((wanted, swarm.longest_path), dtype=np.int64)
+    arrival_sizes = np.empty(wanted, dtype=np.int64)
+    paths = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64)
+    sizes = np.empty(swarm.fish, dtype=np.int64)
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
     cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     arrived = released = 0

@@ -111,10 +111,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
-    start, target = (
-        start_row * walled.shape[1] + start_column,
-        target_row * walled.shape[1] + target_column,
-    )
+    start = start_row * walled.shape[1] + start_column
+    target = target_row * walled.shape[1] + target_column
     cells, found, history = _search(*rng.spawn(2), walker, start, target, settings)
     history *= grid.cell
     extra = {"first_walks": int(found)}
@@ -188,10 +186,8 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
     size, columns, population = len(walker.walled), walker.columns, rules.population
     # A path visits a cell once; before its loops are removed, a child consists of at most two paths
     # and a walk.
-    walk, last_visit = (
-        np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64),
-        np.empty(size, dtype=np.int64),
-    )
+    walk = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64)
+    last_visit = np.empty(size, dtype=np.int64)
     index, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
     paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk, last_visit)

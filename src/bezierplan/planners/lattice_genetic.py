@@ -148,10 +148,8 @@ def _search(rng, lattice, free, cells, rules):
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
     parents = np.empty_like(cells)
-    path, marks = (
-        np.empty(rules.longest_join, dtype=np.int64),
-        np.zeros(len(lattice.row), dtype=np.int64),
-    )
+    path = np.empty(rules.longest_join, dtype=np.int64)
+    marks = np.zeros(len(lattice.row), dtype=np.int64)
     lengths = np.empty(population)
     best, best_path, best_length = cells[0].copy(), path[:0].copy(), np.inf
     history = np.empty(rules.generations + 1)
@@ -200,10 +198,8 @@ def _first_paths(
     """Paths (population, longest) from start to target through a random cell of each row, and their
     sizes (population,); 0 for none.
     """
-    paths, sizes = (
-        np.zeros((population, longest), dtype=np.int64),
-        np.zeros(population, dtype=np.int64),
-    )
+    paths = np.zeros((population, longest), dtype=np.int64)
+    sizes = np.zeros(population, dtype=np.int64)
     if all(map(len, rows)):
         choices = np.zeros((len(rows), len(places.row)), dtype=np.int64)
         for row, free in enumerate(rows):

@@ -275,10 +275,8 @@ def plan(
     if last is not None:
         known = genes_at(grid.in_cells(last), field)
         row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
-        first, counts = (
-            np.vstack([row, first])[: settings.population],
-            np.append(len(known), counts)[: settings.population],
-        )
+        first = np.vstack([row, first])[: settings.population]
+        counts = np.append(len(known), counts)[: settings.population]
     result = search(rng, field, settings, first, counts, scratch_for(field))
     solved = len(result.ones) > 0
     points = grid.in_units(polygon(result.ones, field))
@@ -356,10 +354,8 @@ def search(
         * (size * rules.children_per_parent // 2)
         * (2 if rules.offspring == Offspring.both else 1)
     )
-    pool, spare = (
-        gene_lists.empty_pool(size + batches * children, _ROOM),
-        gene_lists.empty_pool(size, _ROOM),
-    )
+    pool = gene_lists.empty_pool(size + batches * children, _ROOM)
+    spare = gene_lists.empty_pool(size, _ROOM)
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations)

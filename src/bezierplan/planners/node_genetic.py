@@ -302,10 +302,8 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
     which random mutation draws.
     """
     population = rules.population
-    paths, lengths = (
-        np.empty((population, rules.most_nodes + 2), dtype=np.int64),
-        np.empty(population, dtype=np.int64),
-    )
+    paths = np.empty((population, rules.most_nodes + 2), dtype=np.int64)
+    lengths = np.empty(population, dtype=np.int64)
     for i in range(population):
         paths[i, 0] = start
         lengths[i] = _first_path(starts, paths[i], target, free, ground, rules)
@@ -358,10 +356,8 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             if moves.random() < rules.crossover_probability:
                 cut = other_cut = 1 + below(moves, min(lengths[mother], lengths[father]) - 1)
                 if rules.cut == Cut.independent:
-                    cut, other_cut = (
-                        1 + below(moves, lengths[mother] - 1),
-                        1 + below(moves, lengths[father] - 1),
-                    )
+                    cut = 1 + below(moves, lengths[mother] - 1)
+                    other_cut = 1 + below(moves, lengths[father] - 1)
             else:
                 cut, other_cut = lengths[mother], lengths[father]
             child_lengths[i] = join(
@@ -387,12 +383,10 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             lengths[0] = best_length
 
     if rules.result == Result.last_generation:
-        best, best_length, best_objective, best_met = (
-            paths[first],
-            lengths[first],
-            objective[first],
-            met[first],
-        )
+        best = paths[first]
+        best_length = lengths[first]
+        best_objective = objective[first]
+        best_met = met[first]
     return _Found(
         best[:best_length].copy(),
         best_objective,

@@ -304,10 +304,8 @@ def _dijkstra(count, starts, targets, lengths):
 
     far, before = np.full(count, np.inf), np.full(count, -1)
     # Nodes that are reached and not settled: few, so they need no heap.
-    waiting, waits = (
-        np.empty(count, dtype=np.int64),
-        1,
-    )
+    waiting = np.empty(count, dtype=np.int64)
+    waits = 1
     waiting[0], far[0] = 0, 0.0
     while waits > 0:
         slot = 0

@@ -62,11 +62,9 @@ class Forks:
         """Take the path of Python's interpreter, and Snakemake's function that runs a script in an
         interpreter of its own.
         """
-        self._interpreter, self._script, self._names = (
-            interpreter,
-            script,
-            inspect.signature(script),
-        )
+        self._interpreter = interpreter
+        self._script = script
+        self._names = inspect.signature(script)
         self._starting, self._control = threading.Lock(), None
         self.process: int | None = None  # the number of the process that is forked
 

@@ -128,10 +128,8 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
         )
     artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
-    claims, assumptions = (
-        _read(folder, "claims", ClaimsFile),
-        _read(folder, "assumptions", AssumptionsFile),
-    )
+    claims = _read(folder, "claims", ClaimsFile)
+    assumptions = _read(folder, "assumptions", AssumptionsFile)
     for name in experiments.baselines:
         if name in experiments.methods:
             raise Fault(

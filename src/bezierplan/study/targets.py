@@ -288,10 +288,8 @@ def narrow_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict
 
 def figure_params(studies: Studies, scale: str, study: str, figure: str) -> dict:
     """Params of a figure."""
-    job, inputs = (
-        jobs.figure_job(studies[study], figure, scale),
-        figure_inputs(studies, scale, study, figure),
-    )
+    job = jobs.figure_job(studies[study], figure, scale)
+    inputs = figure_inputs(studies, scale, study, figure)
     panels = studies[study].figures[figure].panels
     kinds = {f"bezierplan.figures.panels.{panel.kind}" for panel in panels}
     module = (
@@ -428,10 +426,8 @@ def alternative_inputs(
 ) -> dict[str, Any]:
     """Input files of an alternative: runs of the methods that it does not change."""
     primary = studies[study]
-    claims, changed = (
-        alternatives.headline_claims(primary, alternative),
-        alternatives.methods_changed(primary, alternative),
-    )
+    claims = alternatives.headline_claims(primary, alternative)
+    changed = alternatives.methods_changed(primary, alternative)
     methods = {
         name: alternatives.methods_of_claims(primary, claims, name)
         for name in alternatives.experiments_of_claims(claims)
@@ -448,10 +444,8 @@ def alternative_params(studies: Studies, scale: str, study: str, alternative: st
     changes.
     """
     content, tried = studies[study], alternatives.with_alternative(studies[study], alternative)
-    claims, changed = (
-        alternatives.headline_claims(content, alternative),
-        alternatives.methods_changed(content, alternative),
-    )
+    claims = alternatives.headline_claims(content, alternative)
+    changed = alternatives.methods_changed(content, alternative)
     chunks = [
         (number, design.judged_only(jobs.job(tried, experiment, method, scale, number), claims))
         for experiment in alternatives.experiments_of_claims(claims)

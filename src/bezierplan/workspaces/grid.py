@@ -86,10 +86,8 @@ class Grid:
             x_low <= x <= x_low + columns * self.cell and y_low <= y <= y_low + rows * self.cell
         ):
             return None
-        column, row = (
-            math.floor((x - x_low) / self.cell + ON_LINE),
-            math.floor((y - y_low) / self.cell + ON_LINE),
-        )
+        column = math.floor((x - x_low) / self.cell + ON_LINE)
+        row = math.floor((y - y_low) / self.cell + ON_LINE)
         return min(row, rows - 1), min(column, columns - 1)
 
     def centre(self, number: int) -> tuple[float, float]:

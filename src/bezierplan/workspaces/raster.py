@@ -50,10 +50,8 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
         shape = shapely.Polygon(outer, holes)
         # The cells within the obstacle's bounds, and one more on each side.
         low, high = outer.min(axis=0) - (left, bottom), outer.max(axis=0) - (left, bottom)
-        first, end = (
-            np.maximum(np.floor(low / cell).astype(int) - 1, 0),
-            np.ceil(high / cell).astype(int) + 2,
-        )
+        first = np.maximum(np.floor(low / cell).astype(int) - 1, 0)
+        end = np.ceil(high / cell).astype(int) + 2
         near = np.s_[first[1] : end[1], first[0] : end[0]]
         centre_x, centre_y = np.meshgrid(x[near[1]], y[near[0]])
         shapely.prepare(shape)
@@ -83,9 +81,7 @@ def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
     )
     rows, columns = grid.occupied.shape
     x, y = np.meshgrid(np.arange(columns), np.arange(rows))
-    low, high = (
-        grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE),
-        grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE),
-    )
+    low = grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE)
+    high = grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE)
     shapely.prepare(free)
     return ~shapely.covers(free, shapely.box(low[..., 0], low[..., 1], high[..., 0], high[..., 1]))

@@ -125,10 +125,8 @@ def _is_free_in_grid(points, region):
     # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every
     # seam, the range extends as far beyond the hull as a hull may reach into a rectangle.
     reach = 2.0 * TOLERANCE
-    left, right = (
-        _element(x_low - reach, cell, columns - 1),
-        _element(x_high + reach, cell, columns - 1),
-    )
+    left = _element(x_low - reach, cell, columns - 1)
+    right = _element(x_high + reach, cell, columns - 1)
     bottom, top = _element(y_low - reach, cell, rows - 1), _element(y_high + reach, cell, rows - 1)
     if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:
         return False

@@ -325,10 +325,8 @@ def _derivative(points, order, x, y):
     for k in range(n + 1 - order):
         east, north = points[k + 1, 0] - points[k, 0], points[k + 1, 1] - points[k, 1]
         if order > 1:
-            east, north = (
-                points[k + 2, 0] - points[k + 1, 0] - east,
-                points[k + 2, 1] - points[k + 1, 1] - north,
-            )
+            east = points[k + 2, 0] - points[k + 1, 0] - east
+            north = points[k + 2, 1] - points[k + 1, 1] - north
         if order > 2:
             east = points[k + 3, 0] - 3.0 * points[k + 2, 0] + 3.0 * points[k + 1, 0] - points[k, 0]
             north = (

@@ -88,10 +88,8 @@ def centre_path(problem: Problem) -> Bound:
     cells = np.concatenate([nodes, np.argwhere(~grid.occupied)])
     refuse_large(len(cells))
     lattice = 2 * cells[:, ::-1] + 1
-    any_slope, any_quadrant = (
-        np.zeros(len(cells), dtype=np.int64),
-        np.zeros((len(cells), 2), dtype=np.int64),
-    )
+    any_slope = np.zeros(len(cells), dtype=np.int64)
+    any_quadrant = np.zeros((len(cells), 2), dtype=np.int64)
     visible = _visible_on_grid(lattice, any_slope, any_quadrant, walled(grid.occupied), 2, False)
     return moved(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
 

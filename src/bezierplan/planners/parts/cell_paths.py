@@ -46,10 +46,8 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
     """
     population, longest = paths.shape
     parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
-    child, part = (
-        np.empty(longest + max(longest, rules.longest_part), dtype=np.int64),
-        np.empty(rules.longest_part, dtype=np.int64),
-    )
+    child = np.empty(longest + max(longest, rules.longest_part), dtype=np.int64)
+    part = np.empty(rules.longest_part, dtype=np.int64)
     marks = np.zeros(len(lattice.row), dtype=np.int64)
     lengths = np.empty(population)
     best, best_size, best_length = paths[0].copy(), sizes[0], np.inf
@@ -71,10 +69,8 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
             sizes[i] = put(parents[drawn[i], : parent_sizes[drawn[i]]], paths[i], 0)
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
-                father, mother = (
-                    parents[drawn[i], : parent_sizes[drawn[i]]],
-                    parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]],
-                )
+                father = parents[drawn[i], : parent_sizes[drawn[i]]]
+                mother = parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]]
                 k, m = common_cell(rng, father, mother, marks)
                 if k == 0:
                     continue
@@ -211,10 +207,8 @@ def _between(lattice, start, end, marks):
     """The cell that `join` inserts between two cells, -1 if there is none."""
     # Cells are numbered row by row, so the last one gives the number of columns.
     columns = lattice.column[-1] + 1
-    row, column = (
-        (lattice.row[start] + lattice.row[end]) // 2,
-        (lattice.column[start] + lattice.column[end]) // 2,
-    )
+    row = (lattice.row[start] + lattice.row[end]) // 2
+    column = (lattice.column[start] + lattice.column[end]) // 2
     middle = columns * row + column
     if not lattice.occupied[middle] and middle != start and middle != end:
         return middle
@@ -297,10 +291,8 @@ def reconnect(rng, lattice, first, last, part, marks):
     """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if
     that cell is occupied or out of reach.
     """
-    rows, columns = (
-        (lattice.row[first], lattice.row[last]),
-        (lattice.column[first], lattice.column[last]),
-    )
+    rows = (lattice.row[first], lattice.row[last])
+    columns = (lattice.column[first], lattice.column[last])
     row = integer(rng, min(rows), max(rows) + 1)
     cell = row * (lattice.column[-1] + 1) + integer(rng, min(columns), max(columns) + 1)
     if lattice.occupied[cell]:

@@ -173,10 +173,8 @@ def _towards(start, cell, target, columns, same_signs):
     target.
     """
     across, up = target % columns - cell % columns, target // columns - cell // columns
-    whole_across, whole_up = (
-        target % columns - start % columns,
-        target // columns - start // columns,
-    )
+    whole_across = target % columns - start % columns
+    whole_up = target // columns - start // columns
     if same_signs:
         return np.sign(across) == np.sign(whole_across) and np.sign(up) == np.sign(whole_up)
     return across * whole_across + up * whole_up > 0

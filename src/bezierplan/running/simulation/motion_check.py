@@ -79,10 +79,8 @@ def _approach(points, times, centres, velocities, walls, radii, tolerance):
     clearance = np.full(max(last_step - first_step, 1), np.inf)
     collision_at = np.inf
     step = first_step
-    before, after = (
-        positions(centres, velocities, walls, step),
-        positions(centres, velocities, walls, step + 1),
-    )
+    before = positions(centres, velocities, walls, step)
+    after = positions(centres, velocities, walls, step + 1)
     for i in range(len(times) - 1):
         begin = times[i]
         while True:
@@ -130,12 +128,10 @@ def _relative(points, i, share, before, after, moved):
 def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     first, last = math.floor(motion.times[0]), math.ceil(motion.times[-1])
     regions = [region(each) for each in world.maps]
-    clearance, collision_at, depth, tolerance = (
-        np.full(max(last - first, 1), np.inf),
-        math.nan,
-        0.0,
-        0.0,
-    )
+    clearance = np.full(max(last - first, 1), np.inf)
+    collision_at = math.nan
+    depth = 0.0
+    tolerance = 0.0
     inner = world.moments[(world.moments > motion.times[0]) & (world.moments < motion.times[-1])]
     cuts = np.unique(
         np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner])
