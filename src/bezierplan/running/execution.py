@@ -62,10 +62,9 @@ def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Gene
     parts = {
         "own": [condition.name, chunk.method],
         "shared": [condition.name],
-        "common": [str(layout)],
+        "common": [layout],
     }
-    name = "/".join([chunk.study, chunk.experiment, *parts[chunk.seeds], str(repeat)])
-    return seeds.generator(name)
+    return seeds.generator(chunk.study, chunk.experiment, *parts[chunk.seeds], repeat)
 
 
 def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> Plan:
@@ -248,9 +247,8 @@ def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int
     both effects over all conditions. It affects only times.
     """
     pairs = list(itertools.product(range(conditions), repeats))
-    name = "/".join([chunk.study, chunk.experiment, chunk.method, str(repeats.start), "order"])
-    shuffled = seeds.generator(name).permutation(len(pairs))
-    return [pairs[n] for n in shuffled]
+    name = chunk.study, chunk.experiment, chunk.method, repeats.start, "order"
+    return [pairs[n] for n in seeds.generator(*name).permutation(len(pairs))]
 
 
 def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:

@@ -40,15 +40,8 @@ def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
             np.abs(np.indices(ends.shape) - np.reshape(cell, (2, 1, 1))).max(axis=0)
             < description["clear_ends"]
         )
-    parts = [
-        name,
-        side,
-        *problem["start"],
-        *problem["target"],
-        problem["obstacles"],
-        problem["layout"],
-    ]
-    rng = generator("/".join(map(str, parts)))
+    numbers = *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]
+    rng = generator(name, side, *numbers)
     for _ in range(MOST_MAPS):
         occupied = _blocks(rng, ends, problem["obstacles"], min(description["largest_block"], side))
         if occupied.sum() == problem["obstacles"]:

@@ -20,7 +20,7 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
     (tharwat2018, Section 5.6). name: that of study and workspace; number: that of the layout.
     Circles may overlap each other. Raises ValueError if no free place is found.
     """
-    rng = generator(f"{name}/{number}")
+    rng = generator(name, number)
     x_low, x_high, y_low, y_high = map(float, description["bounds"])
     radius = float(description["radius"])
     centres = []

@@ -31,15 +31,8 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     can be found.
     """
     side = problem["side"]
-    parts = [
-        name,
-        side,
-        *problem["start"],
-        *problem["target"],
-        problem["obstacles"],
-        problem["layout"],
-    ]
-    rng = generator("/".join(map(str, parts)))
+    numbers = *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]
+    rng = generator(name, side, *numbers)
     empty = from_circles(
         Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"])
     )
