@@ -89,7 +89,7 @@ def free_length(grid: Grid, way: Way, s: float) -> float:
     )
     if math.isinf(collision_at):
         return math.inf
-    lengths = np.concatenate([[s], s + np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    lengths = s + ways.lengths(points)
     return float(np.interp(collision_at, np.arange(len(lengths)), lengths))
 
 
@@ -131,9 +131,9 @@ def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"
     if begin is not None:
         return np.array([robot, begin])
     back = motion.points[::-1]
-    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(back, axis=0).T))])
+    lengths = ways.lengths(back)
     for s in np.arange(_BACK, lengths[-1], _BACK):
-        robot = np.array([np.interp(s, lengths, back[:, axis]) for axis in range(2)])
+        robot = Way(back, lengths).place(s)
         begin = _start(grid, robot, start)
         if begin is not None:
             return np.concatenate([back[lengths < s], [robot, begin]])

@@ -29,6 +29,12 @@ class Motion(NamedTuple):
     points: np.ndarray
     times: np.ndarray
 
+    def at(self, times: np.ndarray | float) -> np.ndarray:
+        """Places (..., 2) at some times."""
+        return np.stack(
+            [np.interp(times, self.times, self.points[:, axis]) for axis in range(2)], axis=-1
+        )
+
 
 class Verdict(NamedTuple):
     """collision_at: time of the first collision, in steps; nan without one. clearance: (steps,)
@@ -156,7 +162,5 @@ def between(motion: Motion, begin: float, end: float) -> Motion:
     """The part of a motion between two times, of at least two vertices."""
     inside = (motion.times > begin) & (motion.times < end)
     times = np.concatenate([[begin], motion.times[inside], [end]])
-    ends = np.column_stack(
-        [np.interp([begin, end], motion.times, motion.points[:, axis]) for axis in range(2)]
-    )
+    ends = motion.at(np.array([begin, end]))
     return Motion(np.concatenate([ends[:1], motion.points[inside], ends[1:]]), times)

@@ -44,7 +44,12 @@ def way(points: np.ndarray) -> Way:
     """
     points = np.asarray(points, dtype=float)
     points = points[np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])]
-    return Way(points, np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))]))
+    return Way(points, lengths(points))
+
+
+def lengths(points: np.ndarray) -> np.ndarray:
+    """Length (n,) of a polyline (n, 2) up to each of its points."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
 
 
 def polyline(path: Path, spacing: float) -> np.ndarray:
