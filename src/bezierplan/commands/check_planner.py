@@ -61,8 +61,5 @@ def of_text(text: str) -> dict[str, Any]:
 def of_study(name: str, method: str) -> tuple[str, dict[str, Any]]:
     """The planner and settings of a study's method. Raises Fault."""
     (study,) = reading.load(reading.read_config({"studies": [name]})).values()
-    if method not in study.methods:
-        raise checked.Fault(
-            f"{name}: methods: {method}: unknown{checked.closest(method, study.methods)}"
-        )
+    checked.check_known(method, study.methods, f"{name}: methods")
     return study.planner(method), study.resolved(method)

@@ -165,6 +165,13 @@ def _check_size(text: str, location: str) -> None:
             )
 
 
+def check_known(name: Any, known: Iterable[Any], location: str) -> None:
+    """Raise Fault, beginning with a location, for a name that is not among those known."""
+    known = list(known)
+    if name not in known:
+        raise Fault(f"{location}: {name}: unknown{closest(name, known)}")
+
+
 # More known words than this are not all listed, but only some that are most alike.
 MOST_LISTED, FEW_LISTED = 40, 10
 

@@ -569,7 +569,7 @@ def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
 # All studies together
 
 
-def _published_tables(studies: Studies) -> dict[tuple[str, str], Pivot]:
+def published_tables(studies: Studies) -> dict[tuple[str, str], Pivot]:
     """The tables compared with published numbers, by study and table."""
     return {
         (key, name): table
@@ -583,7 +583,7 @@ def comparison_files(studies: Studies, scale: str) -> dict[tuple[str, str], str]
     """The comparison of each table with published numbers, by study and table."""
     return {
         (study, table): _comparison_file(scale, study, table)
-        for study, table in _published_tables(studies)
+        for study, table in published_tables(studies)
     }
 
 
@@ -606,7 +606,7 @@ def summary_inputs(studies: Studies, scale: str) -> dict[str, Any]:
 def summary_params(studies: Studies, scale: str) -> dict:
     """Params of the summary."""
     titles = {key: study.title for key, study in studies.items()}
-    job = SummaryJob([*_published_tables(studies)], titles)
+    job = SummaryJob([*published_tables(studies)], titles)
     return {"job": plain(job), "code": _code("summary")}
 
 
@@ -716,7 +716,7 @@ def files_of_study(studies: Studies, scale: str, study: str) -> list[str]:
 
 def files_of_scale(studies: Studies, scale: str) -> list[str]:
     """Everything that is made at a scale; a summary if some table has published numbers."""
-    summary = _published_tables(studies)
+    summary = published_tables(studies)
     return [file for study in studies for file in files_of_study(studies, scale, study)] + (
         [f"results/{scale}/summary.md"] if summary else []
     )
