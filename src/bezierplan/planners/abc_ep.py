@@ -131,15 +131,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     history *= grid.cell
     extra = {"first_length": float(history[0]), "turns": max(0, len(points) - 2)}
     if len(points) == 0:
-        return Plan(
-            None,
-            np.inf,
-            claimed_feasible=False,
-            evaluations=1,
-            history=history,
-            stop="no way",
-            extra=extra,
-        )
+        return Plan.of_one(None, np.inf, "no way", extra)
     points = grid.in_units(points)
     points[[0, -1]] = problem.start, problem.target
     evaluations = 1 + settings.population * settings.generations

@@ -15,8 +15,8 @@ from bezierplan.planners import About, Plan, Range, ant_colony
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, lattice, points
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.lattice import Corners, lattice
+from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
@@ -79,13 +79,12 @@ def plan(
     ----------
     ma2020, Section 4.1, reference 30.
     """
-    grid = problem.workspace
-    places = lattice(grid, problem.start, problem.target, Corners(ants.corners).name)
+    corners = Corners(ants.corners).name
+    places = lattice(problem.workspace, problem.start, problem.target, corners)
     first, moves = rng.spawn(2)
     colony = ant_colony.search(places, first, ants)
     best, history = colony.best, colony.history
-    solved = len(best) > 0
-    if solved and places.start != places.target:
+    if len(best) > 0 and places.start != places.target:
         rules = cell_paths.Rules(
             settings.crossover_probability,
             True,
@@ -104,18 +103,9 @@ def plan(
             rules,
         )
         history = np.concatenate([history, later[1:]])
-    return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best))
-        if solved
-        else None,
-        objective=history[-1] * grid.cell,
-        claimed_feasible=solved,
-        evaluations=ants.ants * len(colony.history)
-        + settings.population * (len(history) - len(colony.history)),
-        history=history * grid.cell,
-        stop="generations" if solved else "no path",
-        extra={},
-    )
+    generations = len(history) - len(colony.history)
+    evaluations = ants.ants * len(colony.history) + settings.population * generations
+    return cell_paths.plan_of(problem, best, history, evaluations, "generations")
 
 
 def _first_population(colony: ant_colony.Colony, population: int) -> tuple[np.ndarray, np.ndarray]:

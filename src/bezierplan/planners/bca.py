@@ -20,8 +20,10 @@ from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
+    check_curve,
     check_pairs,
     complement_bit,
+    copy,
     redraw_gene,
     roulette,
     swap_tails,
@@ -142,18 +144,7 @@ class Settings(NamedTuple):
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
-    least = curves.least_points(settings["curve"]) - 2
-    if settings["control_points"] < least:
-        raise ValueError(
-            f"control_points: {settings['control_points']}; a curve of kind {settings['curve']} "
-            f"needs at least {least}"
-        )
-    pieces = len(curves.piece_matrix(settings["curve"], settings["control_points"] + 2))
-    if settings["samples"] < pieces + 1:
-        raise ValueError(
-            f"samples: {settings['samples']}; "
-            f"the {pieces} pieces of this curve need at least {pieces + 1}"
-        )
+    check_curve(settings, "control_points")
     if settings["length_weight"] == 0:
         raise ValueError(
             "length_weight: 0; "
@@ -191,9 +182,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if problem.start == problem.target:
         # Start and target coincide: there is no length to minimise and no distance to divide by.
         point = Path("bezier", np.array([problem.start, problem.target]))
-        return Plan(
-            point, 0.0, True, 1, np.zeros(1), "generations", {"bad_samples": 0, "safety_term": 0.0}
-        )
+        return Plan.of_one(point, 0.0, "generations", {"bad_samples": 0, "safety_term": 0.0})
     if settings.control_points == 0:
         # No search needed: one chromosome, the straight line.
         settings = settings._replace(population=1, generations=0)
@@ -340,7 +329,7 @@ def _search(rng, codes, cells, curve, rules):
             else:
                 cost[i] = _cost(codes[i], cells, curve, rules, scratch)
             if cost[i] < best_cost:
-                _copy(codes[i], best)
+                copy(codes[i], best)
                 best_cost = cost[i]
         history[generation] = best_cost
         if generation == rules.generations:
@@ -350,14 +339,14 @@ def _search(rng, codes, cells, curve, rules):
         parent_cost, cost = cost, parent_cost
         drawn = roulette(rng, 1.0 / parent_cost, population)
         for i in range(population):
-            _copy(parents[drawn[i]], codes[i])
+            copy(parents[drawn[i]], codes[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability and genes > 1:
                 swap_tails(codes[i], codes[i + 1], bits * integer(rng, 1, genes), bits)
         for i in range(population):
             _mutate(rng, codes[i], bits, cells, rules)
         if rules.elitism:
-            _copy(best, codes[0])
+            copy(best, codes[0])
     return best, history
 
 
@@ -546,10 +535,3 @@ def _same(one, other):
         if one[k] != other[k]:
             return False
     return True
-
-
-@allocation_free
-def _copy(source, target):
-    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
-    for k in range(len(source)):
-        target[k] = source[k]

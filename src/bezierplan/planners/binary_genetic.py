@@ -19,7 +19,14 @@ import numpy as np
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.genetic import check_pairs, complement_bit, roulette, swap_tails
+from bezierplan.planners.parts.genetic import (
+    check_curve,
+    check_pairs,
+    complement_bit,
+    copy,
+    roulette,
+    swap_tails,
+)
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, embed
@@ -86,23 +93,12 @@ class Settings(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    least = curves.least_points(settings["curve"]) - 2
-    if settings["genes"] < least:
-        raise ValueError(
-            f"genes: {settings['genes']}; "
-            f"a curve of kind {settings['curve']} needs at least {least}"
-        )
+    check_curve(settings, "genes")
     check_pairs(settings["population"])
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
         raise ValueError("spacing: arc_length; only a polyline has it, other curves need parameter")
     if settings["cut"] == "gene" and settings["genes"] == 1:
         raise ValueError("cut: gene; a single gene can only be cut at a bit")
-    pieces = len(curves.piece_matrix(settings["curve"], settings["genes"] + 2))
-    if settings["samples"] < pieces + 1:
-        raise ValueError(
-            f"samples: {settings['samples']}; "
-            f"the {pieces} pieces of this curve need at least {pieces + 1}"
-        )
 
 
 @with_settings(Settings)
@@ -259,7 +255,7 @@ def _search(rng, cells, occupied, places, curve, rules):
                 for cell in cells[i, 1:-1]:
                     objective[i] += rules.occupied_point_penalty * by_number[cell]
             if objective[i] < best_objective:
-                _copy(cells[i], best)
+                copy(cells[i], best)
                 best_objective, best_bad = objective[i], count
         history[generation] = best_objective
         if generation == rules.generations:
@@ -270,7 +266,7 @@ def _search(rng, cells, occupied, places, curve, rules):
         parent_bad, bad = bad, parent_bad
         drawn = roulette(rng, 1.0 / objective, population)
         for i in range(population):
-            _copy(parents[drawn[i]], cells[i])
+            copy(parents[drawn[i]], cells[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
                 cut = (
@@ -282,15 +278,8 @@ def _search(rng, cells, occupied, places, curve, rules):
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
         if rules.elitism:
-            _copy(best, cells[0])
+            copy(best, cells[0])
     return best, best_bad, history
-
-
-@allocation_free
-def _copy(source, target):
-    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
-    for k in range(len(source)):
-        target[k] = source[k]
 
 
 @allocation_free

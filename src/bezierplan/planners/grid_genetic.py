@@ -117,15 +117,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     history *= grid.cell
     extra = {"first_walks": int(found)}
     if found == 0:
-        return Plan(
-            None,
-            np.inf,
-            claimed_feasible=False,
-            evaluations=1,
-            history=history,
-            stop="no way",
-            extra=extra,
-        )
+        return Plan.of_one(None, np.inf, "no way", extra)
     row, column = np.divmod(cells, walled.shape[1])
     centres = grid.in_units(np.column_stack([column, row]) - 0.5)
     return Plan(

@@ -17,8 +17,8 @@ from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs, redraw_gene, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
-from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.lattice import Corners, Lattice, lattice
+from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
@@ -124,18 +124,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             best, history = cell_paths.evolve(
                 moves, places, paths, sizes, settings.generations, rules
             )
-    solved = len(best) > 0
-    return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best))
-        if solved
-        else None,
-        objective=history[-1] * grid.cell,
-        claimed_feasible=solved,
-        evaluations=population * len(history),
-        history=history * grid.cell,
-        stop="generations" if solved else "no path",
-        extra={},
-    )
+    return cell_paths.plan_of(problem, best, history, population * len(history), "generations")
 
 
 @compiled

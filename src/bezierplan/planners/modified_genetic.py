@@ -254,15 +254,7 @@ def plan(
             "extra_batches": 0,
             "valid_share": math.nan,
         }
-        return Plan(
-            Path("polyline", grid.in_units(ends)),
-            0.0,
-            True,
-            1,
-            np.zeros(1),
-            "start is target",
-            nothing,
-        )
+        return Plan.of_one(Path("polyline", grid.in_units(ends)), 0.0, "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
     orders = (

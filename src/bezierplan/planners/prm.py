@@ -83,17 +83,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     neighbours = settings.neighbours if settings.links == Links.nearest else None
     length, way, roads = roadmap(problem, rng, settings.nodes, neighbours, settings.d_min)
     path = Path("polyline", way) if len(way) else None
-    found = path is not None
-    history = np.array([length])
-    return Plan(
-        path,
-        length,
-        claimed_feasible=found,
-        evaluations=1,
-        history=history,
-        stop="direct",
-        extra={"roads": roads},
-    )
+    return Plan.of_one(path, length, "direct", {"roads": roads})
 
 
 def roadmap(

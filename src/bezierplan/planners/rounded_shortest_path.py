@@ -237,15 +237,7 @@ def _answer(
     """The shortest path, rounded."""
     if math.isinf(bound.length):
         nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
-        return Plan(
-            None,
-            math.inf,
-            claimed_feasible=False,
-            evaluations=1,
-            history=np.array([math.inf]),
-            stop="no way",
-            extra=nothing,
-        )
+        return Plan.of_one(None, math.inf, "no way", nothing)
     turns = turns_of(bound.points, problem.workspace)
     points, radii, tries, free = _rounded(problem, turns, blocked, settings)
     if not free:  # around corners of a grown obstacle there may be less room than for a circle

@@ -10,8 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
+from bezierplan.planners import Plan
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.workspaces.lattice import points
+from bezierplan.workspaces.problem import Path, Problem
 
 ONE_CELL, RECONNECT, WALK = range(3)
 
@@ -34,6 +37,25 @@ class Rules(NamedTuple):
     tries: int
     cut_loops: bool
     elitism: int
+
+
+def plan_of(
+    problem: Problem, cells: np.ndarray, history: np.ndarray, evaluations: int, stop: str
+) -> Plan:
+    """The plan with a path over the cells (n,) of a grid, or with none for no cells. history: in
+    cells. stop: why the search ended if it found a path.
+    """
+    grid, solved = problem.workspace, len(cells) > 0
+    path = Path("polyline", points(grid, problem.start, problem.target, cells)) if solved else None
+    return Plan(
+        path=path,
+        objective=history[-1] * grid.cell,
+        claimed_feasible=solved,
+        evaluations=evaluations,
+        history=history * grid.cell,
+        stop=stop if solved else "no path",
+        extra={},
+    )
 
 
 @compiled
