@@ -12,8 +12,8 @@ from numba.extending import overload
 
 from bezierplan.geometry.bins import columns_between, rows_between, rows_near
 from bezierplan.geometry.checker.hulls import (
+    BINOMIAL,
     LARGEST_COORDINATE,
-    LARGEST_DEGREE,
     TOLERANCE,
     box,
     bulge_of,
@@ -34,15 +34,6 @@ _WIDEST_RANGE = 12
 # An edge at this distance from a hull cannot be passed within the tolerance of its ends, so it is
 # irrelevant to the hull.
 _APART = 4 * TOLERANCE
-
-_BINOMIAL = np.array(
-    [
-        [math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)]
-        for n in range(2 * LARGEST_DEGREE + 1)
-    ],
-    dtype=float,
-)
-
 
 # --------------------------------------------------------------------------------------------------
 # The questions. numba compiles the answer for a kind of region in their place, by the overloads
@@ -204,8 +195,8 @@ def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
             product = (points[i, 0] - x) * (points[j, 0] - x) + (points[i, 1] - y) * (
                 points[j, 1] - y
             )
-            coefficient += _BINOMIAL[n, i] * _BINOMIAL[n, j] * product
-        least = min(least, coefficient / _BINOMIAL[2 * n, k])
+            coefficient += BINOMIAL[n, i] * BINOMIAL[n, j] * product
+        least = min(least, coefficient / BINOMIAL[2 * n, k])
     return math.sqrt(max(0.0, least))
 
 
@@ -456,21 +447,7 @@ _DEPTH_BOUND = {
 }
 
 
-@overload(is_blocked)
-def _choose_is_blocked(x, y, region):
-    return _IS_BLOCKED[region.instance_class]
-
-
-@overload(is_free)
-def _choose_is_free(points, region):
-    return _IS_FREE[region.instance_class]
-
-
-@overload(depth_at)
-def _choose_depth(x, y, region):
-    return _DEPTH_AT[region.instance_class]
-
-
-@overload(depth_bound)
-def _choose_depth_bound(points, region):
-    return _DEPTH_BOUND[region.instance_class]
+overload(is_blocked)(lambda x, y, region: _IS_BLOCKED[region.instance_class])
+overload(is_free)(lambda points, region: _IS_FREE[region.instance_class])
+overload(depth_at)(lambda x, y, region: _DEPTH_AT[region.instance_class])
+overload(depth_bound)(lambda points, region: _DEPTH_BOUND[region.instance_class])

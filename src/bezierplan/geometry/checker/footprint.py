@@ -396,18 +396,10 @@ def _nearer(obstacles, count, hull, limit, edges, centres, radii):
     """Sort those of the first obstacles that are no farther from a convex polygon than a limit to
     the beginning; returns their number.
     """
-    left, right, bottom, top = box(hull)
+    around = box(hull)
     near = 0
     for k in range(count):
-        disc = obstacles[k] - len(edges)
-        if disc < 0:
-            ax, ay, bx, by = edges[obstacles[k]]
-            beside = max(
-                left - max(ax, bx), min(ax, bx) - right, bottom - max(ay, by), min(ay, by) - top
-            )
-        else:
-            x, y = centres[disc, 0], centres[disc, 1]
-            beside = max(left - x, x - right, bottom - y, y - top) - radii[disc]
+        beside = _beside(obstacles[k], around, edges, centres, radii)
         if beside <= limit and _distance(obstacles[k], hull, edges, centres, radii) <= limit:
             obstacles[near], obstacles[k] = obstacles[k], obstacles[near]
             near += 1
@@ -417,21 +409,24 @@ def _nearer(obstacles, count, hull, limit, edges, centres, radii):
 @allocation_free
 def _least_distance(obstacles, hull, edges, centres, radii):
     """Distance of a convex polygon, or a point, from the nearest of some obstacles."""
-    left, right, bottom, top = box(hull)
+    around = box(hull)
     least = np.inf
     for obstacle in obstacles:
-        disc = obstacle - len(edges)
-        if disc < 0:
-            ax, ay, bx, by = edges[obstacle]
-            beside = max(
-                left - max(ax, bx), min(ax, bx) - right, bottom - max(ay, by), min(ay, by) - top
-            )
-        else:
-            x, y = centres[disc, 0], centres[disc, 1]
-            beside = max(left - x, x - right, bottom - y, y - top) - radii[disc]
-        if beside < least:
+        if _beside(obstacle, around, edges, centres, radii) < least:
             least = min(least, _distance(obstacle, hull, edges, centres, radii))
     return least
+
+
+@allocation_free
+def _beside(obstacle, around, edges, centres, radii):
+    """A lower bound of the distance of an obstacle from what a box is around."""
+    left, right, bottom, top = around
+    disc = obstacle - len(edges)
+    if disc < 0:
+        ax, ay, bx, by = edges[obstacle]
+        return max(left - max(ax, bx), min(ax, bx) - right, bottom - max(ay, by), min(ay, by) - top)
+    x, y = centres[disc, 0], centres[disc, 1]
+    return max(left - x, x - right, bottom - y, y - top) - radii[disc]
 
 
 @allocation_free

@@ -22,6 +22,10 @@ LARGEST_COORDINATE = 1e5
 
 LARGEST_DEGREE = 60
 
+# Binomial coefficients of squares of such polynomials, too.
+_ORDERS = range(2 * LARGEST_DEGREE + 1)
+BINOMIAL = np.array([[math.comb(n, k) for k in _ORDERS] for n in _ORDERS], dtype=float)
+
 # From the largest coordinate, halving reaches the tolerance in about fifty levels; each level needs
 # one stack entry.
 STACK = 64
