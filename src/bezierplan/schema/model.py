@@ -259,22 +259,19 @@ def sized(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
 Number = Annotated[float, sized(lambda entry: True, "a number")]
 Positive = Annotated[float, sized(lambda entry: entry > 0, "a number above 0")]
 NotNegative = Annotated[float, sized(lambda entry: entry >= 0, "a number of at least 0")]
-Whole = Annotated[
-    int,
-    value(
-        lambda entry: _is_whole(entry) and 0 <= entry <= MOST, f"a whole number from 0 to {MOST}"
-    ),
-]
-Count = Annotated[
-    int,
-    value(
-        lambda entry: _is_whole(entry) and 1 <= entry <= MOST,
-        f"a whole number of at least 1, at most {MOST}",
-    ),
-]
-Decimals = Annotated[
-    int, value(lambda entry: _is_whole(entry) and 0 <= entry <= 15, "a whole number from 0 to 15")
-]
+
+
+def whole(low: int, high: int) -> PlainValidator:
+    """A type of whole number, not true or false, between two limits that are part of it."""
+    return value(
+        lambda entry: _is_whole(entry) and low <= entry <= high,
+        f"a whole number from {low} to {high}",
+    )
+
+
+Whole = Annotated[int, whole(0, MOST)]
+Count = Annotated[int, whole(1, MOST)]
+Decimals = Annotated[int, whole(0, 15)]
 
 
 def line(longest: int) -> PlainValidator:

@@ -24,6 +24,7 @@ from bezierplan.schema.model import (
     matching,
     one_of,
     value,
+    whole,
     wrong,
 )
 from bezierplan.workspaces.kinds import File, Workspace, kinds, of_length
@@ -105,15 +106,7 @@ class Problem(Model):
         description="in a workspace drawn at random: "
         "how many are drawn, for each scale; column `layout`",
     )
-    obstacles: listed(
-        Annotated[
-            int,
-            value(
-                lambda given: type(given) is int and 0 <= given <= 100_000,
-                "a whole number from 0 to 100000",
-            ),
-        ]
-    ) = Field(
+    obstacles: listed(Annotated[int, whole(0, 100_000)]) = Field(
         None,
         description="in a workspace drawn at random, a list of whole numbers: how many circles "
         "(of `random_circles` the first so many of a "
@@ -121,12 +114,10 @@ class Problem(Model):
         "time (`random_changing_cells`); one problem "
         "for each of them and each layout; column `obstacles`",
     )
-    side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = (
-        Field(
-            None,
-            description="the side of a random field or of a map of blocks in cells, a whole "
-            "number from 1 to 5000",
-        )
+    side: Annotated[int, whole(1, 5000)] = Field(
+        None,
+        description="the side of a random field or of a map of blocks in cells, a whole "
+        "number from 1 to 5000",
     )
     route: Annotated[str, matching(PART, PART_EXPECTED)] = Field(
         None,

@@ -42,6 +42,7 @@ from bezierplan.schema.model import (
     keys,
     unwrapped,
     value,
+    whole,
     wrong,
 )
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
@@ -104,7 +105,7 @@ Size = Annotated[
 """A side or a radius of something solid, in units."""
 
 Bounds = Annotated[list[Number], of_length(4, "[x low, x high, y low, y high]")]
-CircleCount = Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")]
+CircleCount = Annotated[int, whole(1, 10_000)]
 
 # Descriptions of keys shared by several kinds.
 REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
@@ -139,11 +140,9 @@ class World(Workspace):
     pace: Positive = Field(
         description="how far a robot drives in a step, in units, a number above 0"
     )
-    steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = (
-        Field(
-            description="the moment at which every drive in this world ends, "
-            "in steps, a whole number from 1 to 10000"
-        )
+    steps: Annotated[int, whole(1, 10_000)] = Field(
+        description="the moment at which every drive in this world ends, "
+        "in steps, a whole number from 1 to 10000"
     )
 
 
