@@ -859,6 +859,7 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     ValueError
         If there are no such results, or they are damaged.
     """
+    from bezierplan.running.chunk import chunk_files
     from bezierplan.schema.checked import closest
 
     runs_folder = File(folder) / "runs"
@@ -868,9 +869,7 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
             "results/full/song2016"
         )
     runs: dict[str, list[str]] = {}
-    for chunk in sorted(
-        file for file in runs_folder.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal()
-    ):
+    for chunk in chunk_files(runs_folder, f"{experiment}/*/*.parquet"):
         runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
         known = [each.name for each in runs_folder.iterdir()]

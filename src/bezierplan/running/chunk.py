@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 
@@ -66,3 +67,8 @@ class Chunk(NamedTuple):
     def name(self) -> str:
         """What the ids of its runs have in common, with a star for conditions."""
         return f"{self.study}/{self.experiment}/*/{self.method}"
+
+
+def chunk_files(folder: Path, pattern: str = "**/runs/*/*/*.parquet") -> list[Path]:
+    """The files of chunks below a folder, without the times and traces next to them."""
+    return [file for file in sorted(folder.glob(pattern)) if file.stem.isdecimal()]

@@ -29,6 +29,7 @@ import pyarrow.parquet as parquet
 from bezierplan.geometry import curves
 from bezierplan.geometry.region import Region, region, walled
 from bezierplan.running import answer, columns, problems, rides, rows, worlds
+from bezierplan.running.chunk import chunk_files
 from bezierplan.running.digest import COMPUTING, library_version
 from bezierplan.running.log import end_with_parent
 from bezierplan.schema.words import plain
@@ -99,9 +100,8 @@ def tasks(folder: File) -> list[Task]:
     table of runs or of problems.
     """
     experiments: dict[File, list[str]] = {}
-    for file in sorted(folder.rglob("runs/*/*/*.parquet")):
-        if file.stem.isdecimal():  # not the times and traces next to it
-            experiments.setdefault(file.parents[1], []).append(str(file))
+    for file in chunk_files(folder):
+        experiments.setdefault(file.parents[1], []).append(str(file))
     if not experiments:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
