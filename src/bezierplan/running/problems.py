@@ -18,7 +18,7 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import Region, blocks, region
 from bezierplan.running.columns import Bound
 from bezierplan.running.descriptions import Descriptions
-from bezierplan.workspaces import files, lattice, random_blocks, robot
+from bezierplan.workspaces import files, lattice, robot
 from bezierplan.workspaces.frames import WORLD, Frame, corners, frame_of, inward_map
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import grown_of, original
@@ -238,13 +238,15 @@ def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
         )
         if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
             return grid
+    from bezierplan.workspaces.kinds.random_blocks import MOST_MAPS
+
     asked = (
         "a path from start to target"
         if wanted is None
         else f"a shortest lattice path of lattice_length {wanted:g}"
     )
     raise ValueError(
-        f"obstacles: {problem['obstacles']}: of {random_blocks.MOST_MAPS} maps none has so many "
+        f"obstacles: {problem['obstacles']}: of {MOST_MAPS} maps none has so many "
         f"occupied cells and {asked}"
     )
 

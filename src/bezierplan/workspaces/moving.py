@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.workspaces.limits import check_bounds, check_thickness
-from bezierplan.workspaces.random_circles import MOST_DRAWS
+from bezierplan.workspaces.random_field import drawn_centres
 
 if TYPE_CHECKING:
     from bezierplan.workspaces.worlds import MovingCircles
@@ -53,27 +53,6 @@ def drawn(
 
     Raises ValueError if no free place is found.
     """
-    centres = _drawn_centres(rng, count, walls, ends, radius + description["clear_ends"])
+    centres = drawn_centres(rng, count, walls, ends, radius + description["clear_ends"])
     heading = rng.uniform(0.0, 2 * np.pi, count)
     return centres, description["speed"] * np.column_stack([np.cos(heading), np.sin(heading)])
-
-
-def _drawn_centres(
-    rng: np.random.Generator, count: int, walls: Walls, ends: np.ndarray, least: float
-) -> np.ndarray:
-    """Centres (count, 2) within the walls, none of them closer to an end than the minimum
-    distance.
-    """
-    low, high = np.reshape(walls, (2, 2)).T
-    centres = np.empty((count, 2))
-    for i in range(count):
-        for _ in range(MOST_DRAWS):
-            centres[i] = rng.uniform(low, high)
-            if np.hypot(*(ends - centres[i]).T).min() >= least:
-                break
-        else:
-            raise ValueError(
-                f"radius: no circle keeps {least:g} away "
-                f"from start and target in {MOST_DRAWS} draws"
-            )
-    return centres
