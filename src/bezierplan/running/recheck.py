@@ -262,31 +262,14 @@ class _Chunk(NamedTuple):
 
 _IDENTITY = ("id", "study", "experiment", "condition", "problem", "method", "repeat")
 _RUN_COLUMNS = (
-    *(
-        *_IDENTITY,
-        "length",
-        "feasible",
-        "collision_at",
-        "collision_depth",
-        "clearance",
-        "clearance_error",
-        "generations",
-        "history",
-    ),
-    *("path_curve", "path_points"),
+    *_IDENTITY,
+    *("length", "feasible", "collision_at", "collision_depth", "clearance", "clearance_error"),
+    *("generations", "history", "path_curve", "path_points"),
 )
 _DRIVE_COLUMNS = (
-    *(
-        *_IDENTITY,
-        "objective",
-        "length",
-        "claimed_feasible",
-        "feasible",
-        "collision_at",
-        "clearance",
-        "path_points",
-    ),
-    *("arrival", "travelled", "clearance_least"),
+    *_IDENTITY,
+    *("objective", "length", "claimed_feasible", "feasible", "collision_at", "clearance"),
+    *("path_points", "arrival", "travelled", "clearance_least"),
 )
 
 _TYPES: dict[str, tuple[str, Callable[[pa.DataType], bool]]] = {
@@ -669,7 +652,8 @@ def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World
         rides.bounds_again(made, moving, kept, task.runs) if moving else problems.bounds_of(made)
     )
     for field in again.schema:
-        _column(task.bounds, kept, field.name, _kind(field.type))
+        kind = next(kind for kind, (_, fits) in _TYPES.items() if fits(field.type))
+        _column(task.bounds, kept, field.name, kind)
     stored = {row["problem"]: row for row in kept.to_pylist()}
     faults = [
         Fault(task.bounds, name, "problem", name, "no problem of that name")
@@ -678,10 +662,6 @@ def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World
     for row in again.to_pylist():
         faults += _bound_faults(task.bounds, stored.get(row["problem"]), row)
     return Verdict(faults, 0, 0, 0, len(again), 0, ())
-
-
-def _kind(type_: pa.DataType) -> str:
-    return next(kind for kind, (_, fits) in _TYPES.items() if fits(type_))
 
 
 def _bound_faults(file: str, stored: dict[str, Any] | None, row: dict[str, Any]) -> Iterator[Fault]:

@@ -238,18 +238,15 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
     if problem.reference is not None:
         # The exact bound takes too long for a start; the job that computes it tells a reference
         # below it.
-        least, most = math.dist(seen.start, seen.target), LONGEST_REFERENCE * _perimeter(seen)
+        west, east, south, north = seen.workspace.bounds
+        least = math.dist(seen.start, seen.target)
+        most = LONGEST_REFERENCE * 2 * (east - west + north - south)
         if not (1 - measures.ROUNDED) * least <= problem.reference <= most:
             limits = (
                 f"a length from {least:.6g}, the straight line, to {most:.6g}, "
                 f"{LONGEST_REFERENCE} times round the workspace"
             )
             raise Fault(f"{location}: reference: {problem.reference}: expected {limits}")
-
-
-def _perimeter(problem: Problem) -> float:
-    west, east, south, north = problem.workspace.bounds
-    return 2 * (east - west + north - south)
 
 
 def _built(study: Study, name: str) -> Problem:

@@ -473,14 +473,11 @@ def _audited(study: Study) -> dict[str, Pivot]:
     }
 
 
-def _audited_experiments(study: Study) -> list[str]:
-    return sorted({table.experiment for table in _audited(study).values()})
-
-
 def audit_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the audit."""
     audited = studies[study]
-    files = {name: _files(audited, scale, name) for name in _audited_experiments(audited)}
+    experiments = sorted({table.experiment for table in _audited(audited).values()})
+    files = {name: _files(audited, scale, name) for name in experiments}
     bounds = named(BOUNDS, {name: each.bounds for name, each in files.items()})
     problems = named(
         PROBLEMS,
