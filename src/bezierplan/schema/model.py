@@ -155,6 +155,11 @@ def wrong(text: str) -> PydanticCustomError:
     return PydanticCustomError("wrong", "{text}", {"text": text})
 
 
+def expected(text: str) -> PydanticCustomError:
+    """An error of a value in the place of which this was expected."""
+    return PydanticCustomError("expected", "{text}", {"text": text})
+
+
 def shown(value: Any) -> str:
     """A value as a message shows it."""
     text = repr(value)
@@ -191,12 +196,12 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
 # Types of values.
 
 
-def value(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
+def value(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
     """A type of single value, kept as written."""
 
     def check(entry: Any) -> Any:
         if not fits(entry):
-            raise PydanticCustomError("expected", "{text}", {"text": expected})
+            raise expected(wanted)
         return entry
 
     return PlainValidator(check)
@@ -243,12 +248,12 @@ SMALLEST, LARGEST = 1e-12, 1e12
 """Size of a number other than 0: beyond, arithmetic with coordinates and lengths means nothing."""
 
 
-def sized(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
+def sized(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
     """A type of number, kept as written, of a size that can be meant."""
 
     def check(entry: Any) -> Any:
         if not (is_number(entry) and fits(entry)):
-            raise PydanticCustomError("expected", "{text}", {"text": expected})
+            raise expected(wanted)
         if entry and not SMALLEST <= abs(entry) <= LARGEST:
             raise wrong(f"{shown(entry)}: expected a size from {SMALLEST:g} to {LARGEST:g}, or 0")
         return entry
@@ -329,14 +334,14 @@ DEVICES = frozenset(
 """Names that no file can have on Windows."""
 
 
-def matching(pattern: str, expected: str) -> PlainValidator:
+def matching(pattern: str, wanted: str) -> PlainValidator:
     """A type of text that a regular expression matches as a whole, and that a file or folder can be
     called.
     """
 
     def check(entry: Any) -> Any:
         if not (isinstance(entry, str) and re.fullmatch(pattern, entry)):
-            raise PydanticCustomError("expected", "{text}", {"text": expected})
+            raise expected(wanted)
         if len(entry) > LONGEST_NAME:
             raise wrong(f"{shown(entry)}: {len(entry)} characters; expected at most {LONGEST_NAME}")
         if entry in DEVICES:
@@ -399,16 +404,17 @@ def _distinct(
 
     def check(entry: Any) -> Any:
         if not isinstance(entry, list) and not single:
-            raise PydanticCustomError("expected", "{text}", {"text": "a list"})
+            raise expected("a list")
         if isinstance(entry, list) and len(entry) > most:
             raise wrong(f"{len(entry)} entries; expected at most {most}")
-        items = (
-            adapter.validate_python(one_or_list(entry))
-            if isinstance(entry, list)
-            else _one(adapter, entry)
-        )
+        try:
+            items = adapter.validate_python(one_or_list(entry))
+        except ValidationError:
+            if isinstance(entry, list):
+                raise
+            raise expected("a value or a list of values") from None
         if isinstance(entry, list) and len(items) < least:
-            raise PydanticCustomError("expected", "{text}", {"text": f"a list of at least {least}"})
+            raise expected(f"a list of at least {least}")
         texts: dict[str, None] = {}
         for each in items:
             if (text := identity(each)) in texts:
@@ -417,15 +423,6 @@ def _distinct(
         return items if isinstance(entry, list) else items[0]
 
     return PlainValidator(check)
-
-
-def _one(adapter: TypeAdapter, entry: Any) -> list:
-    try:
-        return adapter.validate_python([entry])
-    except ValidationError:
-        raise PydanticCustomError(
-            "expected", "{text}", {"text": "a value or a list of values"}
-        ) from None
 
 
 Values = Annotated[list[Scalar], _distinct(Scalar, single=True)]
@@ -437,7 +434,7 @@ def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
 
     def check(entry: Any) -> Model:
         if not isinstance(entry, dict):
-            raise PydanticCustomError("expected", "{text}", {"text": f"a mapping with {key}"})
+            raise expected(f"a mapping with {key}")
         if key not in entry:
             raise wrong(f"{key}: missing key; one of {', '.join(sorted(models))}")
         kind = entry[key]

@@ -26,7 +26,6 @@ from types import ModuleType
 from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Field, PlainValidator
-from pydantic_core import PydanticCustomError
 
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
@@ -38,6 +37,7 @@ from bezierplan.schema.model import (
     Number,
     Positive,
     after,
+    expected,
     is_number,
     keys,
     unwrapped,
@@ -63,7 +63,7 @@ def _fits_everywhere(part: str) -> bool:
 
 def _check_file(value: Any) -> str:
     if not (isinstance(value, str) and value.isprintable() and 0 < len(value) <= 200):
-        raise PydanticCustomError("expected", "{text}", {"text": "the name of a file"})
+        raise expected("the name of a file")
     if _NOT_IN_NAMES & set(value) or not all(map(_fits_everywhere, value.split("/"))):
         wanted = (
             f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and "
@@ -84,12 +84,12 @@ Unit = Annotated[
 ]
 
 
-def of_length(length: int, expected: str) -> AfterValidator:
+def of_length(length: int, wanted: str) -> AfterValidator:
     """A check of a list of numbers: that there are so many."""
 
     def check(given: list) -> list:
         if len(given) != length:
-            raise wrong(f"{given!r}: expected {expected}")
+            raise wrong(f"{given!r}: expected {wanted}")
         return given
 
     return after(check)
