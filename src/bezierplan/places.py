@@ -1,6 +1,4 @@
-"""Where things lie: this package, the tree with the studies and the workflow, and the folder of
-caches.
-"""
+"""Where things lie: this package, the tree of studies and workflow, the folder of caches."""
 
 import os
 import sys

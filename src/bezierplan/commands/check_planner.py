@@ -12,9 +12,7 @@ from bezierplan.study import reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print the findings of a planner's contract tests; exit with status 1 if a test failed. Raises
-    Fault.
-    """
+    """Print a planner's contract tests; exit with status 1 if one failed. Raises Fault."""
     planner = parser.add_argument(
         "planner", help="its name, or the path of its file; with --study the name of a method"
     )

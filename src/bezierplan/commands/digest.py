@@ -37,9 +37,7 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
 
 
 def read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
-    """The rows of a chunk file, or only those with one id. Raises ValueError for a file without
-    runs.
-    """
+    """The rows of a chunk file, or those with one id. Raises ValueError if it has no runs."""
     try:
         return parquet.read_table(
             file, filters=[("id", "=", identity)] if identity else None

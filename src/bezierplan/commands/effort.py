@@ -84,9 +84,7 @@ def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
 
 
 def lines(session: Session, parts: Counter[str], jobs: int, waited: float) -> list[str]:
-    """A table in Markdown. What the cores did not do for this workflow is what remains of their
-    time.
-    """
+    """A table in Markdown. What the cores did not do for this workflow is the time that is left."""
     clock = session.ended - session.started
     whole = clock * session.cores
     rest = {"cores idle, or busy with other programs": whole - parts.total()}

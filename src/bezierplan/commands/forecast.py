@@ -153,9 +153,7 @@ def estimates(
 
 
 def keep(studies: dict[str, Study], folder: Path) -> None:
-    """Renew the kept times of what this folder's jobs of scale full took; those of other jobs
-    stay.
-    """
+    """Renew the kept times of this folder's jobs of scale full; those of other jobs stay."""
     own = records.measured(folder, lambda job: units_of(studies, job))
     known = records.kept(TREE / records.KEPT) if (TREE / records.KEPT).is_file() else {}
     records.keep(

@@ -114,9 +114,7 @@ def write_samples(
 
 @allocation_free
 def _cell(coordinate: float, before: int) -> int:
-    """Column or row of a coordinate; on a grid line that of the previous sample, if it is next to
-    the line.
-    """
+    """Column or row of a coordinate; next to a grid line, that of the previous sample if close."""
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
         return before

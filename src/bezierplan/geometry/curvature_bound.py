@@ -50,9 +50,7 @@ def largest_curvature(pieces: np.ndarray) -> LargestCurvature:
 
 @compiled
 def _largest(velocities):
-    """Both values of `LargestCurvature` from the control vectors (pieces, degree, 2) of the
-    velocities.
-    """
+    """Both values of `LargestCurvature` from velocities' control vectors (pieces, degree, 2)."""
     stack, width = np.empty((STACK, velocities.shape[1], 2)), np.empty(STACK)
     attained = bound = 0.0
     for piece in range(len(velocities)):

@@ -173,9 +173,7 @@ def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) 
 
 
 def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
-    """Points (..., 2) in units, in the region's own frame: on a grid, relative to its lower left
-    corner.
-    """
+    """Points (..., 2) in units, in the region's frame: on a grid, from its lower left corner."""
     return points - region.origin if isinstance(region, GridRegion) else points
 
 

@@ -156,9 +156,7 @@ def speeds(
 
 
 def _reached(fast: np.ndarray, gains: np.ndarray) -> np.ndarray:
-    """Speeds (n,), from rest, at most those that are given, whose squares grow by at most gains
-    (n - 1,).
-    """
+    """Speeds (n,), from rest, at most those given, whose squares grow by at most gains (n - 1,)."""
     reached = np.zeros(len(fast))
     for k, gain in enumerate(gains):
         reached[k + 1] = min(fast[k + 1], math.sqrt(reached[k] ** 2 + gain))

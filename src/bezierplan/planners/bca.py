@@ -255,9 +255,7 @@ def code_centres(rows: int, columns: int) -> np.ndarray:
 
 
 def _cells(grid: Grid, reach: int) -> _Cells:
-    """The grid for the kernels; near holds the occupied cells at most `reach` columns and rows
-    away.
-    """
+    """The grid for the kernels; near: the occupied cells at most `reach` columns and rows away."""
     rows, columns = grid.occupied.shape
     legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
     legal[: rows * columns] = ~grid.occupied[::-1].ravel()
@@ -416,9 +414,7 @@ def _cost(genes, cells, curve, rules, scratch):
 
 @allocation_free
 def _safety_term(bad, clearance, safety_distance):
-    """How far the path undercuts the safety distance, from 0 to 1 (ma2020, eq. 14; 1 for a path
-    that collides).
-    """
+    """How far the path undercuts the safety distance: 0 to 1 (ma2020, eq. 14; 1 if it collides)."""
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
         return 0.0
     return 1.0 if bad > 0 else (1.0 - clearance / safety_distance) ** 2

@@ -293,9 +293,7 @@ def _same(cells, others, first, last):
 
 @allocation_free
 def _mutate(rng, genes, bits, probability, mutation):
-    """Complement random bits of a chromosome in place (song2016, Section III-E describes
-    `one_bit`).
-    """
+    """Complement random bits of a chromosome in place (song2016, Section III-E: `one_bit`)."""
     if mutation == Mutation.one_bit:
         if rng.random() < probability:
             complement_bit(genes, integer(rng, 0, bits * len(genes)), bits)

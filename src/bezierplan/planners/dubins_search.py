@@ -89,9 +89,7 @@ _HALVINGS = 8
 
 
 class Settings(NamedTuple):
-    """What the robot can do, and how it stands at both ends; without a heading there, any is
-    right.
-    """
+    """What the robot can do, and how it stands at both ends; without a heading, any is right."""
 
     turning_radius: Annotated[
         float,
@@ -195,9 +193,7 @@ def searched(
 def _answer(
     problem: Problem, pieces: np.ndarray | None, expanded: int, stop: str, blocked: Region
 ) -> Plan:
-    """The answer with a path of pieces (n, 4, 2), relative to the region's origin, or without
-    one.
-    """
+    """The answer with a path of pieces (n, 4, 2), relative to the region's origin, or without."""
     told = {"evaluations": 1 + expanded, "stop": stop, "extra": {"expanded": expanded}}
     if pieces is None:
         return Plan(None, math.inf, claimed_feasible=False, history=np.array([math.inf]), **told)
@@ -382,9 +378,7 @@ def _free_word(a, b, radius, most, blocked, words, pieces):
 
 @compiled
 def _chain(poses, radius, most, blocked):
-    """The pieces (n, 4, 2) of free words from pose to pose; none if there is not one between two of
-    them.
-    """
+    """The pieces (n, 4, 2) of free words from pose to pose; none if one of them is missing."""
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
     chain = np.empty(((len(poses) - 1) * MOST_PIECES, 4, 2))
     total = 0
@@ -478,9 +472,7 @@ def _drive(pose, turn, step, radius, reached):
 
 @allocation_free
 def _key(pose, step, headings):
-    """The number of a pose's cell and heading; cells are told apart up to a million steps from the
-    origin.
-    """
+    """The number of a pose's cell and heading; unique up to a million steps from the origin."""
     side = _CELL * step
     column, row = math.floor(pose[0] / side), math.floor(pose[1] / side)
     heading = round(pose[2] / math.tau * headings) % headings
@@ -529,9 +521,7 @@ def _pulled_tight(
 
 
 def _tighter(best: np.ndarray, poses: np.ndarray, radius: float, blocked: Region) -> np.ndarray:
-    """The pieces of a path pulled tight between poses (n, 3) along it, as long as it becomes
-    shorter.
-    """
+    """The pieces of a path pulled tight between poses (n, 3) along it while it gets shorter."""
     length = _length(best)
     for _ in range(_ROUNDS):
         few = _shortcut(poses, radius, blocked)
@@ -627,9 +617,7 @@ def _move(poses, radius, blocked):
 
 @compiled
 def _through(poses, i, radius, blocked, words, pieces, limit):
-    """Length of the shortest free words to a pose and from it; infinite if they are not below a
-    limit.
-    """
+    """Length of the shortest free words to a pose and from it; infinite if not below a limit."""
     total = 0.0
     for k in range(i - 1, i + 1):
         words_between(poses[k], poses[k + 1], radius, words)

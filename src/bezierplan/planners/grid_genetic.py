@@ -132,9 +132,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def _turns(column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Whether (n,) a cell of a path is its first, its last, or one at which the direction
-    changes.
-    """
+    """Whether (n,) a cell of a path is its first, its last, or one where the direction changes."""
     steps = np.column_stack([np.diff(column), np.diff(row)])
     inner = (steps[1:] != steps[:-1]).any(axis=1)
     return np.concatenate([[True], inner, [True]])[-len(column) :]

@@ -457,9 +457,7 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 
 @allocation_free
 def _first_path(rng, path, target, free, ground, rules):
-    """A random path, written after its start; returns its number of nodes, or 0 if none was
-    found.
-    """
+    """A random path, written after its start; returns its number of nodes, 0 if none was found."""
     for _ in range(_MOST_TRIES):
         length = (
             _walk(rng, path, target, free, ground)

@@ -151,9 +151,7 @@ def _free_points(
     high: np.ndarray,
     is_free: Callable[[np.ndarray], np.ndarray],
 ) -> np.ndarray:
-    """Points (nodes or fewer, 2), uniform in the free part of a field; fewer if almost none of it
-    is free.
-    """
+    """Points (nodes or fewer, 2), uniform in a field's free part; fewer if almost none is free."""
     free = np.empty((0, 2))
     tries = 0
     while len(free) < nodes and tries < _MOST_DRAWS * nodes:

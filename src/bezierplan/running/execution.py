@@ -78,9 +78,7 @@ class UnfitAnswer(watchdog.PlannerFailure):
 
 
 def accepted(plan: Any, problem: Problem, chunk: Chunk, condition: Condition, repeat: int) -> Plan:
-    """A planner's answer as plain values (`answer.accepted`). Raises UnfitAnswer if it is not valid
-    for the problem.
-    """
+    """A planner's answer as plain values. Raises UnfitAnswer if it is not valid for the problem."""
     try:
         return answer.accepted(
             plan, problem, {*TAKEN, *settings_in(chunk, condition), *condition.values}
@@ -101,9 +99,7 @@ def refuse_changed(loan: Loan, chunk: Chunk, condition: Condition, repeat: int) 
 
 
 def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
-    """The first columns of a row: the run's id and its parts, its place, and all settings in
-    force.
-    """
+    """The first columns of a row: the run's id and its parts, its place, all settings in force."""
     return {
         "id": run_id(chunk, condition, repeat),
         "study": chunk.study,
@@ -268,9 +264,7 @@ def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:
 def refuse_unrepeatable(
     repetitions: Iterable[dict[str, Any]], row: dict[str, Any], chunk: Chunk, deterministic: bool
 ) -> None:
-    """Raise PlannerFailure, naming the run, if repetitions of a run do not have the bits of its
-    row.
-    """
+    """Raise PlannerFailure, naming the run, if its repetitions do not have the bits of its row."""
     for again in repetitions:
         # The text of a number tells all its bits, and unlike the number a NaN is equal to itself.
         column = next(

@@ -178,18 +178,14 @@ def serve(control: socket.socket) -> None:
 
 
 def reap(*_: Any) -> None:
-    """Take note of the children that have ended, so that their CPU time is added to that of this
-    process's children.
-    """
+    """Note which children ended: their CPU time is added to that of this process's children."""
     with contextlib.suppress(ChildProcessError):
         while os.waitpid(-1, os.WNOHANG)[0]:
             pass
 
 
 def compile_first() -> None:
-    """Compile a function, for the first one takes numba half a second more than the others, cached
-    or not.
-    """
+    """Compile a function: the first one takes numba half a second more, cached or not."""
     import numba
 
     numba.njit(lambda: 0)()

@@ -23,9 +23,7 @@ KINDS = ("grid", "circles", "polygons")
 """Kinds of workspace that planners meet."""
 
 LIMIT = 60.0
-"""Seconds that a planner's file may take to be executed, and each call of its `check` and
-`serves`.
-"""
+"""Seconds for which a planner's file may be executed, and each call of its `check` and `serves`."""
 
 MOST_EXPLAINED = 4
 """Missing settings that a message explains; of more it gives the names."""

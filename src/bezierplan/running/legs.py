@@ -1,6 +1,4 @@
-"""Way points: a problem becomes one problem from each to the next, and their answers become one
-path.
-"""
+"""Way points: a problem becomes one from each to the next, and their answers become one path."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -331,9 +329,7 @@ def check_offset(asked: float | None, kept: float, unit: str) -> None:
 
 
 def check_kept(asked: float, kept: float, unit: str) -> None:
-    """Raise ValueError if the tightest turn of a path is tighter than asked, or if there is no
-    path.
-    """
+    """Raise ValueError if a path's tightest turn is tighter than asked, or there is no path."""
     if math.isnan(kept):
         raise ValueError(
             f"turning_radius: {asked:g} {unit} asked: no path was found; expected one that can be "

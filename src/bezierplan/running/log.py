@@ -83,9 +83,7 @@ def report(log: str, line: str) -> None:
 
 
 def account(error: BaseException) -> str:
-    """The traceback of an exception, each line without control characters and of a limited
-    length.
-    """
+    """The traceback of an exception, each line of limited length and without control characters."""
     lines = "".join(traceback.format_exception(error, limit=-MOST_FRAMES)).splitlines()
     shown = (
         lines

@@ -272,9 +272,7 @@ def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -
 
 
 def read(file: str) -> dict[str, Problem]:
-    """The problems of a file, by name, in file order. Problems in the same workspace share one
-    object.
-    """
+    """The problems of a file, by name, in file order; those in one workspace share its object."""
     import pyarrow.parquet as parquet
 
     table = parquet.read_table(file).to_pylist()

@@ -120,9 +120,7 @@ def tasks(folder: File) -> list[Task]:
 
 
 def _problems_of(experiment: File, folder: File) -> File:
-    """The file of the problems of an experiment's runs; at `extended` an experiment may be that of
-    `full`.
-    """
+    """The file of the problems of an experiment's runs; at `extended` it may be that of `full`."""
     study = experiment.relative_to(folder).parts[0]
     places = [
         scale / study / "problems" / f"{experiment.name}.parquet"
@@ -137,9 +135,7 @@ def _problems_of(experiment: File, folder: File) -> File:
 def verify(
     tasks: list[Task], processes: int, told: Callable[[str], None] = lambda line: None
 ) -> Verdict:
-    """The verdict on some tasks, in several processes. told: gets a line of progress now and
-    then.
-    """
+    """The verdict on tasks, in several processes. told: gets a line of progress now and then."""
     # The largest first, so that no process ends long after the others: bounds take longest.
     largest = sorted(
         tasks,
@@ -393,9 +389,7 @@ def _twice(chunks: list[_Chunk]) -> list[Fault]:
 
 
 def _differing(chunk: _Chunk, again: dict[str, tuple[np.ndarray, Any]]) -> Iterator[Fault]:
-    """The values of a chunk that differ from those computed again, by column, given with their
-    tolerance.
-    """
+    """A chunk's values that differ from those computed again, by column, with its tolerance."""
     for name, (values, tolerance) in again.items():
         stored = chunk.numbers[name]
         plain = bool if name in _FLAGS else float

@@ -24,9 +24,7 @@ _RUNS = re.compile(r"(?P<name>[^/]+/runs/.+)/(?P<chunk>\d+)")
 
 
 class Job(NamedTuple):
-    """A job by its log file. chunk: number of the block of repeats, or None for a job that runs no
-    planner.
-    """
+    """A job by its log file. chunk: number of the block of repeats, None if no planner runs."""
 
     scale: str
     name: str
@@ -106,9 +104,7 @@ def output_of(file: Path) -> str:
 
 
 def planner_times(outputs: Iterable[Path]) -> tuple[float, float] | None:
-    """Seconds of the CPU and of the clock that the runs of a job took; None for a job without
-    runs.
-    """
+    """Seconds of the CPU and of the clock that a job's runs took; None for a job without runs."""
     import pyarrow as pa
     import pyarrow.parquet as parquet
 

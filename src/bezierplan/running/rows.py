@@ -45,9 +45,7 @@ def table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
 
 
 def fault(schema: pa.Schema, *declared: type) -> str:
-    """The first declared column that a file lacks or has in another type, in words; empty if there
-    is none.
-    """
+    """The first declared column that a file lacks or has in another type, in words, or empty."""
     for name, (kind, _) in columns.declared(*declared).items():
         if name not in schema.names:
             return f"no column {name}"

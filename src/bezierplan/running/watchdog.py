@@ -90,9 +90,7 @@ def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
 
 
 class PlannerFailure(RuntimeError):
-    """What a planner does that no result may come from; the message is one line that names the
-    planner and its run.
-    """
+    """What a planner does that no result may come from; the message names planner and run."""
 
 
 @contextmanager

@@ -90,9 +90,7 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def read(file: Path, location: str | None = None) -> Any:
-    """The content of a YAML file. Raises Fault, beginning with the place (by default the file's
-    name).
-    """
+    """The content of a YAML file. Raises Fault, beginning with the place (default: file name)."""
     return parse(text_of(file, location or str(file)), location or str(file))
 
 

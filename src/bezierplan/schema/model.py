@@ -123,9 +123,7 @@ J = TypeVar("J")
 
 
 def job(kind: type[J], params: Any) -> J:
-    """A job as the named tuple that it was before `plain`. Raises ValidationError for any other
-    content.
-    """
+    """A job as the named tuple from before `plain`. Raises ValidationError for other content."""
     return TypeAdapter(kind).validate_python(params)
 
 
@@ -138,9 +136,7 @@ def parsed(model: type[M], content: Any, location: str) -> M:
 
 
 def first_fault(error: ValidationError) -> list[str]:
-    """The fault that is reported of several: the keys that lead to it, and the end of the
-    message.
-    """
+    """The fault that is reported of several: the keys that lead to it, and its message's end."""
     # After a key that is itself wrong, pydantic puts `[key]`.
     faults = [
         ([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None))
@@ -227,9 +223,7 @@ LONGEST_LINE = 600
 
 
 def is_line(entry: Any, longest: int = LONGEST_LINE) -> bool:
-    """Whether it is one line of printable text that is not blank, with at most so many
-    characters.
-    """
+    """Whether it is one line of printable text that is not blank, of at most so many characters."""
     return (
         isinstance(entry, str)
         and bool(entry.strip())

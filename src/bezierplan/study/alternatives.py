@@ -122,9 +122,7 @@ def _compared(study: Study, claim: Claim, check: Check) -> set[str]:
 
 
 def experiments_of_claims(claims: list[Claim]) -> list[str]:
-    """Names of the experiments whose runs decide claims, each once, in order; variants may name
-    more.
-    """
+    """Names of the experiments whose runs decide claims, once each; variants may name more."""
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
     named += itertools.chain.from_iterable(
         one_or_list(value) for claim in claims for value in claim.variants.get("experiment", [])

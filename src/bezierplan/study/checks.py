@@ -250,9 +250,7 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
 
 
 def _built(study: Study, name: str) -> Problem:
-    """A problem as planners see it, in the first layout if the workspace is random. Raises
-    ValueError.
-    """
+    """A problem as planners see it, in the first layout if there are several. Raises ValueError."""
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
     described = Descriptions(

@@ -148,9 +148,7 @@ class Study:
         return sorted({relative(file) for each in named for file in each})
 
     def compared(self) -> dict[str, Pivot]:
-        """The tables of runs, which are compared with published numbers; for the others see
-        `listing_job`.
-        """
+        """The tables of runs, which are compared with published numbers; see also `listing_job`."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
     def published_file(self, table: str) -> str | None:

@@ -349,9 +349,7 @@ def _type(values: list[Any]) -> str:
 
 
 def fits(row: Row, where: dict[str, Any]) -> bool:
-    """Whether a run matches the conditions of a selection, as far as that is known before it is
-    run.
-    """
+    """Whether a run matches the conditions of a selection, as far as known before it is run."""
     for column, wanted in where.items():
         outcome = (
             column in METRICS

@@ -310,9 +310,7 @@ def _paper(key: str) -> PaperCited | None:
 def _experiments(
     studies: Studies, scale: str, key: str, made: list[str], root: str
 ) -> dict[str, ExperimentShown]:
-    """The experiments whose runs the page shows: methods other than baselines, repeats, and
-    files.
-    """
+    """The experiments whose runs the page shows: methods but baselines, repeats, and files."""
     study, experiments = studies[key], {}
     for name, files in _experiments_behind(studies, scale, key, made).items():
         if files.chunks:

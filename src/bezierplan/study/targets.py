@@ -440,9 +440,7 @@ def alternative_inputs(
 
 
 def alternative_params(studies: Studies, scale: str, study: str, alternative: str) -> dict:
-    """Params of an alternative: `chunks`, the numbers and jobs of the chunks of runs that it
-    changes.
-    """
+    """Params of an alternative: `chunks`, numbers and jobs of the chunks that it changes."""
     content, tried = studies[study], alternatives.with_alternative(studies[study], alternative)
     claims = alternatives.headline_claims(content, alternative)
     changed = alternatives.methods_changed(content, alternative)

@@ -99,9 +99,7 @@ def _simplified(points: np.ndarray) -> np.ndarray:
 
 
 def _turns(polygon: np.ndarray) -> np.ndarray:
-    """The angle (n,) by which the boundary turns to the left at each corner; at a spike a half
-    turn.
-    """
+    """The angle (n,) by which the boundary turns left at each corner; at a spike a half turn."""
     arriving = polygon - np.roll(polygon, 1, axis=0)
     leaving = np.roll(polygon, -1, axis=0) - polygon
     return np.arctan2(

@@ -16,9 +16,7 @@ Walls = tuple[float, float, float, float]
 
 
 def walls_of(bounds: list[float]) -> Walls:
-    """The walls of a field, from a description's bounds. Raises ValueError for bounds without
-    room.
-    """
+    """The walls of a field, from a description's bounds. Raises ValueError if they have no room."""
     x_low, x_high, y_low, y_high = map(float, bounds)
     check_bounds((x_low, x_high, y_low, y_high))
     return x_low, x_high, y_low, y_high

@@ -37,9 +37,7 @@ _SHAPES = {
     "circle": ("r",),
     "ellipse": ("rx", "ry"),
 }
-"""Elements that are obstacles, and the lengths of which none may be 0 for the element to be
-drawn.
-"""
+"""Elements that are obstacles, and the lengths without which an element is not drawn."""
 
 _PLACES = {"rect": ("x", "y", "rx", "ry"), "circle": ("cx", "cy"), "ellipse": ("cx", "cy")}
 _GROUPS = ("svg", "g", "a")
@@ -71,9 +69,7 @@ _SIDES = 10_000
 
 
 class _Style(NamedTuple):
-    """What an element has from those around it: properties by name, and the words of all
-    transforms.
-    """
+    """What an element has from those around it: properties by name, and all transforms' words."""
 
     properties: dict[str, str]
     transform: str
@@ -244,9 +240,7 @@ def _rings(name: str, element: ET.Element, style: _Style, flatness: float) -> li
 
 
 def _distinct(ring: np.ndarray, apart: float) -> np.ndarray:
-    """A ring (n, 2) without points that are as good as the one before: arcs end where rounding puts
-    them.
-    """
+    """A ring (n, 2) without points as good as the one before: arcs end where rounding puts them."""
     ring = ring[np.append(True, np.hypot(*np.diff(ring, axis=0).T) > apart)]
     if math.dist(ring[0], ring[-1]) <= apart:
         ring[-1] = ring[0]
@@ -314,9 +308,7 @@ def _path(name: str, element: ET.Element) -> Any:
 
 
 def _sides(name: str, segment: Any, flatness: float) -> int:
-    """How many sides a polygon needs for a curve, by the largest second derivative or the largest
-    radius.
-    """
+    """How many sides a polygon needs for a curve, by its largest second derivative or radius."""
     import svgelements
 
     if isinstance(segment, svgelements.Arc):

@@ -305,9 +305,7 @@ def _is_blocked_in_polygons(x, y, region):
 
 @allocation_free
 def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
-    """Smallest and largest distance of control points from the line of an edge, positive on its
-    free side.
-    """
+    """Smallest and largest distance of control points from an edge's line, positive where free."""
     low = math.inf
     high = -math.inf
     for x, y in points:

@@ -381,9 +381,7 @@ def _hull(points, hull):
 
 @allocation_free
 def _left_of(a, b, x, y):
-    """Twice the area of the triangle of a, b and a point, positive if the point lies to the
-    left.
-    """
+    """Twice the area of the triangle of a, b and a point, positive if that lies to the left."""
     return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
 
 

@@ -113,9 +113,7 @@ def direction(points: np.ndarray) -> tuple[float, float]:
 
 @allocation_free
 def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
-    """Smallest and largest component of the control points in a direction, relative to the first
-    one.
-    """
+    """Smallest and largest component of control points in a direction, relative to the first."""
     low = high = 0.0
     for i in range(1, len(points)):
         component = (points[i, 0] - points[0, 0]) * x + (points[i, 1] - points[0, 1]) * y

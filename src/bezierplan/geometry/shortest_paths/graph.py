@@ -40,9 +40,7 @@ def moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
 
 
 def along(points: np.ndarray, nodes: np.ndarray) -> Bound:
-    """The polyline along some of the points (n, 2), without repeated ones; no path without
-    nodes.
-    """
+    """The polyline along some of the points (n, 2), without repetitions; no path without nodes."""
     if not len(nodes):
         return no_path()
     path = points[nodes]

@@ -48,9 +48,7 @@ def _put(words, k, first, turn, t, middle, p, last, q, radius):
 
 @allocation_free
 def words_between(a: np.ndarray, b: np.ndarray, radius: float, words: np.ndarray) -> None:
-    """Fill in the words (6, 8) from a pose to another; those that do not exist have an infinite
-    length.
-    """
+    """Fill in the words (6, 8) from a pose to another; those that do not exist are infinite."""
     for k in range(WORDS):
         words[k, 7] = np.inf
     x, y = b[0] - a[0], b[1] - a[1]

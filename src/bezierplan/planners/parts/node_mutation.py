@@ -169,9 +169,7 @@ def _ref21(rng, path, ground, rules, neighbours):
 
 @allocation_free
 def _towards(start, cell, target, columns, same_signs):
-    """Whether the direction from a cell to the target agrees with that from the start to the
-    target.
-    """
+    """Whether a cell's direction to the target agrees with that from the start to the target."""
     across, up = target % columns - cell % columns, target // columns - cell // columns
     whole_across = target % columns - start % columns
     whole_up = target // columns - start // columns

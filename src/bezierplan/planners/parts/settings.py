@@ -168,9 +168,7 @@ def filled(settings: type[T], values: dict[str, Any]) -> T:
 
 @lru_cache(maxsize=256)
 def _filled(settings: type[T], values: tuple[tuple[str, Any], ...], types: tuple[type, ...]) -> T:
-    """`filled`, once for all runs with the same settings. types: of the values, since 1, 1.0 and
-    true are equal.
-    """
+    """`filled`, once for all runs with the same settings. types: tells 1, 1.0 and true apart."""
     declared = _declared(settings)
     return settings(
         **{
@@ -181,9 +179,7 @@ def _filled(settings: type[T], values: tuple[tuple[str, Any], ...], types: tuple
 
 
 def in_cells(settings: T, cell: float) -> T:
-    """The same settings for kernels that count in cells: what is in units is divided by the side of
-    a cell.
-    """
+    """The same settings for kernels that count in cells: units are divided by a cell's side."""
     lengths = [
         name
         for name, each in _declared(type(settings)).items()

@@ -110,9 +110,7 @@ def way_out(grid: Grid, way: Way) -> float:
 
 
 def _crossings(begin: float, end: float) -> np.ndarray:
-    """The shares of a way from one coordinate to another, in cells, at which it crosses a grid
-    line.
-    """
+    """The shares of a way between two coordinates, in cells, at which it crosses a grid line."""
     lines = np.arange(math.floor(min(begin, end)) + 1, math.ceil(max(begin, end)))
     return (lines - begin) / (end - begin) if len(lines) else np.empty(0)
 

@@ -258,9 +258,7 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
 
 @allocation_free
 def _leave(begins, node, interval, end, hurried):
-    """The step at which a place's safe interval ends; 0 if the robot must leave its first one at
-    once.
-    """
+    """The step at which a place's safe interval ends; 0 if the first one must be left at once."""
     leave = interval
     while leave < end and begins[node, leave] == interval and not (hurried and interval == 0):
         leave += 1

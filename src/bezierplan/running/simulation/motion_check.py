@@ -78,9 +78,7 @@ def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
 
 @compiled
 def _approach(points, times, centres, velocities, walls, radii, tolerance):
-    """Time of the first collision, infinite without one, and least clearance (steps,) in each
-    step.
-    """
+    """Time of the first collision, infinite without, and least clearance (steps,) in each step."""
     first_step, last_step = int(np.floor(times[0])), int(np.ceil(times[-1]))
     clearance = np.full(max(last_step - first_step, 1), np.inf)
     collision_at = np.inf

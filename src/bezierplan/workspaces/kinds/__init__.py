@@ -165,9 +165,7 @@ def kind_of(description: dict) -> ModuleType:
 
 @cache
 def kinds() -> dict[str, type[Workspace]]:
-    """Kind of workspace -> the keys of its descriptions; fixed ones first, then random ones, then
-    worlds.
-    """
+    """Kind of workspace -> the keys of its descriptions; fixed ones, random ones, then worlds."""
     names = [file.stem for file in Path(__file__).parent.glob("[!_]*.py")]
     found = {name: kind_of({"kind": name}).Options for name in names}
     return dict(
@@ -185,9 +183,7 @@ def file_keys(options: type[Workspace]) -> list[str]:
 
 
 def text(description: dict, key: str, folder: Path) -> str:
-    """The text of the file that a key of a description names. Raises ValueError, naming key and
-    file.
-    """
+    """The text of the file that a key of a description names. Raises ValueError with both names."""
     with naming(f"{key}: {description[key]}"):
         return read_text(folder / description[key])
 

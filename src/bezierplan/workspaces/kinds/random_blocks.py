@@ -100,7 +100,5 @@ def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: in
 
 @cache
 def _rectangle(height: int, width: int, stride: int) -> int:
-    """The set of the cells of a rectangle whose lower left cell is the first; `stride` cells make a
-    row.
-    """
+    """The cells of a rectangle whose lower left cell is the first; `stride` cells make a row."""
     return sum(((1 << width) - 1) << (row * stride) for row in range(height))

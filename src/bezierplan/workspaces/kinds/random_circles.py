@@ -65,7 +65,5 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
 
 
 def first(circles: Circles, count: int) -> Circles:
-    """The first circles of a layout, so that layouts with different numbers of circles are
-    nested.
-    """
+    """The first circles of a layout: layouts with different numbers of circles are nested."""
     return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)

@@ -30,9 +30,7 @@ class Options(RandomMoving):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """Circles on a field, which planners see as cells. Raises ValueError if no free place is
-    found.
-    """
+    """Circles on a field, which planners see as cells. Raises ValueError if no place is free."""
     side, count = problem["side"], problem["obstacles"]
     walls = moving.walls_of([0.0, side, 0.0, side])
     ends = [*problem["start"], *problem["target"]]
