@@ -143,7 +143,7 @@ class Settings(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+    check_pairs(settings)
     check_curve(settings, "control_points")
     if settings["length_weight"] == 0:
         raise ValueError(

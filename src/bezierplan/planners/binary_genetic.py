@@ -94,7 +94,7 @@ class Settings(NamedTuple):
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_curve(settings, "genes")
-    check_pairs(settings["population"])
+    check_pairs(settings)
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
         raise ValueError("spacing: arc_length; only a polyline has it, other curves need parameter")
     if settings["cut"] == "gene" and settings["genes"] == 1:

@@ -51,9 +51,7 @@ class Settings(NamedTuple):
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
 
 
-def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+check = check_pairs
 
 
 @with_settings(Settings)

@@ -203,7 +203,7 @@ class Found(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+    check_pairs(settings)
     if settings["first_points"] > MOST_POINTS:
         raise ValueError(
             f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control "

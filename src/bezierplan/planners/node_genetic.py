@@ -168,7 +168,7 @@ class _Found(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+    check_pairs(settings)
     if settings["friction"] == 0:
         raise ValueError(
             "friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed"

@@ -12,13 +12,14 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.random_integers import integer
 
 
-def check_pairs(population: int) -> None:
+def check_pairs(settings: dict) -> None:
     """Raise ValueError, naming the setting and what is expected, for a population that cannot be
     crossed in pairs.
     """
-    if population % 2:
+    if settings["population"] % 2:
         raise ValueError(
-            f"population: {population}; parents are crossed in pairs, so an even number is needed"
+            f"population: {settings['population']}; parents are crossed in pairs, so an even "
+            "number is needed"
         )
 
 
