@@ -249,16 +249,9 @@ def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
     return length
 
 
-def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
-    """Length of a polyline."""
-    return sum_of_steps(x, y, np.empty(_BLOCK))
-
-
 @allocation_free
 def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
-    """`polyline_length`, for kernels. steps: scratch, at least as many numbers as in a block or as
-    steps.
-    """
+    """Length of a polyline. steps: scratch, at least as many numbers as in a block or as steps."""
     # Square roots and their sum are computed in two loops, so that the first can use vector
     # instructions, and the order of the sum stays as written; by blocks, so that a processor takes
     # the roots of one block while it still adds those of the one before.
