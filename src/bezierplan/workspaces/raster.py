@@ -75,10 +75,7 @@ def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
     """
     import shapely
 
-    left, right, bottom, top = polygons.bounds
-    free = shapely.box(left, bottom, right, top).difference(
-        shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles])
-    )
+    free = polygons.free()
     rows, columns = grid.occupied.shape
     x, y = np.meshgrid(np.arange(columns), np.arange(rows))
     low = grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE)

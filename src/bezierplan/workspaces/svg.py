@@ -18,7 +18,7 @@ import numpy as np
 from bezierplan.workspaces import geojson
 from bezierplan.workspaces.geojson import Shape
 from bezierplan.workspaces.limits import FARTHEST, check_bounds, check_numbers
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.polygons import Polygons, parts
 from bezierplan.workspaces.text_file import number
 
 if TYPE_CHECKING:
@@ -344,11 +344,7 @@ def _filled(rings: list[np.ndarray], even_odd: bool) -> list["shapely.Polygon"]:
         winding = sum(_winding(ring, point.x, point.y) for ring in closed)
         if winding % 2 if even_odd else winding:
             inside.append(face)
-    return [
-        part
-        for part in shapely.get_parts(shapely.union_all(inside))
-        if isinstance(part, shapely.Polygon)
-    ]
+    return parts(shapely.union_all(inside))
 
 
 def _winding(ring: np.ndarray, x: float, y: float) -> int:
