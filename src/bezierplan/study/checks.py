@@ -696,8 +696,8 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
                 study.accepted(method).keys() - {assumption.setting},
                 f"{location}: with: {method}",
             )
-    for name, (identity, value) in alternatives(study).items():
-        if identity == assumption.id:
+    for name, (of, value) in alternatives(study).items():
+        if of.id == assumption.id:
             changed = with_alternative(study, name)
             for method in methods_changed(study, name):
                 module = planner_module(study.planner(method))
