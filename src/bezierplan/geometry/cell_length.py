@@ -300,9 +300,7 @@ def length8(path: Path, grid: Grid) -> float:
 
 
 def _is_cell_path(path: Path, grid: Grid) -> bool:
-    """Whether a path is a polyline through centres of cells, whose legs run along rows, columns and
-    diagonals.
-    """
+    """Whether a path is a polyline through centres of cells along rows, columns and diagonals."""
     if path.curve != "polyline":
         return False
     points = grid.in_cells(path.points) - 0.5

@@ -75,9 +75,7 @@ def _largest(velocities):
 
 @allocation_free
 def _at_ends(velocities, width):
-    """Curvature at both ends of a part of a piece, which is the given share of it; 0 where it
-    stands still there.
-    """
+    """Curvature at both ends of a part, the given share of a piece; 0 where it stands still."""
     m = len(velocities) - 1
     return _at_end(velocities[0], velocities[1], m / width), _at_end(
         velocities[m], velocities[m - 1], m / width

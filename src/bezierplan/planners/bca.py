@@ -290,9 +290,7 @@ def _sampled(problem: Problem, curve: str, control_points: int, samples: int) ->
 
 @cache
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) at the
-    samples of a curve.
-    """
+    """Weights of both ends (2, samples) and of free control points (n, samples) of a curve."""
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
     # A copy even where nothing is left, since numba would compile all kernels once more for an
     # array that is read-only.
@@ -469,9 +467,7 @@ def _collisions(x, y, occupied):
 
 @allocation_free
 def _inside(value, cell):
-    """Whether a coordinate lies between the two grid lines of its column or row; rounding alone
-    must not decide.
-    """
+    """Whether a coordinate is between the grid lines of its cell; rounding must not decide."""
     return cell + ON_LINE < value < cell + 1 - ON_LINE
 
 
@@ -509,9 +505,7 @@ def _cuts(x, y, x_end, y_end, occupied):
 
 @allocation_free
 def _clearance(x, y, cells):
-    """Minimum distance in cells of the samples to the occupied cells listed as near to theirs;
-    infinite if there are none.
-    """
+    """Minimum distance in cells of samples to the occupied cells near theirs, or infinite."""
     rows, columns = cells.occupied.shape
     least = np.inf
     for s in range(len(x)):

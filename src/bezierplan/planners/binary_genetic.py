@@ -355,9 +355,7 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch):
 
 @compiled
 def _measure_by_arc_length(cells, occupied, places, samples):
-    """Length in cells of a polyline and the number of samples, equally spaced along it, that lie in
-    occupied cells.
-    """
+    """Length in cells of a polyline, and how many equally spaced samples lie in occupied cells."""
     points = len(cells)
     x, y, passed = np.empty(points), np.empty(points), np.zeros(points)
     for p in range(points):

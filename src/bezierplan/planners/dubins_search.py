@@ -213,9 +213,7 @@ def _answer(
 def _searches(
     problem: Problem, radius: float, only_radius: bool
 ) -> Iterator[tuple[float, float, int]]:
-    """The searches that follow each other: the radius that is driven, the factor of its steps, and
-    the most places.
-    """
+    """The searches in turn: the radius that is driven, the factor of its steps, the most places."""
     if only_radius:
         yield radius, *_WIDER
         return
@@ -558,9 +556,7 @@ def _places(pieces: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 @compiled
 def _shortcut(poses, radius, blocked):
-    """Those of some poses (n, 3) along a path over which a chain of free words is shortest; none if
-    there is no such chain.
-    """
+    """Those of poses (n, 3) along a path with the shortest chain of free words, if there is one."""
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
     count = len(poses)
     length, came_from = np.full(count, np.inf), np.full(count, -1)
@@ -593,9 +589,7 @@ def _shortcut(poses, radius, blocked):
 
 @compiled
 def _move(poses, radius, blocked):
-    """Move and turn each pose (n, 3) between the ends as long as the words to it and from it become
-    shorter and are free.
-    """
+    """Move and turn each pose (n, 3) between the ends while its words get shorter and are free."""
     words, pieces, before = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2)), np.empty(3)
     share = 1.0
     for _ in range(_HALVINGS):

@@ -139,9 +139,7 @@ def _turns(column: np.ndarray, row: np.ndarray) -> np.ndarray:
 
 
 def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
-    """Points from start to target through centres of cells; start and target lie in the first and
-    last of these cells.
-    """
+    """Points from start to target, which lie in the first and last cell, through cells' centres."""
     points = [problem.start, *centres.tolist(), problem.target]
     # An end that coincides with a centre, up to rounding, replaces it.
     first, last = (

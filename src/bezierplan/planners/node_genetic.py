@@ -274,9 +274,7 @@ def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
 
 
 def serves(problem: Problem) -> None:
-    """Raise ValueError, naming the end and what is expected, unless start and target are centres of
-    cells.
-    """
+    """Raise ValueError, naming the end, unless start and target are centres of cells."""
     for end in ("start", "target"):
         _cell_at(problem.workspace, end, getattr(problem, end))
 
@@ -298,9 +296,7 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
 
 @compiled
 def _search(starts, moves, ground, start, target, free, drawn, rules):
-    """The genetic algorithm. free: the free cells without start and target; drawn: the cells from
-    which random mutation draws.
-    """
+    """The genetic algorithm. free: free cells without the ends; drawn: for random mutation."""
     population = rules.population
     paths = np.empty((population, rules.most_nodes + 2), dtype=np.int64)
     lengths = np.empty(population, dtype=np.int64)
@@ -424,9 +420,7 @@ def join(
 
 @allocation_free
 def _evaluate(path, ground, penalty):
-    """Energy of a path plus its penalty, and the number of occupied cells that its edges meet
-    (meledje, eqs. 1 to 3).
-    """
+    """Energy of a path plus penalty, and occupied cells its edges meet (meledje, eqs. 1 to 3)."""
     energy = 0.0
     for k in range(len(path) - 1):
         energy += edge_energy(ground, path[k], path[k + 1])

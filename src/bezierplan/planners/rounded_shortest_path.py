@@ -75,9 +75,7 @@ class Turns(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """How round the path is. Where there is no room, both are smaller; the extra columns report by
-    how much.
-    """
+    """How round the path is. Without room, both are smaller; extra columns report by how much."""
 
     turning_radius: Annotated[
         float,

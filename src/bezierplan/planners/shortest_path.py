@@ -1,6 +1,4 @@
-"""A baseline: the exact shortest path, which no other planner can beat
-(`shortest_paths.shortest_path`).
-"""
+"""A baseline: the exact shortest path, which none can beat (`shortest_paths.shortest_path`)."""
 
 import math
 

@@ -36,9 +36,7 @@ class Chunk(NamedTuple):
     settings: dict[str, Any]
     """Those of the method."""
     problems: dict[str, dict[str, Any]]
-    """By name, the problem's workspace and, if present, its layout, its obstacles, and the settings
-    that belong to it.
-    """
+    """By name, the problem's workspace and, if present, layout, obstacles and their settings."""
     vary: dict[str, list]
     """Setting or preset -> values; every combination of problems and values is a condition."""
     presets: dict[str, dict[str, dict[str, Any]]]

@@ -268,9 +268,7 @@ def _types(*tables: type) -> dict[str, str]:
 
 
 PLANNED = _types(Planned)
-"""Columns of every runs table that are known before a run, beside the settings, with the types of
-their values (`TYPES`).
-"""
+"""Columns of every runs table known before a run, beside settings, with their types (`TYPES`)."""
 
 RESULTS = _types(Outcome)
 """Likewise: those that a run finds out."""

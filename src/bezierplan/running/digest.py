@@ -38,9 +38,7 @@ COMPUTING = ("numba", "llvmlite", "numpy", "scipy", "shapely", "pandas", "pyarro
 
 
 class _Module(NamedTuple):
-    """A module by its dotted name, and the folder in which that name is looked up: this package's,
-    or that of a file outside it.
-    """
+    """A module by its dotted name, and the folder in which it is looked up: ours or another."""
 
     home: Path
     name: str

@@ -55,9 +55,7 @@ def settings_in(chunk: Chunk, condition: Condition) -> dict[str, Any]:
 
 
 def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Generator:
-    """The random generator of a run, seeded from names only, so that nothing depends on order,
-    cores or chunks.
-    """
+    """The random generator of a run, seeded from names only, not from order, cores or chunks."""
     layout = chunk.problems[condition.problem].get("layout", "")
     parts = {
         "own": [condition.name, chunk.method],

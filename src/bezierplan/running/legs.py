@@ -232,9 +232,7 @@ def _driven(
     blocked: Region,
     settings: dict[str, Any],
 ) -> list[Plan]:
-    """A search on each leg, which begins with the heading in which the one before ends; up to the
-    first one that finds nothing.
-    """
+    """A search on each leg, begun as the last one ends, up to the first that finds nothing."""
     answers: list[Plan] = []
     heading = settings["start_heading"]
     for number, (part, bound) in enumerate(zip(parts, bounds), start=1):
@@ -250,18 +248,14 @@ def _driven(
 
 
 def kept(planner: str, plan: Plan, settings: dict[str, Any]) -> float:
-    """Radius of a path's tightest turn, by a planner with a turning radius; nan of others and
-    without a path.
-    """
+    """Radius of a path's tightest turn; nan without a path, and of planners without a radius."""
     if planner == ROUNDED:
         return plan.extra["least_radius"]
     return settings["turning_radius"] if planner == DRIVEN and plan.path is not None else math.nan
 
 
 def joined(answers: Sequence[Plan]) -> Plan:
-    """One answer to all legs. At a way point where the direction changes, a corner is left, which
-    counts as a turn.
-    """
+    """One answer to all legs. A corner that is left at a way point counts as a turn."""
     if len(answers) == 1:
         return answers[0]
     paths = [answer.path for answer in answers]
@@ -318,9 +312,7 @@ def is_kept(asked: float, kept: float) -> bool:
 
 
 def check_offset(asked: float | None, kept: float, unit: str) -> None:
-    """Raise ValueError if a path comes closer to a corner than the offset that was asked for. kept:
-    nan where none was.
-    """
+    """Raise ValueError if a path does not keep the offset asked for. kept: nan where none was."""
     if asked and not math.isnan(kept) and not is_kept(asked, kept):
         raise ValueError(
             f"offset: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that can be "

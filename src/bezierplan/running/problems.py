@@ -192,9 +192,7 @@ _SAME_OPTIMUM = 1e-3
 
 
 def scenario(description: dict, number: int, workspace: Workspace, folder: Path) -> dict:
-    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length
-    differs from ours.
-    """
+    """Start and target of a scenario. Raises ValueError if it does not fit our map or length."""
     from bezierplan.geometry import shortest_paths
 
     assert isinstance(workspace, Grid)  # only a kind of grids has scenarios

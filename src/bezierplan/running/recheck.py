@@ -46,9 +46,7 @@ _TRACE = 1e-3
 
 
 class Fault(NamedTuple):
-    """A stored value that differs from what follows from the points. run: its id, or the name of a
-    problem, or `all rows`.
-    """
+    """A stored value that the points contradict. run: its id, a problem's name, or `all rows`."""
 
     file: str
     run: str
@@ -96,9 +94,7 @@ class Verdict(NamedTuple):
 
 
 def tasks(folder: File) -> list[Task]:
-    """What there is to check below the folder of a scale. Raises FileNotFoundError if there is no
-    table of runs or of problems.
-    """
+    """What to check below a scale's folder. Raises FileNotFoundError without runs or problems."""
     experiments: dict[File, list[str]] = {}
     for file in chunk_files(folder):
         experiments.setdefault(file.parents[1], []).append(str(file))
@@ -185,9 +181,7 @@ def merged(verdicts: Iterable[Verdict]) -> Verdict:
 
 
 def write(verdict: Verdict, file: str) -> None:
-    """Write what was checked, and with which versions, as JSON. Raises ValueError with the first
-    fault if there is any.
-    """
+    """Write what was checked, and with which versions, as JSON. Raises ValueError with a fault."""
     if verdict.faults:
         raise ValueError(
             f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the "
@@ -205,9 +199,7 @@ def versions() -> dict[str, str]:
 
 
 def judged(task: Task) -> Verdict:
-    """The verdict on one task. Raises ValueError for a file that is not the table that belongs
-    there.
-    """
+    """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
     try:
         made, moving = problems.read(task.problems), worlds.read(task.problems)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):

@@ -40,9 +40,7 @@ from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_jso
 
 
 def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
-    """The drive of one run. Raises `execution.UnfitAnswer` for a plan that is not valid for the
-    problem that the robot saw.
-    """
+    """The drive of one run. Raises UnfitAnswer for a plan not valid for what the robot saw."""
     module, rng = planner_module(chunk.planner), execution.generator(chunk, condition, repeat)
     settings = execution.settings_in(chunk, condition)
     policy = Policy.model_construct(**chunk.policy)
@@ -195,9 +193,7 @@ def run_chunk(
 def rerun(
     chunk: Chunk, condition: str, repeat: int, problem: Problem, world: World
 ) -> tuple[Ride, motion_check.Verdict]:
-    """The drive of a run, by the name of its condition, and the verdict on it: for what no table
-    keeps.
-    """
+    """A run's drive, by its condition's name, and the verdict on it: for what no table keeps."""
     named = {each.name: each for each in chunk.conditions()}
     ride = run(chunk, named[condition], repeat, problem, world)
     return ride, motion_check.check(ride.motion, world)

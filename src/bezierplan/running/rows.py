@@ -76,9 +76,7 @@ def edited(table: pa.Table) -> bool:
 
 
 def rows_digest(table: pa.Table) -> str:
-    """A hash over the content of a table, column by column in order of name: to the last bit,
-    whatever the layout of the file.
-    """
+    """A hash over a table's columns in order of name: of all bits, whatever the file's layout."""
     digest = hashlib.sha256()
     for name in sorted(table.column_names):
         column = table[name].combine_chunks()

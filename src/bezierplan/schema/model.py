@@ -172,9 +172,7 @@ _EXPECTED = {
 
 
 def _fault(fault: Any, field: FieldInfo | None) -> str:
-    """The end of a message, from a pydantic record; for the value of a field, from the field's
-    description.
-    """
+    """The end of a message, by a pydantic record; for a field's value, by its description."""
     context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
@@ -481,9 +479,7 @@ Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]
 Where = Annotated[dict[Column, Values], Names("where")]
 Arguments = dict[Name, Any]
-"""Keyword-only arguments of a function of a study's module, which `checks` compares with their
-annotations.
-"""
+"""Keyword-only arguments of a study's function, which `checks` compares with annotations."""
 ARGUMENTS = (
     "the function's keyword-only arguments, by name: "
     "values that the paper gives, or that were chosen"
@@ -491,9 +487,7 @@ ARGUMENTS = (
 
 
 def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    """Every name in a model that is defined elsewhere: the keys that lead to it, what it names, and
-    the name.
-    """
+    """Every name in a model that is defined elsewhere: the keys to it, what it names, the name."""
     for key, field in type(model).model_fields.items():
         if key in model.model_fields_set:
             yield from _named(getattr(model, key), field.metadata, field.annotation, (*path, key))

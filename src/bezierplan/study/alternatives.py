@@ -13,9 +13,7 @@ from bezierplan.study.definition import Study
 
 
 def alternatives(study: Study) -> dict[str, tuple[Assumption, Any]]:
-    """Every alternative of an assumption that governs a setting: its name, such as `O2_8`, -> the
-    assumption and the value.
-    """
+    """Every alternative that governs a setting: name, such as `O2_8`, -> assumption and value."""
     return {
         f"{assumption.id}_{value}": (assumption, value)
         for assumption in study.assumptions

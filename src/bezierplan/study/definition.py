@@ -130,9 +130,7 @@ class Study:
         return described
 
     def home(self, experiment: str, scale: str) -> str:
-        """The scale under which an experiment's runs for a scale are kept: `full` for `extended` if
-        that has the same runs.
-        """
+        """The scale under which runs are kept: `full` for `extended` if that has the same runs."""
         content = self.experiments[experiment]
         layouts = [self.problems[name].layouts for name in content.problems]
         sizes = [content.repeats, content.chunk, *filter(None, layouts)]

@@ -64,9 +64,7 @@ def _folder(scale: str, study: str, alternative: str | None = None) -> str:
 
 
 def _files(study: Study, scale: str, experiment: str, methods: Iterable[str] = ()) -> Files:
-    """Files of an experiment: chunks of methods as configured, whatever else the folder contains,
-    problems and bounds.
-    """
+    """Files of an experiment: chunks of methods as configured, problems and bounds, no others."""
     folder = _folder(study.home(experiment, scale), study.key)
     runs = {
         method: [

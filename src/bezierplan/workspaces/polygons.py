@@ -56,9 +56,7 @@ def parts(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
 
 
 def rings(shape: "shapely.Geometry") -> list[np.ndarray]:
-    """The boundary of the polygons in a shape, not closed: rings (n, 2) with the inside on their
-    left.
-    """
+    """The boundary of a shape's polygons, not closed: rings (n, 2), the inside on their left."""
     import shapely
 
     return [

@@ -44,9 +44,7 @@ what the certified checker tolerates.
 """
 
 MOST_CORNERS = 1_000
-"""Most corners of the boundary of cells that grow as polygons: with more, the exact shortest path
-would take minutes.
-"""
+"""Most corners of cells that grow as polygons: with more, the shortest path would take minutes."""
 
 # Points of a boundary this close together, in units, are one.
 _SAME_POINT = 1e-10

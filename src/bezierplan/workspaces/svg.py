@@ -25,9 +25,7 @@ if TYPE_CHECKING:
     import shapely
 
 FLATNESS = 1e-5
-"""By how much a polygon is off the curve that it stands for, at most, as a share of the border's
-longer side.
-"""
+"""By how much a polygon is off its curve, at most, as a share of the border's longer side."""
 
 _SHAPES = {
     "path": (),
@@ -327,9 +325,7 @@ def _sides(name: str, segment: Any, flatness: float) -> int:
 
 
 def _filled(rings: list[np.ndarray], even_odd: bool) -> list["shapely.Polygon"]:
-    """The polygons that rings (n, 2) fill, which may cross themselves and each other: the faces
-    around which they wind.
-    """
+    """The polygons that rings (n, 2) fill, which may cross: the faces around which they wind."""
     import shapely
 
     closed = [np.vstack([ring, ring[:1]]) for ring in rings if len(np.unique(ring, axis=0)) > 2]

@@ -65,9 +65,7 @@ class FootprintCheck(NamedTuple):
 
 
 def check_footprint(pieces: np.ndarray, region: Region, footprint: Footprint) -> FootprintCheck:
-    """Check the footprint along a path of Bézier pieces (pieces, degree + 1, 2) whose own points
-    are free (`check`).
-    """
+    """Check the footprint along Bézier pieces (pieces, degree + 1, 2) that are free (`check`)."""
     reach = footprint.circumscribed
     tolerance = CLEARANCE_SHARE * reach
     share = max(SHARE, 4 * TOLERANCE / footprint.thickness)
@@ -97,9 +95,7 @@ def check_footprint(pieces: np.ndarray, region: Region, footprint: Footprint) ->
 
 
 def _middle_at_start(pieces: np.ndarray, footprint: Footprint) -> tuple[float, float]:
-    """Where the footprint's centroid is at the start; the reference point, which is free, where the
-    heading is not known.
-    """
+    """Where the centroid is at the start; the reference point where the heading is not known."""
     x, y = pieces[0, 0]
     along = pieces[0, 1] - pieces[0, 0]
     length = math.hypot(*along)
@@ -182,9 +178,7 @@ def first_entry(moves, headings, outer, inner, reach, edges, centres, radii):
 
 @compiled
 def footprint_clearance(moves, headings, corners, reach, tolerance, edges, centres, radii):
-    """Least distance of a footprint that collides nowhere from edges (n, 4) and discs, to a
-    tolerance, by branch and bound.
-    """
+    """Least distance of a free footprint from edges (n, 4) and discs, to a tolerance."""
     stack, begin, width, turn, considered, places, hull = _room(moves, corners)
     obstacles = np.arange(len(edges) + len(radii))
     least = np.inf

@@ -1,6 +1,4 @@
-"""Shortest paths on grids: visibility between corners of cells, or between their centres, in
-integer arithmetic.
-"""
+"""Shortest paths on grids: visibility between corners or centres of cells, in integers."""
 
 import math
 from fractions import Fraction
@@ -144,9 +142,7 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
 
 
 def _lattice(points: np.ndarray, finest: int) -> int:
-    """The smallest number of lattice points per cell that makes all coordinates integers; `finest`
-    if even that is not enough.
-    """
+    """The least lattice points per cell that make all coordinates integers; `finest` at most."""
     fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
     exact = all(

@@ -135,9 +135,7 @@ def put(part, path, size):
 
 @allocation_free
 def _replace(path, size, child, cut, marks):
-    """Replace a path of the given size by a child if it fits, with its loops removed if `cut` says
-    so. Returns the new size.
-    """
+    """Replace a path by a child if it fits, without its loops if `cut` says so; the new size."""
     child_size = cut_loops(child, marks) if cut else len(child)
     if child_size > len(path):
         return size

@@ -13,9 +13,7 @@ from bezierplan.planners.parts.random_integers import integer
 
 
 def check_pairs(settings: dict) -> None:
-    """Raise ValueError, naming the setting and what is expected, for a population that cannot be
-    crossed in pairs.
-    """
+    """Raise ValueError, naming the setting, for a population that cannot be crossed in pairs."""
     if settings["population"] % 2:
         raise ValueError(
             f"population: {settings['population']}; parents are crossed in pairs, so an even "

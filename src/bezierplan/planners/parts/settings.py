@@ -43,9 +43,7 @@ class Range(NamedTuple):
 
 
 class About(NamedTuple):
-    """What a setting means, in one line; where the paper gives it, and its unit, empty for a pure
-    number or a choice.
-    """
+    """What a setting means, in one line; where the paper gives it; its unit, empty if none."""
 
     text: str
     source: str = ASSUMED
@@ -160,9 +158,7 @@ def _declared(settings: type) -> dict[str, Setting]:
 
 
 def filled(settings: type[T], values: dict[str, Any]) -> T:
-    """A class of settings with these values, given by name as in a study. Raises TypeError for a
-    missing or unknown name.
-    """
+    """A class of settings with values by name. Raises TypeError for a missing or unknown name."""
     return _filled(settings, tuple(values.items()), tuple(map(type, values.values())))
 
 

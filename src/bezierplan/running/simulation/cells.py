@@ -79,9 +79,7 @@ def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 
 
 def free_length(grid: Grid, way: Way, s: float) -> float:
-    """The length of a way, from a length s of it on, at which it first enters an occupied cell;
-    infinite if it does not.
-    """
+    """The length from s on at which a way first enters an occupied cell; infinite if never."""
     points = way.part(s, way.length)
     obstacles = region(grid)
     collision_at, _ = checker.first_collision(

@@ -31,9 +31,7 @@ from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, po
 
 
 class Schedule(NamedTuple):
-    """arrival: in steps, infinite if none was found before the world's end. length: of the way, in
-    units.
-    """
+    """arrival: in steps, infinite if none was found in time. length: of the way, in units."""
 
     arrival: float
     length: float
