@@ -85,13 +85,10 @@ def plan(
     if len(best) > 0 and places.start != places.target:
         rules = cell_paths.Rules(
             settings.crossover_probability,
-            True,
             settings.mutation_probability,
+            settings.elitism,
             settings.mutation,
             settings.longest_join,
-            0,
-            True,
-            settings.elitism,
         )
         best, later = cell_paths.evolve(
             moves,

@@ -99,13 +99,11 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if len(sizes) > 0:
         rules = cell_paths.Rules(
             settings.crossover_probability,
-            True,
             settings.mutation_probability,
+            settings.elitism,
             cell_paths.WALK,
             settings.longest_walk,
             settings.tries,
-            True,
-            settings.elitism,
         )
         turns = np.resize(np.arange(len(sizes)), settings.population)
         best, history = cell_paths.evolve(

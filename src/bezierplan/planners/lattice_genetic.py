@@ -111,13 +111,11 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         if sizes.all():
             rules = cell_paths.Rules(
                 settings.crossover_probability,
-                False,
                 settings.mutation_probability,
+                settings.elitism,
                 cell_paths.RECONNECT,
                 settings.longest_join,
-                0,
-                False,
-                settings.elitism,
+                shorter_parts=False,
             )
             best, history = cell_paths.evolve(
                 moves, places, paths, sizes, settings.generations, rules

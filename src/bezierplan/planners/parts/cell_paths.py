@@ -22,21 +22,20 @@ ONE_CELL, RECONNECT, WALK = range(3)
 class Rules(NamedTuple):
     """Settings of `evolve`.
 
-    crossover_probability: of a pair of parents. shorter_parts: whether the first child gets the
-    shorter head and the shorter tail and the second is parent 2; otherwise tails are swapped.
-    mutation_probability: of a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: maximum
-    number of cells in a part made by the last two; tries: see `forage`. cut_loops: whether children
-    lose their loops. elitism: whether the best so far replaces a child.
+    crossover_probability: of a pair of parents. mutation_probability: of a child. elitism: whether
+    the best so far replaces a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: maximum
+    number of cells in a part made by the last two; tries: see `forage`. shorter_parts: whether the
+    first child gets the shorter head and the shorter tail, the second is parent 2, and children
+    lose their loops; otherwise tails are swapped.
     """
 
     crossover_probability: float
-    shorter_parts: bool
     mutation_probability: float
+    elitism: int
     mutation: int
     longest_part: int
-    tries: int
-    cut_loops: bool
-    elitism: int
+    tries: int = 0
+    shorter_parts: bool = True
 
 
 def plan_of(
@@ -111,15 +110,17 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
                 else:
                     size = put(father[k:], child, put(mother[:m], child, 0))
                     sizes[i + 1] = _replace(
-                        paths[i + 1], sizes[i + 1], child[:size], rules.cut_loops, marks
+                        paths[i + 1], sizes[i + 1], child[:size], rules.shorter_parts, marks
                     )
                     size = put(mother[m:], child, put(father[:k], child, 0))
-                sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
+                sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.shorter_parts, marks)
         for i in range(population):
             if rng.random() < rules.mutation_probability:
                 size = _mutant(rng, lattice, paths[i, : sizes[i]], rules, child, part, marks)
                 if size:
-                    sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
+                    sizes[i] = _replace(
+                        paths[i], sizes[i], child[:size], rules.shorter_parts, marks
+                    )
         if rules.elitism:
             sizes[0] = put(best[:best_size], paths[0], 0)
     return best[:best_size], history
