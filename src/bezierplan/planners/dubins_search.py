@@ -434,7 +434,9 @@ def _search(ends, radius, step, lattice, most, blocked):
         if ahead < nearest or expanded % _TRIED == 0:
             nearest = min(nearest, ahead)
             if _free_word(poses[node], target, radius, WORDS, blocked, words, pieces)[0] >= 0:
-                return _way(poses, came_from, node, target), expanded
+                way = _way(poses, came_from, node, 1)
+                way[-1] = target
+                return way, expanded
         for turn in range(-1, 2):
             pose = poses[count]
             _drive(poses[node], float(turn), step, radius, pose)
@@ -478,15 +480,14 @@ def _key(pose, step, headings):
 
 
 @compiled
-def _way(poses, came_from, last, target):
-    """The poses (n, 3) from start to a node, and the target."""
+def _way(poses, came_from, last, room):
+    """The poses (n, 3) from start to a node, and room for so many more."""
     count = 0
     node = last
     while node >= 0:
         count += 1
         node = came_from[node]
-    way = np.empty((count + 1, 3))
-    way[count] = target
+    way = np.empty((count + room, 3))
     node = last
     for k in range(count - 1, -1, -1):
         way[k] = poses[node]
@@ -575,16 +576,7 @@ def _shortcut(poses, radius, blocked):
                 break
     if length[-1] == np.inf:
         return poses[:0]
-    last, kept = count - 1, 1
-    while last > 0:
-        last = came_from[last]
-        kept += 1
-    found = np.empty((kept, 3))
-    last = count - 1
-    for k in range(kept - 1, -1, -1):
-        found[k] = poses[last]
-        last = came_from[last]
-    return found
+    return _way(poses, came_from, count - 1, 0)
 
 
 @compiled
