@@ -471,22 +471,16 @@ def _audited(study: Study) -> dict[str, Pivot]:
 
 def audit_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the audit."""
-    audited = studies[study]
-    experiments = sorted({table.experiment for table in _audited(audited).values()})
-    files = {name: _files(audited, scale, name) for name in experiments}
+    tables = _audited(studies[study]).values()
+    # Printed lengths are sought among those of paths of their problems.
+    sought = {table.experiment for table in tables if table.identify}
+    experiments = sorted({table.experiment for table in tables})
+    files = {name: _files(studies[study], scale, name) for name in experiments}
     bounds = named(BOUNDS, {name: each.bounds for name, each in files.items()})
     problems = named(
-        PROBLEMS,
-        {name: each.problems for name, each in files.items() if _identifies(audited, name)},
+        PROBLEMS, {name: each.problems for name, each in files.items() if name in sought}
     )
-    return bounds | problems | _all_published(audited)
-
-
-def _identifies(study: Study, experiment: str) -> bool:
-    """Whether printed lengths are sought among those of paths of an experiment's problems."""
-    return any(
-        table.identify and table.experiment == experiment for table in _audited(study).values()
-    )
+    return bounds | problems | _all_published(studies[study])
 
 
 def audit_params(studies: Studies, scale: str, study: str) -> dict:
@@ -533,7 +527,8 @@ def interpretations_inputs(studies: Studies, scale: str, study: str) -> dict[str
 
 def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the search for an interpretation."""
-    job = choices.search_job(studies[study])
+    content = studies[study]
+    job = choices.search_job(content)
     screened = job.stages["screened"]
     planners = {
         _planner(chunk.planner)
@@ -547,13 +542,8 @@ def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
     }
     return {
         "job": plain(job),
-        "folder": definition.relative(studies[study].folder),
-        "published": content_digest(
-            *(
-                studies[study].published_file(name)
-                for name in choices.printed_tables(studies[study])
-            )
-        ),
+        "folder": definition.relative(content.folder),
+        "published": content_digest(*map(content.published_file, choices.printed_tables(content))),
         "code": _code("interpretations", *sorted(planners), *sorted(kinds)),
     }
 
@@ -605,18 +595,16 @@ def summary_params(studies: Studies, scale: str) -> dict:
 
 def baseline_comparison_inputs(studies: Studies, scale: str) -> dict[str, Any]:
     """Input files of the comparison with the baseline: experiments by study and name."""
-    files = {
-        f"{key}/{name}": _files(study, scale, name, _measured(study, name))
-        for key, study in studies.items()
-        if study.baseline_comparison
-        for name in study.baseline_comparison.experiments
-    }
-    return of_experiments(files)
-
-
-def _measured(study: Study, experiment: str) -> list[str]:
-    """Methods of an experiment, and the baseline that they are measured against."""
-    return [*study.experiments[experiment].methods, study.baseline_comparison.baseline]
+    return of_experiments(
+        {
+            f"{key}/{name}": _files(
+                study, scale, name, [*study.experiments[name].methods, measured.baseline]
+            )
+            for key, study in studies.items()
+            if (measured := study.baseline_comparison)
+            for name in measured.experiments
+        }
+    )
 
 
 def baseline_comparison_params(studies: Studies, scale: str) -> dict:
@@ -624,14 +612,11 @@ def baseline_comparison_params(studies: Studies, scale: str) -> dict:
     repeats."""
     job = {
         key: MeasuredJob(
-            study.baseline_comparison.baseline,
-            {
-                name: study.experiments[name].repeats[scale]
-                for name in study.baseline_comparison.experiments
-            },
+            measured.baseline,
+            {name: study.experiments[name].repeats[scale] for name in measured.experiments},
         )
         for key, study in studies.items()
-        if study.baseline_comparison
+        if (measured := study.baseline_comparison)
     }
     return {"job": plain(job), "code": _code("baseline_comparison")}
 
@@ -709,10 +694,8 @@ def files_of_study(studies: Studies, scale: str, study: str) -> list[str]:
 
 def files_of_scale(studies: Studies, scale: str) -> list[str]:
     """Everything that is made at a scale; a summary if some table has published numbers."""
-    summary = published_tables(studies)
-    return [file for study in studies for file in files_of_study(studies, scale, study)] + (
-        [f"results/{scale}/summary.md"] if summary else []
-    )
+    files = [file for study in studies for file in files_of_study(studies, scale, study)]
+    return files + ([f"results/{scale}/summary.md"] if published_tables(studies) else [])
 
 
 def files_of_sensitivity(studies: Studies, scale: str) -> list[str]:
