@@ -299,8 +299,7 @@ def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, n
 
 @compiled
 def _search(rng, codes, cells, curve, rules):
-    """Genes (control points,) of the best chromosome, and the lowest cost so far (generations +
-    1,).
+    """The best chromosome (control points,), and the lowest cost so far (generations + 1,).
 
     codes: (population, control points), the first generation; overwritten.
     """

@@ -180,8 +180,7 @@ class Settings(NamedTuple):
 
 
 class Found(NamedTuple):
-    """Result of a search. ones: those of the best chromosome, empty if there is none. cost: its
-    length.
+    """Result of a search. ones: those of the best chromosome, empty if none. cost: its length.
 
     history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct
     chromosomes in the population. q: (iterations,) mean Q of the pool at the end of an iteration,
@@ -305,8 +304,7 @@ def _from_roadmaps(
     problem: Problem, rng: np.random.Generator, field: Field, settings: Settings
 ) -> tuple[np.ndarray, np.ndarray]:
     """Chromosomes made of the inner nodes of paths through roadmaps, at most a population, and
-    their numbers of ones; straight paths and those with too many nodes are left out. Every cell is
-    a gene.
+    their numbers of ones; straight and too long paths are left out. Every cell is a gene.
     """
     ones, counts = np.zeros((settings.population, _ROOM), dtype=np.int64), []
     for _ in range(

@@ -214,8 +214,7 @@ def _nearest(points, neighbours):
     """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties
     in their original order.
 
-    From each point to both sides, in the order of x, until the next one is too far away by its x
-    alone.
+    From each point to both sides, in the order of x, until one is too far away by x alone.
     """
     order = np.argsort(points[:, 0])
     nearest = np.empty((len(points), neighbours), dtype=np.int64)

@@ -219,8 +219,7 @@ def _judgements(
     problems: dict[str, Problem], blocked: dict[str, Region]
 ) -> list[Callable[[], object]]:
     """The check of two paths in each type of region: of one that stays at the start, and so is
-    free, and of the straight line, which mostly collides. Together they need all kernels of the
-    check.
+    free, and of the straight line, which mostly collides. They need all kernels of the check.
     """
     one_of_each = {type(blocked[name]): name for name in problems}
     return [

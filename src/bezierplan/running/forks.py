@@ -77,8 +77,7 @@ class Forks:
                 self._begin()
 
     def script(self, *arguments: Any) -> None:
-        """Run a script as Snakemake's function of the same name does, which is called with the same
-        arguments.
+        """Run a script as Snakemake's function of the same name does, with the same arguments.
 
         Raises subprocess.CalledProcessError if the script fails, after the script has said why on
         stderr.

@@ -174,8 +174,7 @@ def _solved(
     settings: dict[str, Any],
     smooth: str,
 ) -> Plan:
-    """The same, without this column. Where rounding leaves a corner at a way point, the legs are
-    searched.
+    """The same, without this column. If rounding leaves a corner at a way point, legs are searched.
 
     With `continuous` curvature, transitions go before and after arcs wherever there is room. They
     shift arcs inwards, so these are planned wider and as much farther from the corners.

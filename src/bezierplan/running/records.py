@@ -65,8 +65,7 @@ def job_of(log: str) -> Job | None:
 
 
 def measured(folder: Path, units: Callable[[Job], int]) -> dict[tuple[str, str], Record]:
-    """Record of each job noted in a working folder, by scale and name; of several chunks, their
-    mean.
+    """Record of each job noted in a working folder, by scale and name; of chunks their mean.
 
     units: how many runs a job makes. Of a job of runs, its planner's CPU time counts; of others the
     clock's, as far as a core was theirs: as CPU time to the clock's in the jobs of runs.

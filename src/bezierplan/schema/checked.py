@@ -1,5 +1,4 @@
-"""YAML files read strictly, within stated limits; every fault is reported in one line with its
-place.
+"""YAML files read strictly, within stated limits; a fault is one line with its place.
 
 YAML is written by people and read from folders of unknown origin, so anything that could overload
 the reader is rejected before it is built: files that are not regular, long files, deep nesting, and

@@ -1,8 +1,6 @@
-"""The jobs that follow from a study: named tuples, all that a job depends on beside its input
-files.
+"""The jobs that follow from a study: named tuples of all that a job depends on but files.
 
-A script receives them as plain values (`schema.model.plain`), in which Snakemake can detect
-changes.
+A script receives them as plain values (`schema.model.plain`), so that Snakemake detects changes.
 """
 
 import itertools

@@ -77,8 +77,7 @@ def load(
     at_changes: Callable[[], object] = lambda: None,
     is_needed: Callable[[Path], bool] = lambda folder: True,
 ) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked, unless the same content was before. Raises
-    Fault.
+    """The studies in folders, by name, read and checked, unless that was done before. Raises Fault.
 
     at_changes: called before each check, which takes seconds. is_needed: whether a study is read
     that has not been checked before; the others are left out.

@@ -1,8 +1,7 @@
 """A grid of square cells, each free or occupied.
 
 Cells are numbered row by row from the bottom left, from 0: number = column + columns * row
-(song2016, Section III; code for papers that number differently converts where it reads or prints
-numbers).
+(song2016, Section III; code for papers that number differently converts when it reads or prints).
 """
 
 import math

@@ -29,8 +29,7 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
 
     rule: a cell is occupied if its inside overlaps an obstacle (`overlap`), so that a path over
     free cells is free; or if its centre lies in one or on its edge (`centre`), so that a path may
-    cut up to half a cell into a wall. A cell whose centre lies outside the border is always
-    occupied.
+    cut up to half a cell into a wall. A cell whose centre is outside the border is occupied.
 
     Raises ValueError, naming the key, for more than `MOST_CELLS` cells. Warns of obstacles that
     occupy no cell.

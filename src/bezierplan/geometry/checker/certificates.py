@@ -1,8 +1,7 @@
 """What the searches ask about a region: whether a point is blocked, whether a hull is free, and how
 deep they are.
 
-Each kind of region has its own answers. The overloads at the end select them by the type of the
-region.
+Each kind of region has its own answers. The overloads at the end select them by its type.
 """
 
 import math
@@ -383,8 +382,7 @@ def _touches(points, hull_box, along_x, along_y, across_low, across_high, region
 
 @allocation_free
 def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
-    """Number of edges of a chain of touched edges if a hull passes it on the free side, otherwise
-    0.
+    """Number of edges of a chain of touched edges if a hull passes it on the free side, or 0.
 
     It does if it lies on the free side of all lines of the chain. Where the blocked region is
     convex at the chain's corners, one of these lines is enough, or any line between hull and chain

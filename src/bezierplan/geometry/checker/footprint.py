@@ -1,5 +1,4 @@
-"""The certified check of a footprint, a convex polygon that turns with the path's direction of
-travel.
+"""The certified check of a footprint, a convex polygon that turns as it travels.
 
 While a part of a path is driven, each corner of the footprint moves along a curve that deviates
 from the line between its places at both ends by at most an eighth of its largest acceleration (with

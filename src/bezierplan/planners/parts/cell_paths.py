@@ -1,8 +1,7 @@
 """Operators on paths over a lattice of cells, and a genetic algorithm that uses them.
 
 A path is an array (n,) of cell numbers, each a neighbour of the one before on a lattice
-(`workspaces.lattice.Lattice`). `marks` is scratch (cells,) of integers: all 0 before and after each
-operator.
+(`workspaces.lattice.Lattice`). `marks` is scratch (cells,) of integers: all 0 between operators.
 """
 
 from typing import NamedTuple
@@ -343,8 +342,7 @@ def walk(rng, lattice, first, last, tries, part, marks):
 
 @allocation_free
 def forage(rng, lattice, cell, target, tries, visited):
-    """A fish's next cell when it looks for prey (ma2020, reference 31), -1 if all neighbours are
-    visited.
+    """A fish's next cell when it looks for prey (ma2020, reference 31), or -1 if all are visited.
 
     The first of `tries` random neighbours that is unvisited and nearer to the target, otherwise a
     random unvisited neighbour.

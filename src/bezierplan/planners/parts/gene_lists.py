@@ -1,5 +1,4 @@
-"""Chromosomes of many genes, few of which are 1, stored as ascending lists of these; and pools of
-them.
+"""Chromosomes of many genes, few of which are 1, stored as ascending lists; and pools of these.
 
 Functions that change a list or a pool say so; no function keeps state.
 """

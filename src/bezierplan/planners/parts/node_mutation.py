@@ -39,11 +39,9 @@ def mutate(
     rules: NamedTuple,
     neighbours: np.ndarray,
 ) -> int:
-    """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it
-    evaluated.
+    """Apply the operator once to a path of cells (n,), n at least 3; returns how many it evaluated.
 
-    drawn: the cells from which random mutation draws. rules: `node_genetic.Settings`. neighbours:
-    (8,) scratch.
+    drawn: cells for random mutation. rules: `node_genetic.Settings`. neighbours: (8,) scratch.
     """
     if rules.mutation == Mutation.random:
         path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
