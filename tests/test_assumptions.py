@@ -138,7 +138,9 @@ def test_every_setting_that_a_paper_leaves_open_is_tried(key):
     study = STUDIES[key]
     searched = {choice.id for choice in choices.choices(study)}
     left = {
-        identity for name, (identity, _) in alternatives(study).items() if name not in tried(study)
+        assumption.id
+        for name, (assumption, _) in alternatives(study).items()
+        if name not in tried(study)
     }
     assert left <= searched
 

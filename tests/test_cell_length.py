@@ -26,7 +26,8 @@ def measured(x, y):
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     cells = cell_length.touched_cells(x + 0.5, y + 0.5)
-    return cell_length.cells4(*cells), cell_length.cells8(*cells), cell_length.polyline_length(x, y)
+    length = cell_length.sum_of_steps(x, y, np.empty(len(x)))
+    return cell_length.cells4(*cells), cell_length.cells8(*cells), length
 
 
 STRAIGHT = [

@@ -249,13 +249,11 @@ def first_paths(places, seed, population=8, longest=60):
 
 RULES = {
     "swapped tails, reconnected": cell_paths.Rules(
-        0.9, False, 0.5, cell_paths.RECONNECT, 60, 0, False, 1
+        0.9, 0.5, 1, cell_paths.RECONNECT, 60, shorter_parts=False
     ),
-    "shorter parts, one cell": cell_paths.Rules(
-        0.9, True, 0.5, cell_paths.ONE_CELL, 60, 0, True, 1
-    ),
-    "shorter parts, walks": cell_paths.Rules(0.9, True, 0.5, cell_paths.WALK, 30, 8, True, 1),
-    "no elite": cell_paths.Rules(1.0, True, 1.0, cell_paths.RECONNECT, 60, 0, True, 0),
+    "shorter parts, one cell": cell_paths.Rules(0.9, 0.5, 1, cell_paths.ONE_CELL, 60),
+    "shorter parts, walks": cell_paths.Rules(0.9, 0.5, 1, cell_paths.WALK, 30, 8),
+    "no elite": cell_paths.Rules(1.0, 1.0, 0, cell_paths.RECONNECT, 60),
 }
 
 
@@ -284,7 +282,7 @@ def test_evolution_ends_with_a_path_of_the_length_that_it_says(rules, seed):
 
 def test_children_that_do_not_fit_stay_as_their_parents_were():
     """Loops are kept here, so that paths would grow without end."""
-    rules = cell_paths.Rules(1.0, False, 1.0, cell_paths.RECONNECT, 60, 0, False, 0)
+    rules = cell_paths.Rules(1.0, 1.0, 0, cell_paths.RECONNECT, 60, shorter_parts=False)
     paths, sizes = first_paths(OPEN, 1)
     longest = sizes.max()
     tight = np.ascontiguousarray(paths[:, :longest])
@@ -294,7 +292,7 @@ def test_children_that_do_not_fit_stay_as_their_parents_were():
 
 
 def test_without_crossover_and_mutation_the_best_of_the_first_stays():
-    rules = cell_paths.Rules(0.0, True, 0.0, cell_paths.ONE_CELL, 1, 0, True, 0)
+    rules = cell_paths.Rules(0.0, 0.0, 0, cell_paths.ONE_CELL, 1)
     _, history = cell_paths.evolve(np.random.default_rng(0), OPEN, *first_paths(OPEN, 0), 20, rules)
     assert (history == history[0]).all()
 

@@ -20,7 +20,6 @@ from bezierplan.running import execution, problems, worlds
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import between
-from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault
@@ -141,9 +140,7 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
         "meledje", {name: STUDY.problems[name].plain()}, {name: STUDY.workspaces[name].plain()}
     )
     made, moving = worlds.build_all(described, FOLDER)
-    ride = drive(
-        moving[name], made[name], Policy(**STUDY.policies["replans"].model_dump()), cell_path
-    )
+    ride = drive(moving[name], made[name], STUDY.policies["replans"], cell_path)
     moment = moving[name].moments[0]
     assert moment == pytest.approx(percent / 100 * ride.plans[0].length)
     here = between(ride.motion, 0.0, moment).points[-1]

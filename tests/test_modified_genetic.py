@@ -269,6 +269,10 @@ def test_the_free_diagonal_costs_its_length():
         ] == pytest.approx(length, rel=1e-12)
 
 
+def length_of(x, y):
+    return cell_length.sum_of_steps(x, y, np.empty(len(x)))
+
+
 def test_a_colliding_curve_may_be_punished_for_each_cell():
     found = field(100, (50, 50, 3))
     ones = np.array([gene(50, 45)])
@@ -279,7 +283,7 @@ def test_a_colliding_curve_may_be_punished_for_each_cell():
     bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
     assert bad > 0
     assert not free
-    assert cost == cell_length.polyline_length(x, y) + 20.0 * bad
+    assert cost == length_of(x, y) + 20.0 * bad
 
 
 def walked(ones, found, composite):
@@ -319,7 +323,7 @@ def test_first_sights_never_change_a_verdict(radius, lattice, curve):
             cost, verdict = validated(ones, found, rules(least_distance=0.0, curve=curve))
             assert verdict == (bad == 0)
             if verdict:
-                assert cost == cell_length.polyline_length(x, y)
+                assert cost == length_of(x, y)
             free += bad == 0
             colliding += bad > 0
     assert min(free, colliding) > 50
@@ -493,7 +497,7 @@ def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
             >= least.length
         )
         assert found.objective == pytest.approx(
-            cell_length.polyline_length(*cell_length.samples(found.path, task.workspace)), rel=1e-12
+            length_of(*cell_length.samples(found.path, task.workspace)), rel=1e-12
         )
         assert len(found.history) == 11
         assert np.all(np.diff(found.history[np.isfinite(found.history)]) <= 0)

@@ -22,24 +22,9 @@ from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
-BLIND = Policy(
-    "never",
-    1,
-    False,
-    False,
-    "before",
-    "positions",
-    0.0,
-    (0.0,),
-    0.0,
-    math.inf,
-    False,
-    0.5,
-    "position",
-    0.05,
-)
-WAITS = BLIND._replace(waits=True, sees="after", brake=1.0)
-REPLANS = WAITS._replace(replan="when_blocked", check_margin=0.2, plan_margins=(0.5, 0.0))
+BLIND = Policy(replan="never", waits=False)
+WAITS = BLIND.but(waits=True, sees="after", brake=1.0)
+REPLANS = WAITS.but(replan="when_blocked", check_margin=0.2, plan_margins=(0.5, 0.0))
 
 
 def circles(*rows, pace=1.0, end=100):
@@ -226,7 +211,7 @@ def test_a_robot_that_looks_ahead_ignores_a_circle_that_will_have_passed():
     # On the way at step 5, and far above it when the robot comes at step 15.
     world = circles((15, 5, 1, 0, 0.9))
     near, ahead = (
-        drive(world, across(world), REPLANS._replace(knows=knows), round_about)
+        drive(world, across(world), REPLANS.but(knows=knows), round_about)
         for knows in ("positions", "velocities")
     )
     assert (near.replans > 0, ahead.replans) == (True, 0)
@@ -310,9 +295,7 @@ def first_straight(problem, state):
 @pytest.mark.parametrize("waits", [True, False])
 def test_a_robot_that_a_cell_hits_drives_back_and_arrives(replan, start, waits):
     world, problem = change_on_the_spot()
-    ride = drive(
-        world, problem, BLIND._replace(replan=replan, start=start, waits=waits), first_straight
-    )
+    ride = drive(world, problem, BLIND.but(replan=replan, start=start, waits=waits), first_straight)
     assert ride.arrived
     assert ride.waited == 0
     back = np.interp(2.5, ride.motion.times, ride.motion.points[:, 0])
@@ -341,7 +324,7 @@ def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, repla
     ride = drive(
         world,
         Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5)),
-        BLIND._replace(replan=replan, waits=True),
+        BLIND.but(replan=replan, waits=True),
         straight,
     )
     assert (ride.arrived, ride.replans) == (True, replans)
@@ -351,7 +334,7 @@ def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, repla
 @pytest.mark.parametrize(("velocity", "replans"), [(0.0, 0), (0.1, 19)])
 def test_circles_that_move_change_the_world_at_every_step(velocity, replans):
     world = circles((10, 2, 1, velocity, 0))
-    ride = drive(world, across(world), REPLANS._replace(replan="when_changed"), straight)
+    ride = drive(world, across(world), REPLANS.but(replan="when_changed"), straight)
     assert (ride.arrived, ride.replans) == (True, replans)
 
 
@@ -368,7 +351,7 @@ def rounded(problem, state):
 )
 def test_a_robot_drives_along_a_plan_that_touches_a_circle(planner, replan):
     world = circles((10, 10.3, 2, 0, 0))
-    ride = drive(world, across(world), WAITS._replace(replan=replan), planner)
+    ride = drive(world, across(world), WAITS.but(replan=replan), planner)
     assert (ride.arrived, ride.waited) == (True, 0.0)
     assert math.isnan(motion_check.check(ride.motion, world).collision_at)
 
@@ -380,7 +363,7 @@ def test_a_robot_drives_along_a_curve_that_touches_a_cell(replan):
     ride = drive(
         world,
         Problem("across", grid, (0.5, 2.5), (8.5, 2.5)),
-        BLIND._replace(replan=replan, waits=True),
+        BLIND.but(replan=replan, waits=True),
         rounded,
     )
     assert (ride.arrived, ride.waited) == (True, 0.0)
@@ -500,19 +483,17 @@ def test_a_wall_that_opens_makes_it_wait_and_one_that_closes_makes_it_hurry():
 def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_passes():
     coming = circles((10, 6.4, 2, 0, 0.5))
     place = np.array([10.0, 9.0])
-    aside = evasion.refuge(coming, place, 0, REPLANS._replace(knows="velocities"))
+    aside = evasion.refuge(coming, place, 0, REPLANS.but(knows="velocities"))
     assert math.dist(aside, place) == pytest.approx(1.0)
     assert aside[1] > 9.0
     passing = circles((10, 6.0, 2, 0.5, -0.2))
-    assert np.array_equal(
-        evasion.refuge(passing, place, 0, REPLANS._replace(knows="velocities")), place
-    )
+    assert np.array_equal(evasion.refuge(passing, place, 0, REPLANS.but(knows="velocities")), place)
 
 
 def test_a_robot_leaves_the_way_of_a_circle_from_which_it_could_flee_for_a_while():
     chasing = circles((6, 10, 2, 0.9, 0))
     place = np.array([9.0, 10.0])
-    aside = evasion.refuge(chasing, place, 0, REPLANS._replace(knows="velocities"))
+    aside = evasion.refuge(chasing, place, 0, REPLANS.but(knows="velocities"))
     assert abs(aside[1] - place[1]) > 0.3
 
 
@@ -521,8 +502,7 @@ def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
     world = circles((0.5, 3, 2, 0, 0.5), end=30)
     none = lambda problem, state: (straight(problem, state)[0]._replace(path=None), state)  # noqa: E731
     waiting, evading = (
-        drive(world, across(world), REPLANS._replace(evades=evades), none)
-        for evades in (False, True)
+        drive(world, across(world), REPLANS.but(evades=evades), none) for evades in (False, True)
     )
     hit = motion_check.check(waiting.motion, world)
     assert hit.collision_at > 0
@@ -538,7 +518,7 @@ def test_hindsight_says_when_a_collision_could_be_known_and_avoided(knows, known
     stays = Motion(np.array([[10.0, 10.0], [10.0, 10.0]]), np.array([0.0, 20.0]))
     at = motion_check.check(stays, world).collision_at
     assert at == pytest.approx(5.8 / 0.6)
-    found = hindsight.known_at(stays, at, world, REPLANS._replace(knows=knows))
+    found = hindsight.known_at(stays, at, world, REPLANS.but(knows=knows))
     assert found == known
     assert hindsight.avoidable(stays, found, world, across(world))
     assert not hindsight.avoidable(stays, math.nan, world, across(world))
@@ -577,7 +557,7 @@ def test_among_cells_a_change_on_the_spot_could_not_be_known_and_a_blind_drive_c
 def test_a_robot_checks_no_farther_than_its_horizon():
     world = circles((15, 10, 2, 0, 0))
     seen, unseen = (
-        drive(world, across(world), REPLANS._replace(horizon=horizon), straight)
+        drive(world, across(world), REPLANS.but(horizon=horizon), straight)
         for horizon in (math.inf, 3.0)
     )
     assert seen.replans > unseen.replans

@@ -10,6 +10,7 @@ from studies import studies
 from bezierplan.analysis import verification
 from bezierplan.commands import verify_outcome
 from bezierplan.schema.checked import Fault
+from bezierplan.study import targets
 
 
 def rows(values, unit="m", n=50, width=1.0):
@@ -154,7 +155,7 @@ def test_missing_tables_are_told(made):
 
 
 def test_targets_are_the_tables_with_published_numbers():
-    named = {f"{key}_{table}" for key, table in verify_outcome.tables(studies())}
+    named = {f"{key}_{table}" for key, table in targets.published_tables(studies())}
     assert {"song2016_table1", "meledje_table2"} <= named
     kept = pd.read_csv(verify_outcome.KEPT)
     assert named == set(kept["study"] + "_" + kept["table"])

@@ -20,8 +20,9 @@ from bezierplan.geometry.region import blocks, region
 from bezierplan.running import problems, worlds
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.schema import model
-from bezierplan.workspaces import files, kinds, random_circles
+from bezierplan.workspaces import files, kinds
 from bezierplan.workspaces.geojson import polygons_from_geojson
+from bezierplan.workspaces.kinds import random_circles
 
 MAPS = Path(__file__).parent / "data" / "maps"
 SQUARE = [[4, 4], [6, 4], [6, 6], [4, 6], [4, 4]]

@@ -461,25 +461,16 @@ def verdict(
     world, near, frame = problem
     grown = grown_of(near.workspace)
     asked = {
+        "problem": world,
         "robot_radius": grown.radius if grown else 0.0,
         "via": tuple(via),
         "shortest": shortest,
         "footprint": footprint,
     }
     if path is None:
-        nothing = dict.fromkeys(
-            ("length", "depth", "clearance", "curvature", "curvature_bound", "curvature_jump"),
-            math.nan,
-        )
-        return {
-            "problem": world,
-            "path": None,
-            **nothing,
-            "feasible": False,
-            "collision": None,
-            "corners": False,
-            **asked,
-        }
+        numbers = ("length", "depth", "clearance", "curvature", "curvature_bound", "curvature_jump")
+        nothing = {"path": None, "feasible": False, "collision": None, "corners": False}
+        return asked | nothing | dict.fromkeys(numbers, math.nan)
     pieces = curves.bezier_pieces(path)
     verdict = checker.check(pieces, regions(near.workspace))
     clearance = (
@@ -498,8 +489,7 @@ def verdict(
             pieces, regions(original(near.workspace)), footprint
         )
     collision = None if feasible else frame.outward(curves.point_at(path, collision_at))
-    return {
-        "problem": world,
+    return asked | {
         "path": curves.outward(path, frame),
         "length": curves.length(path),
         "feasible": feasible,
@@ -510,7 +500,6 @@ def verdict(
         "curvature_bound": largest_curvature(pieces).bound,
         "curvature_jump": jump,
         "corners": not math.isfinite(jump),
-        **asked,
     }
 
 
@@ -859,6 +848,7 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     ValueError
         If there are no such results, or they are damaged.
     """
+    from bezierplan.running.chunk import chunk_files
     from bezierplan.schema.checked import closest
 
     runs_folder = File(folder) / "runs"
@@ -868,9 +858,7 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
             "results/full/song2016"
         )
     runs: dict[str, list[str]] = {}
-    for chunk in sorted(
-        file for file in runs_folder.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal()
-    ):
+    for chunk in chunk_files(runs_folder, f"{experiment}/*/*.parquet"):
         runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
         known = [each.name for each in runs_folder.iterdir()]

@@ -1,6 +1,4 @@
-"""Where things lie: this package, the tree with the studies and the workflow, and the folder of
-caches.
-"""
+"""Where things lie: this package, the tree of studies and workflow, the folder of caches."""
 
 import os
 import sys
@@ -10,9 +8,7 @@ PACKAGE = Path(__file__).parent
 """The folder of this package."""
 
 CHECKOUT = PACKAGE.parent.name == "src" and (PACKAGE.parents[1] / "config" / "studies").is_dir()
-"""Whether this package runs from a clone; otherwise it is installed, and the wheel holds a copy of
-the tree.
-"""
+"""Whether this package runs from a clone; an installed one holds a copy of the tree."""
 
 TREE = PACKAGE.parents[1] if CHECKOUT else PACKAGE / "tree"
 """The folder with `config`, `workflow`, `profiles` and `docs/outcome`."""

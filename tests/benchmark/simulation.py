@@ -6,7 +6,6 @@ from timing import cpu_seconds
 from bezierplan.planners import planner_module
 from bezierplan.running.simulation import circles, motion_check
 from bezierplan.running.simulation.motion_check import Motion
-from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import way
 from bezierplan.running.worlds import build
 from bezierplan.study import reading
@@ -27,13 +26,13 @@ def benchmark_simulation() -> None:
     world = build(
         study.workspaces["moving_slow"].plain(), described, "elhoseny2017/moving_slow", study.folder
     )
-    policy = Policy(**study.policies["replans"].model_dump())
+    policy = study.policies["replans"]
     # A way as long as the drive, of chords of half a cell, in a corner that no circle reaches: all
     # of it is checked in every step.
     turn = np.linspace(0.0, STEPS, 2 * STEPS)
     along = way(np.column_stack([200.0 + turn % 3.0, 200.0 + turn]))
     seconds = cpu_seconds(
-        lambda: circles.follow(world, along, 0, policy._replace(replan="when_blocked"))
+        lambda: circles.follow(world, along, 0, policy.but(replan="when_blocked"))
     )
     print(f"\n{'a step without replans':36}{1e6 * seconds / STEPS:12.1f} us")
     motion = Motion(np.column_stack([np.linspace(0, 100, STEPS + 1)] * 2), np.arange(STEPS + 1.0))

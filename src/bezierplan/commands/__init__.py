@@ -2,7 +2,13 @@
 parses the words, and runs.
 """
 
+import sys
 from argparse import ArgumentParser
+
+from bezierplan.places import TREE
+
+SNAKEMAKE = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
+"""The beginning of a command that starts the workflow."""
 
 
 def add_studies(parser: ArgumentParser) -> None:

@@ -12,9 +12,7 @@ from bezierplan.study import reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print the findings of a planner's contract tests; exit with status 1 if a test failed. Raises
-    Fault.
-    """
+    """Print a planner's contract tests; exit with status 1 if one failed. Raises Fault."""
     planner = parser.add_argument(
         "planner", help="its name, or the path of its file; with --study the name of a method"
     )
@@ -61,8 +59,5 @@ def of_text(text: str) -> dict[str, Any]:
 def of_study(name: str, method: str) -> tuple[str, dict[str, Any]]:
     """The planner and settings of a study's method. Raises Fault."""
     (study,) = reading.load(reading.read_config({"studies": [name]})).values()
-    if method not in study.methods:
-        raise checked.Fault(
-            f"{name}: methods: {method}: unknown{checked.closest(method, study.methods)}"
-        )
+    checked.check_known(method, study.methods, f"{name}: methods")
     return study.planner(method), study.resolved(method)

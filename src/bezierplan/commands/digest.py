@@ -9,6 +9,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
+from bezierplan.running.chunk import chunk_files
+
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Print a hash of each run table below a folder. Raises FileNotFoundError, or ValueError for an
@@ -24,10 +26,9 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
     FileNotFoundError if there is none.
     """
     tables: dict[str, list[Path]] = {}
-    for file in sorted(folder.rglob("runs/*/*/*.parquet")):
-        if file.stem.isdecimal():  # not the times and traces next to it
-            study, _, experiment, method, _ = file.parts[-5:]
-            tables.setdefault(f"{study}/{experiment}/{method}", []).append(file)
+    for file in chunk_files(folder):
+        study, _, experiment, method, _ = file.parts[-5:]
+        tables.setdefault(f"{study}/{experiment}/{method}", []).append(file)
     if not tables:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
@@ -36,9 +37,7 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
 
 
 def read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
-    """The rows of a chunk file, or only those with one id. Raises ValueError for a file without
-    runs.
-    """
+    """The rows of a chunk file, or those with one id. Raises ValueError if it has no runs."""
     try:
         return parquet.read_table(
             file, filters=[("id", "=", identity)] if identity else None

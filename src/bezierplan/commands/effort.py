@@ -10,32 +10,24 @@ from pathlib import Path
 from bezierplan.running import effort, records
 from bezierplan.running.effort import Session
 
-# Rules -> what their jobs do, apart from importing and from loading and compiling kernels; of
-# `runs` and `drives` also apart from planning.
-WORK = {
-    "runs": "checking paths, warm-up, files of runs",
-    "drives": "checking paths, warm-up, files of runs",
-    "problems": "problems and exact bounds",
-    "worlds": "problems and exact bounds",
-    "bounds": "problems and exact bounds",
-    "clairvoyant": "problems and exact bounds",
-    "table": "tables, claims, statistics",
-    "listing": "tables, claims, statistics",
-    "latex": "tables, claims, statistics",
-    "claims": "tables, claims, statistics",
-    "audit": "tables, claims, statistics",
-    "baseline_comparison": "tables, claims, statistics",
-    "summary": "tables, claims, statistics",
-    "sensitivity": "tables, claims, statistics",
-    "alternative": "alternatives: their runs and claims",
-    "interpretations_of": "interpretations: their runs and comparisons",
-    "figure": "drawing figures",
-    "narrow_figure": "drawing figures",
-    "verified": "judging stored runs again",
-    "page": "the page",
+# What jobs do, apart from importing and from loading and compiling kernels -> their rules; `runs`
+# and `drives` also apart from planning.
+_RULES = {
+    "checking paths, warm-up, files of runs": ("runs", "drives"),
+    "problems and exact bounds": ("problems", "worlds", "bounds", "clairvoyant"),
+    "tables, claims, statistics": (
+        *("table", "listing", "latex", "claims", "audit"),
+        *("baseline_comparison", "summary", "sensitivity"),
+    ),
+    "alternatives: their runs and claims": ("alternative",),
+    "interpretations: their runs and comparisons": ("interpretations_of",),
+    "drawing figures": ("figure", "narrow_figure"),
+    "judging stored runs again": ("verified",),
+    "the page": ("page",),
 }
+WORK = {rule: work for work, rules in _RULES.items() for rule in rules}
 ROWS = [
-    *("planning", *dict.fromkeys(WORK.values())),
+    *("planning", *_RULES),
     *("importing", "loading kernels", "compiling", "importing once for all jobs, forking"),
     *("starting and ending processes of jobs", "Snakemake itself"),
 ]
@@ -92,9 +84,7 @@ def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
 
 
 def lines(session: Session, parts: Counter[str], jobs: int, waited: float) -> list[str]:
-    """A table in Markdown. What the cores did not do for this workflow is what remains of their
-    time.
-    """
+    """A table in Markdown. What the cores did not do for this workflow is the time that is left."""
     clock = session.ended - session.started
     whole = clock * session.cores
     rest = {"cores idle, or busy with other programs": whole - parts.total()}

@@ -9,13 +9,13 @@ import heapq
 import os
 import re
 import subprocess
-import sys
 from argparse import ArgumentParser
 from collections.abc import Iterable
 from math import prod
 from pathlib import Path
 from typing import NamedTuple
 
+from bezierplan.commands import SNAKEMAKE
 from bezierplan.places import TREE
 from bezierplan.planners import planner_module
 from bezierplan.running import records
@@ -89,20 +89,10 @@ def files(studies: dict[str, Study], target: str, scale: str) -> list[str]:
 
 def planned(wanted: list[str], anew: bool) -> list[Step]:
     """The jobs that snakemake would run, from a dry run. Raises Fault with snakemake's words."""
-    command = [
-        sys.executable,
-        "-m",
-        "snakemake",
-        "--snakefile",
-        str(TREE / "Snakefile"),
-        "--workflow-profile",
-        "none",
-        "--cores",
-        "1",
-    ]
+    options = ["--workflow-profile", "none", "--cores", "1", "--dry-run", "--nolock"]
     triggers = ["--rerun-triggers", "mtime", "input", "params"]
     done = subprocess.run(
-        [*command, "--dry-run", "--nolock", *wanted, *triggers, *(["--forceall"] if anew else [])],
+        [*SNAKEMAKE, *options, *wanted, *triggers, *(["--forceall"] if anew else [])],
         capture_output=True,
         text=True,
         check=False,
@@ -163,9 +153,7 @@ def estimates(
 
 
 def keep(studies: dict[str, Study], folder: Path) -> None:
-    """Renew the kept times of what this folder's jobs of scale full took; those of other jobs
-    stay.
-    """
+    """Renew the kept times of this folder's jobs of scale full; those of other jobs stay."""
     own = records.measured(folder, lambda job: units_of(studies, job))
     known = records.kept(TREE / records.KEPT) if (TREE / records.KEPT).is_file() else {}
     records.keep(

@@ -2,15 +2,16 @@
 
 import inspect
 from argparse import ArgumentParser
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
+from bezierplan.analysis.table_kinds import Table
 from bezierplan.commands import add_studies
 from bezierplan.commands.completion import named
 from bezierplan.places import STUDIES
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.study import reading
-from bezierplan.study.artefacts import in_printed_order
+from bezierplan.study.artefacts import Figure, in_printed_order
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 
@@ -62,14 +63,9 @@ def lines(study: Study, kinds: list[str]) -> list[str]:
     ]
 
 
-def _tables(study: Study) -> Iterator[str]:
-    for name in in_printed_order(study.tables):
-        yield f"{study.key}_{name:12} {study.tables[name].title}"
-
-
-def _figures(study: Study) -> Iterator[str]:
-    for name in in_printed_order(study.figures):
-        yield f"{study.key}_{name:12} {study.figures[name].title}"
+def _titled(study: Study, artefacts: Mapping[str, Table | Figure]) -> Iterator[str]:
+    for name in in_printed_order(artefacts):
+        yield f"{study.key}_{name:12} {artefacts[name].title}"
 
 
 def _methods(study: Study) -> Iterator[str]:
@@ -105,8 +101,8 @@ def _claims(study: Study) -> Iterator[str]:
 
 
 KINDS: dict[str, Callable[[Study], Iterator[str]]] = {
-    "tables": _tables,
-    "figures": _figures,
+    "tables": lambda study: _titled(study, study.tables),
+    "figures": lambda study: _titled(study, study.figures),
     "methods": _methods,
     "workspaces": _workspaces,
     "experiments": _experiments,

@@ -2,6 +2,7 @@
 map of your own into it.
 """
 
+import re
 import shutil
 from argparse import ArgumentParser
 from pathlib import Path
@@ -46,11 +47,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         raise Fault("--start and --target: expected only with --from, a map of your own")
     map_file = _own_map(arguments.map, arguments.start, arguments.target) if arguments.map else None
     shutil.copytree(TEMPLATE, arguments.folder, ignore=shutil.ignore_patterns("__pycache__"))
-    readme = arguments.folder / "README.md"
-    readme.write_text(
-        readme.read_text(encoding="utf-8").replace("mystudy", arguments.folder.name),
-        encoding="utf-8",
-    )
+    _replace(arguments.folder / "README.md", "mystudy", arguments.folder.name)
     if map_file:
         _put(arguments.folder, *map_file)
     print(f"{arguments.folder}: a study; next: bezierplan run {arguments.folder}")
@@ -78,24 +75,16 @@ def _put(folder: Path, sources: list[Path], workspace: dict, ends: Ends) -> None
     (folder / "room.txt").unlink()
     shutil.rmtree(folder / "published")
     (folder / "claims.yaml").unlink()
-    artefacts = folder / "artefacts.yaml"
-    artefacts.write_text(
-        artefacts.read_text(encoding="utf-8").replace("    published: lengths.csv\n", ""),
-        encoding="utf-8",
-    )
+    _replace(folder / "artefacts.yaml", "    published: lengths.csv\n", "")
     experiments = folder / "experiments.yaml"
-    lines = experiments.read_text(encoding="utf-8").splitlines(keepends=True)
-    replaced = {
-        "  room:": f"  room: {_flow(workspace)}",
-        "  across:": f"  across: {_flow({'workspace': 'room'} | ends)}",
-    }
-    experiments.write_text(
-        "".join(
-            next((new for key, new in replaced.items() if line.startswith(key)), line)
-            for line in lines
-        ),
-        encoding="utf-8",
-    )
+    _replace(experiments, "^  room:.*\n", f"  room: {_flow(workspace)}")
+    _replace(experiments, "^  across:.*\n", f"  across: {_flow({'workspace': 'room'} | ends)}")
+
+
+def _replace(file: Path, old: str, new: str) -> None:
+    """Put a text in the place of what a regular expression finds in a file."""
+    text = re.sub(old, lambda _: new, file.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    file.write_text(text, encoding="utf-8")
 
 
 def _flow(mapping: dict) -> str:

@@ -25,10 +25,8 @@ PICTURES = ("song2016/figures/figure3.png", "song2016/figures/identified.png")
 DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
 # Tables of each study at scale full.
-SENSITIVITY, INTERPRETATIONS = (
-    "sensitivity.csv",
-    ("interpretations.csv", "explained.csv", "leave_one_table_out.csv"),
-)
+SENSITIVITY = "sensitivity.csv"
+INTERPRETATIONS = ("interpretations.csv", "explained.csv", "leave_one_table_out.csv")
 LIKELY = (
     "Which experiment was it? All details that a paper leaves open were varied together; these "
     "interpretations make its printed numbers most likely. docs/outcome/summary.md names their "
@@ -106,9 +104,7 @@ def write() -> None:
 
 
 def table(kept: Path) -> str:
-    """The README's headline, from the tables in a folder, and below it the scale, from the summary
-    there.
-    """
+    """The README's headline, from a folder's tables, and the scale, from its summary."""
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
     overview = headline.headline(
         *(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", BASELINE_COMPARISON)),
@@ -123,9 +119,7 @@ def table(kept: Path) -> str:
 
 
 def _most_likely(kept: Path, studies: list[str]) -> str:
-    """The interpretations under which the papers' numbers are most likely, as far as they were
-    searched.
-    """
+    """The interpretations under which the papers' numbers are most likely, as far as searched."""
     files = [file for key in studies if (file := kept / f"{key}_{INTERPRETATIONS[0]}").is_file()]
     return (
         f"\n\n{LIKELY}\n\n{table_text(explained.brief(pd.concat(map(pd.read_csv, files))))}"

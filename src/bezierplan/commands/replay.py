@@ -14,6 +14,7 @@ from bezierplan.figures import animation, sheet
 from bezierplan.figures.panels import Sources, panel_of
 from bezierplan.geometry import checker, curves
 from bezierplan.running import rides
+from bezierplan.running.chunk import chunk_files
 from bezierplan.schema.words import amount
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
@@ -103,12 +104,8 @@ def _verdict(run: pd.Series, unit: str) -> str:
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
     """The rows with this name in the run tables below a folder, by file."""
     study, experiment, _, method, _ = name.split("/")
-    runs = {}
-    for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
-        if file.stem.isdecimal():  # not the times and traces next to it
-            for row in read_rows(file, name):
-                runs[file] = row
-    return runs
+    files = chunk_files(folder, f"*/{study}/runs/{experiment}/{method}/*.parquet")
+    return {file: row for file in files for row in read_rows(file, name)}
 
 
 def equal(run: pd.Series, stored: dict[str, Any]) -> bool:

@@ -8,6 +8,7 @@ import sys
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from pathlib import Path
 
+from bezierplan.commands import SNAKEMAKE
 from bezierplan.places import TREE
 from bezierplan.schema.checked import Fault
 
@@ -39,10 +40,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
             "shows examples"
         )
     # Here its absence is told as that of the extra.
-    from snakemake.cli import (
-        get_argument_parser,
-        parse_cores,
-    )
+    from snakemake.cli import get_argument_parser, parse_cores
     from snakemake.exceptions import CliException
 
     started = command(words)
@@ -64,13 +62,4 @@ def command(words: list[str]) -> list[str]:
     others = [word for word in words if not (Path(word) / "experiments.yaml").is_file()]
     studies = ["--config", f"studies={json.dumps(list(map(str, folders)))}"] if folders else []
     profile = ["--workflow-profile", str(TREE / "profiles" / "default")]
-    return [
-        sys.executable,
-        "-m",
-        "snakemake",
-        "--snakefile",
-        str(TREE / "Snakefile"),
-        *profile,
-        *others,
-        *studies,
-    ]
+    return [*SNAKEMAKE, *profile, *others, *studies]

@@ -14,7 +14,7 @@ from bezierplan.analysis import verification
 from bezierplan.commands import outcome
 from bezierplan.places import TREE
 from bezierplan.schema.checked import Fault
-from bezierplan.study import reading
+from bezierplan.study import reading, targets
 from bezierplan.study.definition import Study
 
 KEPT = TREE / outcome.KEPT / outcome.NUMBERS_FULL
@@ -35,22 +35,12 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     given = parser.parse_args(words)
     studies = reading.load(reading.read_config({}))
     if given.targets:
-        print(" ".join(f"{key}_{table}" for key, table in tables(studies)))
+        print(" ".join(f"{key}_{table}" for key, table in targets.published_tables(studies)))
         return
     found = verified(studies)
     told = verification.failed(found)
     print("\n".join(lines(found, told)))
     sys.exit(1 if len(told) else 0)
-
-
-def tables(studies: dict[str, Study]) -> list[tuple[str, str]]:
-    """The tables compared with published numbers, by study and name."""
-    return [
-        (key, name)
-        for key, study in studies.items()
-        for name, table in study.compared().items()
-        if table.published
-    ]
 
 
 def verified(studies: dict[str, Study]) -> pd.DataFrame:
@@ -59,7 +49,7 @@ def verified(studies: dict[str, Study]) -> pd.DataFrame:
     """
     kept = verification.with_width(pd.read_csv(KEPT))
     compared = []
-    for key, table in tables(studies):
+    for key, table in targets.published_tables(studies):
         file = RESULTS / key / "tables" / f"{table}.comparison.csv"
         if not file.is_file():
             raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")

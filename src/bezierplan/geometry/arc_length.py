@@ -12,9 +12,7 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 @allocation_free
 def _speed(differences: np.ndarray, t: float) -> float:
-    """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule in
-    Bernstein form.
-    """
+    """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule."""
     n = len(differences) - 1
     s = 1.0 - t
     first = s if n else 1.0

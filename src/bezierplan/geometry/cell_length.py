@@ -114,9 +114,7 @@ def write_samples(
 
 @allocation_free
 def _cell(coordinate: float, before: int) -> int:
-    """Column or row of a coordinate; on a grid line that of the previous sample, if it is next to
-    the line.
-    """
+    """Column or row of a coordinate; next to a grid line, that of the previous sample if close."""
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
         return before
@@ -251,16 +249,9 @@ def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
     return length
 
 
-def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
-    """Length of a polyline."""
-    return sum_of_steps(x, y, np.empty(_BLOCK))
-
-
 @allocation_free
 def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
-    """`polyline_length`, for kernels. steps: scratch, at least as many numbers as in a block or as
-    steps.
-    """
+    """Length of a polyline. steps: scratch, at least as many numbers as in a block or as steps."""
     # Square roots and their sum are computed in two loops, so that the first can use vector
     # instructions, and the order of the sum stays as written; by blocks, so that a processor takes
     # the roots of one block while it still adds those of the one before.
@@ -309,9 +300,7 @@ def length8(path: Path, grid: Grid) -> float:
 
 
 def _is_cell_path(path: Path, grid: Grid) -> bool:
-    """Whether a path is a polyline through centres of cells, whose legs run along rows, columns and
-    diagonals.
-    """
+    """Whether a path is a polyline through centres of cells along rows, columns and diagonals."""
     if path.curve != "polyline":
         return False
     points = grid.in_cells(path.points) - 0.5

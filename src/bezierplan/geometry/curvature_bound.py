@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.checker.hulls import LARGEST_DEGREE, STACK, copy_points, halve
+from bezierplan.geometry.checker.hulls import BINOMIAL, STACK, copy_points, halve
 from bezierplan.kernels import allocation_free, compiled
 
 CURVATURE_TOLERANCE = 1e-6
@@ -23,11 +23,6 @@ _STRAIGHT = 1e-13
 # A share of a piece this short whose curvature is still not bounded stands still or turns on the
 # spot.
 _SHORTEST = 1e-9
-
-_BINOMIAL = np.array(
-    [[math.comb(n, k) for k in range(2 * LARGEST_DEGREE)] for n in range(2 * LARGEST_DEGREE)],
-    dtype=float,
-)
 
 
 class LargestCurvature(NamedTuple):
@@ -55,9 +50,7 @@ def largest_curvature(pieces: np.ndarray) -> LargestCurvature:
 
 @compiled
 def _largest(velocities):
-    """Both values of `LargestCurvature` from the control vectors (pieces, degree, 2) of the
-    velocities.
-    """
+    """Both values of `LargestCurvature` from velocities' control vectors (pieces, degree, 2)."""
     stack, width = np.empty((STACK, velocities.shape[1], 2)), np.empty(STACK)
     attained = bound = 0.0
     for piece in range(len(velocities)):
@@ -82,9 +75,7 @@ def _largest(velocities):
 
 @allocation_free
 def _at_ends(velocities, width):
-    """Curvature at both ends of a part of a piece, which is the given share of it; 0 where it
-    stands still there.
-    """
+    """Curvature at both ends of a part, the given share of a piece; 0 where it stands still."""
     m = len(velocities) - 1
     return _at_end(velocities[0], velocities[1], m / width), _at_end(
         velocities[m], velocities[m - 1], m / width
@@ -108,8 +99,8 @@ def _bound(velocities, width):
         for i in range(max(0, k - m), min(m, k) + 1):
             j = k - i
             product = velocities[i, 0] * velocities[j, 0] + velocities[i, 1] * velocities[j, 1]
-            square += _BINOMIAL[m, i] * _BINOMIAL[m, j] * product
-        square /= _BINOMIAL[2 * m, k]
+            square += BINOMIAL[m, i] * BINOMIAL[m, j] * product
+        square /= BINOMIAL[2 * m, k]
         slowest, fastest = min(slowest, square), max(fastest, square)
     for k in range(2 * m):
         cross = 0.0
@@ -117,11 +108,9 @@ def _bound(velocities, width):
             j = k - i
             x, y = velocities[j + 1, 0] - velocities[j, 0], velocities[j + 1, 1] - velocities[j, 1]
             cross += (
-                _BINOMIAL[m, i]
-                * _BINOMIAL[m - 1, j]
-                * (velocities[i, 0] * y - velocities[i, 1] * x)
+                BINOMIAL[m, i] * BINOMIAL[m - 1, j] * (velocities[i, 0] * y - velocities[i, 1] * x)
             )
-        largest = max(largest, m * abs(cross) / _BINOMIAL[2 * m - 1, k])
+        largest = max(largest, m * abs(cross) / BINOMIAL[2 * m - 1, k])
     if largest <= _STRAIGHT * fastest:
         return 0.0
     return largest / width / slowest**1.5 if slowest > 0.0 else np.inf

@@ -41,9 +41,7 @@ def least_points(curve: str) -> int:
 
 
 def ends(curve: str) -> tuple[int, int]:
-    """Which control points are start and target; the last one of a `ferguson` curve is a
-    tangent.
-    """
+    """Which control points are start and target; the last of a `ferguson` curve is a tangent."""
     return (0, -2) if curve == "ferguson" else (0, -1)
 
 
@@ -220,9 +218,7 @@ def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
 
 
 def point_at(path: Path, at: float) -> np.ndarray:
-    """The point (2,) of a path at a piece's number plus the parameter within the piece, in the
-    path's unit.
-    """
+    """The point (2,) of a path at a piece's number plus the parameter in it, in the path's unit."""
     pieces = bezier_pieces(path)
     piece = min(int(at), len(pieces) - 1)
     return bernstein(pieces.shape[1] - 1, np.array([at - piece]))[0] @ pieces[piece]
@@ -263,9 +259,7 @@ def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature (n,) and speed (n,) of the piece pieces[i] (n, degree + 1, 2) at the parameter
-    t[i].
-    """
+    """Curvature (n,) and speed (n,) of pieces[i] (n, degree + 1, 2) at the parameter t[i]."""
     degree = pieces.shape[1] - 1
     first = degree * np.einsum("sk,skd->sd", bernstein(degree - 1, t), np.diff(pieces, axis=1))
     second = np.zeros_like(first)

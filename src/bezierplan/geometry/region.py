@@ -12,7 +12,7 @@ import numpy as np
 
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.polygons import Polygons, cross, rings, unit
 from bezierplan.workspaces.problem import Workspace
 
 if TYPE_CHECKING:
@@ -173,9 +173,7 @@ def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) 
 
 
 def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
-    """Points (..., 2) in units, in the region's own frame: on a grid, relative to its lower left
-    corner.
-    """
+    """Points (..., 2) in units, in the region's frame: on a grid, from its lower left corner."""
     return points - region.origin if isinstance(region, GridRegion) else points
 
 
@@ -289,33 +287,20 @@ def _circle_region(circles: Circles) -> CircleRegion:
 
 
 def _polygon_region(polygons: Polygons) -> PolygonRegion:
-    import shapely
-
     from bezierplan.geometry.bins import bins_of
 
-    left, right, bottom, top = polygons.bounds
-    obstacles = [shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles]
-    free = shapely.box(left, bottom, right, top).difference(shapely.union_all(obstacles))
-    rings = []
-    for part in shapely.get_parts(free):
-        if isinstance(part, shapely.Polygon):
-            oriented = shapely.geometry.polygon.orient(part)
-            rings += [
-                _corners(shapely.get_coordinates(ring)[:-1])
-                for ring in (oriented.exterior, *oriented.interiors)
-            ]
-
-    begin = np.concatenate([np.empty((0, 2)), *rings])
+    cornered = [_corners(ring) for ring in rings(polygons.free())]
+    begin = np.concatenate([np.empty((0, 2)), *cornered])
     following = np.empty(len(begin), dtype=np.int64)
     first = 0
-    for ring in rings:
+    for ring in cornered:
         following[first : first + len(ring)] = first + np.roll(np.arange(len(ring)), -1)
         first += len(ring)
     preceding = np.argsort(following)
     end = begin[following]
-    direction = _unit(end - begin)
+    direction = unit(end - begin)
     normals = np.column_stack([-direction[:, 1], direction[:, 0]])
-    convex = _cross(direction, direction[following]) < 0
+    convex = cross(direction, direction[following]) < 0
     edges = np.hstack([begin, end])
     return PolygonRegion(edges, normals, following, preceding, convex, bins_of(edges))
 
@@ -323,14 +308,6 @@ def _polygon_region(polygons: Polygons) -> PolygonRegion:
 def _corners(ring: np.ndarray) -> np.ndarray:
     """A ring (n, 2) without repeated and collinear vertices."""
     ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
-    arriving = _unit(ring - np.roll(ring, 1, axis=0))
-    leaving = _unit(np.roll(ring, -1, axis=0) - ring)
-    return ring[np.abs(_cross(arriving, leaving)) > COLLINEAR]
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    arriving = unit(ring - np.roll(ring, 1, axis=0))
+    leaving = unit(np.roll(ring, -1, axis=0) - ring)
+    return ring[np.abs(cross(arriving, leaving)) > COLLINEAR]

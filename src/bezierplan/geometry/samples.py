@@ -1,6 +1,4 @@
-"""A path as a robot follows it: points at distances along it, with heading, curvature and the speed
-that limits allow.
-"""
+"""A path as a robot follows it: points along it, with heading, curvature and the speed allowed."""
 
 import math
 from collections.abc import Mapping
@@ -156,9 +154,7 @@ def speeds(
 
 
 def _reached(fast: np.ndarray, gains: np.ndarray) -> np.ndarray:
-    """Speeds (n,), from rest, at most those that are given, whose squares grow by at most gains
-    (n - 1,).
-    """
+    """Speeds (n,), from rest, at most those given, whose squares grow by at most gains (n - 1,)."""
     reached = np.zeros(len(fast))
     for k, gain in enumerate(gains):
         reached[k + 1] = min(fast[k + 1], math.sqrt(reached[k] ** 2 + gain))
@@ -166,9 +162,7 @@ def _reached(fast: np.ndarray, gains: np.ndarray) -> np.ndarray:
 
 
 def check_limits(speed: float | None, accelerations: Mapping[str, float | None]) -> None:
-    """Raise ValueError unless all limits that are given are above 0, and accelerations, by name, go
-    with a speed.
-    """
+    """Raise ValueError unless all limits given are above 0, and accelerations go with a speed."""
     for name, value in {"speed": speed, **accelerations}.items():
         if value is not None and not 0 < value < math.inf:
             raise ValueError(f"{name}: {value:g}; expected a number above 0")
@@ -211,9 +205,7 @@ def times(samples: Samples, speed: np.ndarray) -> np.ndarray:
 
 
 def _lengths(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Arc lengths (pieces * intervals,) of all intervals, and where in a piece's parameter they
-    begin (intervals,).
-    """
+    """Arc lengths (pieces * intervals,) of intervals, whose parameters begin at (intervals,)."""
     knots = np.arange(_INTERVALS) / _INTERVALS
     repeated = np.repeat(pieces, _INTERVALS, axis=0)
     low = np.tile(knots, len(pieces))

@@ -26,9 +26,7 @@ SHIFT = MOST_ANGLE**2 / 6
 """By how much a transition shifts an arc, at most, as a share of its radius."""
 
 EXCESS = 1e-4
-"""By which share the curvature of a transition or of a piece of an arc is above that of the arc, at
-most.
-"""
+"""By which share the curvature of a transition, or an arc's piece, is above the arc's, at most."""
 
 # Largest angle of an arc, in radians, that is one cubic piece.
 _PIECE_ANGLE = math.pi / 16

@@ -76,6 +76,17 @@ class Plan(NamedTuple):
     stop: str
     extra: dict[str, float | bool]
 
+    @classmethod
+    def of_one(
+        cls,
+        path: Path | None,
+        length: float,
+        stop: str,
+        extra: dict[str, float | bool] | None = None,
+    ) -> "Plan":
+        """The plan of who evaluates a single path and takes it for free, or finds none."""
+        return cls(path, length, path is not None, 1, np.array([length]), stop, extra or {})
+
 
 PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 """Keys of a described problem that are columns of the runs table."""

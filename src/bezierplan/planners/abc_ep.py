@@ -131,15 +131,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     history *= grid.cell
     extra = {"first_length": float(history[0]), "turns": max(0, len(points) - 2)}
     if len(points) == 0:
-        return Plan(
-            None,
-            np.inf,
-            claimed_feasible=False,
-            evaluations=1,
-            history=history,
-            stop="no way",
-            extra=extra,
-        )
+        return Plan.of_one(None, np.inf, "no way", extra)
     points = grid.in_units(points)
     points[[0, -1]] = problem.start, problem.target
     evaluations = 1 + settings.population * settings.generations
@@ -157,9 +149,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 @compiled
 def _search(colony_rng, evolution_rng, occupied, start, target, rules):
-    """Points (points, 2) of the path, empty if the colony found none, and the shortest length so
-    far (generations + 1,).
-    """
+    """Points (points, 2) of the path, if found, and the least length so far (generations + 1,)."""
     path = _first_path(colony_rng, occupied, start, target, rules)
     if len(path) == 0:
         return path, np.full(1, np.inf)
@@ -192,9 +182,7 @@ def _first_path(rng, occupied, start, target, rules):
 
 @compiled
 def _next_point(rng, occupied, target, path, count, rules):
-    """Append the best point that a colony finds after the first `count` points of a path, in place.
-    Returns its cost.
-    """
+    """Append, in place, the best point found to the first `count` of a path. Returns its cost."""
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)
@@ -373,9 +361,7 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, rules):
 
 @allocation_free
 def _shift(rng, occupied, point, spread):
-    """Move a point by a Gaussian step in both coordinates, in place; it stays within the centres of
-    the outermost cells.
-    """
+    """Move a point by Gaussian steps, in place, within the centres of the outermost cells."""
     for k in range(2):
         side = occupied.shape[1 - k]
         point[k] = min(max(point[k] + spread * rng.standard_normal(), 0.5), side - 0.5)

@@ -14,11 +14,11 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.cell_paths import length, put, step_between
+from bezierplan.planners.parts.cell_paths import length, plan_of, put, step_between
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.lattice import Corners, Lattice, lattice
+from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
@@ -112,21 +112,11 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 28.
     """
-    grid = problem.workspace
     corners = Corners(settings.corners).name
-    colony = search(lattice(grid, problem.start, problem.target, corners), rng, settings)
-    solved = len(colony.best) > 0
-    return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, colony.best))
-        if solved
-        else None,
-        objective=colony.history[-1] * grid.cell,
-        claimed_feasible=solved,
-        evaluations=settings.ants * len(colony.history),
-        history=colony.history * grid.cell,
-        stop="iterations" if solved else "no path",
-        extra={},
-    )
+    places = lattice(problem.workspace, problem.start, problem.target, corners)
+    colony = search(places, rng, settings)
+    evaluations = settings.ants * len(colony.history)
+    return plan_of(problem, colony.best, colony.history, evaluations, "iterations")
 
 
 def search(places: Lattice, rng: np.random.Generator, rules: Settings) -> Colony:
@@ -150,10 +140,8 @@ def _colony(rng, lattice, heuristic, rules):
     cells = len(lattice.row)
     trail = np.full((cells, 8), rules.initial_trail)
     visits = np.full(cells, -1)
-    paths, sizes = (
-        np.empty((rules.ants, cells), dtype=np.int64),
-        np.empty(rules.ants, dtype=np.int64),
-    )
+    paths = np.empty((rules.ants, cells), dtype=np.int64)
+    sizes = np.empty(rules.ants, dtype=np.int64)
     best, best_size, best_length = np.empty(cells, dtype=np.int64), 0, np.inf
     history = np.empty(rules.iterations)
 

@@ -15,8 +15,8 @@ from bezierplan.planners import About, Plan, Range, ant_colony
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, lattice, points
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.lattice import Corners, lattice
+from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
@@ -43,9 +43,7 @@ class Settings(NamedTuple):
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
 
 
-def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+check = check_pairs
 
 
 @with_settings(ant_colony.Settings, Settings)
@@ -79,22 +77,18 @@ def plan(
     ----------
     ma2020, Section 4.1, reference 30.
     """
-    grid = problem.workspace
-    places = lattice(grid, problem.start, problem.target, Corners(ants.corners).name)
+    corners = Corners(ants.corners).name
+    places = lattice(problem.workspace, problem.start, problem.target, corners)
     first, moves = rng.spawn(2)
     colony = ant_colony.search(places, first, ants)
     best, history = colony.best, colony.history
-    solved = len(best) > 0
-    if solved and places.start != places.target:
+    if len(best) > 0 and places.start != places.target:
         rules = cell_paths.Rules(
             settings.crossover_probability,
-            True,
             settings.mutation_probability,
+            settings.elitism,
             settings.mutation,
             settings.longest_join,
-            0,
-            True,
-            settings.elitism,
         )
         best, later = cell_paths.evolve(
             moves,
@@ -104,26 +98,15 @@ def plan(
             rules,
         )
         history = np.concatenate([history, later[1:]])
-    return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best))
-        if solved
-        else None,
-        objective=history[-1] * grid.cell,
-        claimed_feasible=solved,
-        evaluations=ants.ants * len(colony.history)
-        + settings.population * (len(history) - len(colony.history)),
-        history=history * grid.cell,
-        stop="generations" if solved else "no path",
-        extra={},
-    )
+    generations = len(history) - len(colony.history)
+    evaluations = ants.ants * len(colony.history) + settings.population * generations
+    return cell_paths.plan_of(problem, best, history, evaluations, "generations")
 
 
 def _first_population(colony: ant_colony.Colony, population: int) -> tuple[np.ndarray, np.ndarray]:
     """Paths (population, cells) and their sizes (population,)."""
-    paths, sizes = (
-        np.empty((population, colony.paths.shape[1]), dtype=np.int64),
-        np.full(population, len(colony.best)),
-    )
+    paths = np.empty((population, colony.paths.shape[1]), dtype=np.int64)
+    sizes = np.full(population, len(colony.best))
     paths[:, : len(colony.best)] = colony.best
     arrived = np.flatnonzero(colony.sizes)
     if len(arrived):

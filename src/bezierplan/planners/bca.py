@@ -20,7 +20,9 @@ from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
+    check_curve,
     check_pairs,
+    copy,
     flip_bit,
     redraw_gene,
     roulette,
@@ -150,19 +152,8 @@ class Settings(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
-    least = curves.least_points(settings["curve"]) - 2
-    if settings["control_points"] < least:
-        raise ValueError(
-            f"control_points: {settings['control_points']}; a curve of kind {settings['curve']} "
-            f"needs at least {least}"
-        )
-    pieces = len(curves.piece_matrix(settings["curve"], settings["control_points"] + 2))
-    if settings["samples"] < pieces + 1:
-        raise ValueError(
-            f"samples: {settings['samples']}; "
-            f"the {pieces} pieces of this curve need at least {pieces + 1}"
-        )
+    check_pairs(settings)
+    check_curve(settings, "control_points")
     if settings["length_weight"] == 0:
         raise ValueError(
             "length_weight: 0; "
@@ -200,9 +191,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if problem.start == problem.target:
         # Start and target coincide: there is no length to minimise and no distance to divide by.
         point = Path("bezier", np.array([problem.start, problem.target]))
-        return Plan(
-            point, 0.0, True, 1, np.zeros(1), "generations", {"bad_samples": 0, "safety_term": 0.0}
-        )
+        return Plan.of_one(point, 0.0, "generations", {"bad_samples": 0, "safety_term": 0.0})
     if settings.control_points == 0:
         # No search needed: one chromosome, the straight line.
         settings = settings._replace(population=1, generations=0)
@@ -275,9 +264,7 @@ def code_centres(rows: int, columns: int) -> np.ndarray:
 
 
 def _cells(grid: Grid, reach: int) -> _Cells:
-    """The grid for the kernels; near holds the occupied cells at most `reach` columns and rows
-    away.
-    """
+    """The grid for the kernels; near: the occupied cells at most `reach` columns and rows away."""
     rows, columns = grid.occupied.shape
     legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
     legal[: rows * columns] = ~grid.occupied[::-1].ravel()
@@ -312,9 +299,7 @@ def _sampled(problem: Problem, curve: str, control_points: int, samples: int) ->
 
 @cache
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) at the
-    samples of a curve.
-    """
+    """Weights of both ends (2, samples) and of free control points (n, samples) of a curve."""
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
     # A copy even where nothing is left, since numba would compile all kernels once more for an
     # array that is read-only.
@@ -323,8 +308,7 @@ def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, n
 
 @compiled
 def _search(rng, codes, cells, curve, rules):
-    """Genes (control points,) of the best chromosome, and the lowest cost so far (generations +
-    1,).
+    """The best chromosome (control points,), and the lowest cost so far (generations + 1,).
 
     codes: (population, control points), the first generation; overwritten.
     """
@@ -332,10 +316,8 @@ def _search(rng, codes, cells, curve, rules):
     bits = int(np.log2(len(cells.legal)) + 0.5)
     cost, parent_cost = np.empty(population), np.empty(population)
     # The first generation inherits nothing.
-    parents, drawn = (
-        np.full_like(codes, -1),
-        np.zeros(population, dtype=np.int64),
-    )
+    parents = np.full_like(codes, -1)
+    drawn = np.zeros(population, dtype=np.int64)
     best, best_cost = codes[0].copy(), np.inf
     history = np.empty(rules.generations + 1)
     scratch = np.empty((3, curve.ends.shape[1]))
@@ -351,7 +333,7 @@ def _search(rng, codes, cells, curve, rules):
             else:
                 cost[i] = _cost(codes[i], cells, curve, rules, scratch)
             if cost[i] < best_cost:
-                _copy(codes[i], best)
+                copy(codes[i], best)
                 best_cost = cost[i]
         history[generation] = best_cost
         if generation == rules.generations:
@@ -361,14 +343,14 @@ def _search(rng, codes, cells, curve, rules):
         parent_cost, cost = cost, parent_cost
         drawn = roulette(rng, 1.0 / parent_cost, population)
         for i in range(population):
-            _copy(parents[drawn[i]], codes[i])
+            copy(parents[drawn[i]], codes[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability and genes > 1:
                 _cross(rng, codes[i], codes[i + 1], bits, cells.legal, rules.cut)
         for i in range(population):
             _mutate(rng, codes[i], bits, cells, rules)
         if rules.elitism:
-            _copy(best, codes[0])
+            copy(best, codes[0])
     return best, history
 
 
@@ -447,9 +429,7 @@ def _cost(genes, cells, curve, rules, scratch):
 
 @allocation_free
 def _safety_term(bad, clearance, safety_distance):
-    """How far the path undercuts the safety distance, from 0 to 1 (ma2020, eq. 14; 1 for a path
-    that collides).
-    """
+    """How far the path undercuts the safety distance: 0 to 1 (ma2020, eq. 14; 1 if it collides)."""
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
         return 0.0
     return 1.0 if bad > 0 else (1.0 - clearance / safety_distance) ** 2
@@ -504,9 +484,7 @@ def _collisions(x, y, occupied):
 
 @allocation_free
 def _inside(value, cell):
-    """Whether a coordinate lies between the two grid lines of its column or row; rounding alone
-    must not decide.
-    """
+    """Whether a coordinate is between the grid lines of its cell; rounding must not decide."""
     return cell + ON_LINE < value < cell + 1 - ON_LINE
 
 
@@ -544,9 +522,7 @@ def _cuts(x, y, x_end, y_end, occupied):
 
 @allocation_free
 def _clearance(x, y, cells):
-    """Minimum distance in cells of the samples to the occupied cells listed as near to theirs;
-    infinite if there are none.
-    """
+    """Minimum distance in cells of samples to the occupied cells near theirs, or infinite."""
     rows, columns = cells.occupied.shape
     least = np.inf
     for s in range(len(x)):
@@ -566,10 +542,3 @@ def _same(one, other):
         if one[k] != other[k]:
             return False
     return True
-
-
-@allocation_free
-def _copy(source, target):
-    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
-    for k in range(len(source)):
-        target[k] = source[k]

@@ -19,7 +19,14 @@ import numpy as np
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.genetic import check_pairs, complement_bit, roulette, swap_tails
+from bezierplan.planners.parts.genetic import (
+    check_curve,
+    check_pairs,
+    complement_bit,
+    copy,
+    roulette,
+    swap_tails,
+)
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, embed
@@ -99,23 +106,12 @@ class Settings(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    least = curves.least_points(settings["curve"]) - 2
-    if settings["genes"] < least:
-        raise ValueError(
-            f"genes: {settings['genes']}; "
-            f"a curve of kind {settings['curve']} needs at least {least}"
-        )
-    check_pairs(settings["population"])
+    check_curve(settings, "genes")
+    check_pairs(settings)
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
         raise ValueError("spacing: arc_length; only a polyline has it, other curves need parameter")
     if settings["cut"] == "gene" and settings["genes"] == 1:
         raise ValueError("cut: gene; a single gene can only be cut at a bit")
-    pieces = len(curves.piece_matrix(settings["curve"], settings["genes"] + 2))
-    if settings["samples"] < pieces + 1:
-        raise ValueError(
-            f"samples: {settings['samples']}; "
-            f"the {pieces} pieces of this curve need at least {pieces + 1}"
-        )
 
 
 @with_settings(Settings)
@@ -227,20 +223,13 @@ def _search(rng, cells, occupied, places, curve, rules):
     bits = int(np.log2(occupied.size) + 0.5)
     lengths = np.empty((population, len(stretches)))
     # Of each stretch, how many samples lie in occupied cells, and how often they enter one.
-    bad, entries = (
-        np.empty((population, len(stretches)), dtype=np.int64),
-        np.empty((population, len(stretches)), dtype=np.int64),
-    )
-    parent_lengths, parent_bad, parent_entries = (
-        np.empty_like(lengths),
-        np.empty_like(bad),
-        np.empty_like(entries),
-    )
+    bad = np.empty((population, len(stretches)), dtype=np.int64)
+    entries = np.empty_like(bad)
+    parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
+    parent_entries = np.empty_like(entries)
     # The first generation inherits nothing.
-    parents, drawn = (
-        np.full_like(cells, -1),
-        np.zeros(population, dtype=np.int64),
-    )
+    parents = np.full_like(cells, -1)
+    drawn = np.zeros(population, dtype=np.int64)
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
     history = np.empty(rules.generations + 1)
@@ -295,7 +284,7 @@ def _search(rng, cells, occupied, places, curve, rules):
                 for cell in cells[i, 1:-1]:
                     objective[i] += rules.occupied_point_penalty * by_number[cell]
             if objective[i] < best_objective:
-                _copy(cells[i], best)
+                copy(cells[i], best)
                 best_objective, best_bad = objective[i], count
         history[generation] = best_objective
         if generation == rules.generations:
@@ -307,7 +296,7 @@ def _search(rng, cells, occupied, places, curve, rules):
         parent_entries, entries = entries, parent_entries
         drawn = roulette(rng, 1.0 / objective, population)
         for i in range(population):
-            _copy(parents[drawn[i]], cells[i])
+            copy(parents[drawn[i]], cells[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
                 cut = (
@@ -319,7 +308,7 @@ def _search(rng, cells, occupied, places, curve, rules):
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
         if rules.elitism:
-            _copy(best, cells[0])
+            copy(best, cells[0])
     return best, best_bad, history
 
 
@@ -336,13 +325,6 @@ def _penalties(bad, entries, penalty_for):
 
 
 @allocation_free
-def _copy(source, target):
-    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
-    for k in range(len(source)):
-        target[k] = source[k]
-
-
-@allocation_free
 def _same(cells, others, first, last):
     """Whether two chromosomes have the same control points first .. last."""
     for p in range(first, last + 1):
@@ -353,9 +335,7 @@ def _same(cells, others, first, last):
 
 @allocation_free
 def _mutate(rng, genes, bits, probability, mutation):
-    """Complement random bits of a chromosome in place (song2016, Section III-E describes
-    `one_bit`).
-    """
+    """Complement random bits of a chromosome in place (song2016, Section III-E: `one_bit`)."""
     if mutation == Mutation.one_bit:
         if rng.random() < probability:
             complement_bit(genes, integer(rng, 0, bits * len(genes)), bits)
@@ -392,16 +372,12 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch, with_ent
             x[s] += weights[s] * column
             y[s] += weights[s] * row
     for p in range(first_point + fewer, last_point + 1, 3):
-        a, b, c = (
-            basis[p, first : last + 1],
-            basis[p + 1, first : last + 1],
-            basis[p + 2, first : last + 1],
-        )
-        column_a, column_b, column_c = (
-            places[cells[p], 0],
-            places[cells[p + 1], 0],
-            places[cells[p + 2], 0],
-        )
+        a = basis[p, first : last + 1]
+        b = basis[p + 1, first : last + 1]
+        c = basis[p + 2, first : last + 1]
+        column_a = places[cells[p], 0]
+        column_b = places[cells[p + 1], 0]
+        column_c = places[cells[p + 2], 0]
         row_a, row_b, row_c = places[cells[p], 1], places[cells[p + 1], 1], places[cells[p + 2], 1]
         for s in range(samples):
             x[s] = x[s] + a[s] * column_a + b[s] * column_b + c[s] * column_c

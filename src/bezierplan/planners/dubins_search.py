@@ -89,9 +89,7 @@ _HALVINGS = 8
 
 
 class Settings(NamedTuple):
-    """What the robot can do, and how it stands at both ends; without a heading there, any is
-    right.
-    """
+    """What the robot can do, and how it stands at both ends; without a heading, any is right."""
 
     turning_radius: Annotated[
         float,
@@ -195,9 +193,7 @@ def searched(
 def _answer(
     problem: Problem, pieces: np.ndarray | None, expanded: int, stop: str, blocked: Region
 ) -> Plan:
-    """The answer with a path of pieces (n, 4, 2), relative to the region's origin, or without
-    one.
-    """
+    """The answer with a path of pieces (n, 4, 2), relative to the region's origin, or without."""
     told = {"evaluations": 1 + expanded, "stop": stop, "extra": {"expanded": expanded}}
     if pieces is None:
         return Plan(None, math.inf, claimed_feasible=False, history=np.array([math.inf]), **told)
@@ -217,9 +213,7 @@ def _answer(
 def _searches(
     problem: Problem, radius: float, only_radius: bool
 ) -> Iterator[tuple[float, float, int]]:
-    """The searches that follow each other: the radius that is driven, the factor of its steps, and
-    the most places.
-    """
+    """The searches in turn: the radius that is driven, the factor of its steps, the most places."""
     if only_radius:
         yield radius, *_WIDER
         return
@@ -298,10 +292,8 @@ def _distances(low, side, shape, known, blocked):
                 if so_far >= ahead[other_row, other_column]:
                     continue
                 link[0, 0, 0], link[0, 0, 1] = low[0] + side * column, low[1] + side * row
-                link[0, 1, 0], link[0, 1, 1] = (
-                    low[0] + side * other_column,
-                    low[1] + side * other_row,
-                )
+                link[0, 1, 0] = low[0] + side * other_column
+                link[0, 1, 1] = low[1] + side * other_row
                 if _is_clear(row, column, up, right, clear) or not collides(link, blocked):
                     ahead[other_row, other_column] = so_far
                     heapq.heappush(heap, (so_far, other_row, other_column))
@@ -384,9 +376,7 @@ def _free_word(a, b, radius, most, blocked, words, pieces):
 
 @compiled
 def _chain(poses, radius, most, blocked):
-    """The pieces (n, 4, 2) of free words from pose to pose; none if there is not one between two of
-    them.
-    """
+    """The pieces (n, 4, 2) of free words from pose to pose; none if one of them is missing."""
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
     chain = np.empty(((len(poses) - 1) * MOST_PIECES, 4, 2))
     total = 0
@@ -444,7 +434,9 @@ def _search(ends, radius, step, lattice, most, blocked):
         if ahead < nearest or expanded % _TRIED == 0:
             nearest = min(nearest, ahead)
             if _free_word(poses[node], target, radius, WORDS, blocked, words, pieces)[0] >= 0:
-                return _way(poses, came_from, node, target), expanded
+                way = _way(poses, came_from, node, 1)
+                way[-1] = target
+                return way, expanded
         for turn in range(-1, 2):
             pose = poses[count]
             _drive(poses[node], float(turn), step, radius, pose)
@@ -470,10 +462,8 @@ def _drive(pose, turn, step, radius, reached):
     """The pose that is reached from another by an arc or a straight line."""
     heading = pose[2] + turn * step / radius
     if turn == 0.0:
-        reached[0], reached[1] = (
-            pose[0] + step * math.cos(heading),
-            pose[1] + step * math.sin(heading),
-        )
+        reached[0] = pose[0] + step * math.cos(heading)
+        reached[1] = pose[1] + step * math.sin(heading)
     else:
         reached[0] = pose[0] + turn * radius * (math.sin(heading) - math.sin(pose[2]))
         reached[1] = pose[1] - turn * radius * (math.cos(heading) - math.cos(pose[2]))
@@ -482,9 +472,7 @@ def _drive(pose, turn, step, radius, reached):
 
 @allocation_free
 def _key(pose, step, headings):
-    """The number of a pose's cell and heading; cells are told apart up to a million steps from the
-    origin.
-    """
+    """The number of a pose's cell and heading; unique up to a million steps from the origin."""
     side = _CELL * step
     column, row = math.floor(pose[0] / side), math.floor(pose[1] / side)
     heading = round(pose[2] / math.tau * headings) % headings
@@ -492,15 +480,14 @@ def _key(pose, step, headings):
 
 
 @compiled
-def _way(poses, came_from, last, target):
-    """The poses (n, 3) from start to a node, and the target."""
+def _way(poses, came_from, last, room):
+    """The poses (n, 3) from start to a node, and room for so many more."""
     count = 0
     node = last
     while node >= 0:
         count += 1
         node = came_from[node]
-    way = np.empty((count + 1, 3))
-    way[count] = target
+    way = np.empty((count + room, 3))
     node = last
     for k in range(count - 1, -1, -1):
         way[k] = poses[node]
@@ -533,9 +520,7 @@ def _pulled_tight(
 
 
 def _tighter(best: np.ndarray, poses: np.ndarray, radius: float, blocked: Region) -> np.ndarray:
-    """The pieces of a path pulled tight between poses (n, 3) along it, as long as it becomes
-    shorter.
-    """
+    """The pieces of a path pulled tight between poses (n, 3) along it while it gets shorter."""
     length = _length(best)
     for _ in range(_ROUNDS):
         few = _shortcut(poses, radius, blocked)
@@ -572,9 +557,7 @@ def _places(pieces: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 @compiled
 def _shortcut(poses, radius, blocked):
-    """Those of some poses (n, 3) along a path over which a chain of free words is shortest; none if
-    there is no such chain.
-    """
+    """Those of poses (n, 3) along a path with the shortest chain of free words, if there is one."""
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
     count = len(poses)
     length, came_from = np.full(count, np.inf), np.full(count, -1)
@@ -593,23 +576,12 @@ def _shortcut(poses, radius, blocked):
                 break
     if length[-1] == np.inf:
         return poses[:0]
-    last, kept = count - 1, 1
-    while last > 0:
-        last = came_from[last]
-        kept += 1
-    found = np.empty((kept, 3))
-    last = count - 1
-    for k in range(kept - 1, -1, -1):
-        found[k] = poses[last]
-        last = came_from[last]
-    return found
+    return _way(poses, came_from, count - 1, 0)
 
 
 @compiled
 def _move(poses, radius, blocked):
-    """Move and turn each pose (n, 3) between the ends as long as the words to it and from it become
-    shorter and are free.
-    """
+    """Move and turn each pose (n, 3) between the ends while its words get shorter and are free."""
     words, pieces, before = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2)), np.empty(3)
     share = 1.0
     for _ in range(_HALVINGS):
@@ -631,9 +603,7 @@ def _move(poses, radius, blocked):
 
 @compiled
 def _through(poses, i, radius, blocked, words, pieces, limit):
-    """Length of the shortest free words to a pose and from it; infinite if they are not below a
-    limit.
-    """
+    """Length of the shortest free words to a pose and from it; infinite if not below a limit."""
     total = 0.0
     for k in range(i - 1, i + 1):
         words_between(poses[k], poses[k + 1], radius, words)

@@ -15,8 +15,8 @@ from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, lattice, points
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.lattice import Corners, lattice
+from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
@@ -51,9 +51,7 @@ class Settings(NamedTuple):
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
 
 
-def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+check = check_pairs
 
 
 @with_settings(Settings)
@@ -88,8 +86,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 31.
     """
-    grid = problem.workspace
-    places = lattice(grid, problem.start, problem.target, Corners(settings.corners).name)
+    corners = Corners(settings.corners).name
+    places = lattice(problem.workspace, problem.start, problem.target, corners)
     first, moves = rng.spawn(2)
     if places.start == places.target:
         # No search needed: all fish have arrived.
@@ -97,34 +95,22 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         paths, sizes, released = np.array([[places.start]]), np.array([1]), 1
     else:
         paths, sizes, released = _release(first, places, settings)
-    solved = len(sizes) > 0
     best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
-    if solved:
+    if len(sizes) > 0:
         rules = cell_paths.Rules(
             settings.crossover_probability,
-            True,
             settings.mutation_probability,
+            settings.elitism,
             cell_paths.WALK,
             settings.longest_walk,
             settings.tries,
-            True,
-            settings.elitism,
         )
         turns = np.resize(np.arange(len(sizes)), settings.population)
         best, history = cell_paths.evolve(
             moves, places, paths[turns], sizes[turns], settings.generations, rules
         )
-    return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best))
-        if solved
-        else None,
-        objective=history[-1] * grid.cell,
-        claimed_feasible=solved,
-        evaluations=settings.fish * released + settings.population * (len(history) - 1),
-        history=history * grid.cell,
-        stop="generations" if solved else "no path",
-        extra={},
-    )
+    evaluations = settings.fish * released + settings.population * (len(history) - 1)
+    return cell_paths.plan_of(problem, best, history, evaluations, "generations")
 
 
 _SWIMMING, _ARRIVED, _DEAD = range(3)
@@ -136,14 +122,10 @@ def _release(rng, lattice, swarm):
     (n,), and the number of releases.
     """
     wanted = swarm.population
-    arrivals, arrival_sizes = (
-        np.empty((wanted, swarm.longest_path), dtype=np.int64),
-        np.empty(wanted, dtype=np.int64),
-    )
-    paths, sizes = (
-        np.empty((swarm.fish, swarm.longest_path), dtype=np.int64),
-        np.empty(swarm.fish, dtype=np.int64),
-    )
+    arrivals = np.empty((wanted, swarm.longest_path), dtype=np.int64)
+    arrival_sizes = np.empty(wanted, dtype=np.int64)
+    paths = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64)
+    sizes = np.empty(swarm.fish, dtype=np.int64)
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
     cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     arrived = released = 0

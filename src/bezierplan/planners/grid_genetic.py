@@ -118,23 +118,13 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
-    start, target = (
-        start_row * walled.shape[1] + start_column,
-        target_row * walled.shape[1] + target_column,
-    )
+    start = start_row * walled.shape[1] + start_column
+    target = target_row * walled.shape[1] + target_column
     cells, found, history = _search(*rng.spawn(2), walker, start, target, settings)
     history *= grid.cell
     extra = {"first_walks": int(found)}
     if found == 0:
-        return Plan(
-            None,
-            np.inf,
-            claimed_feasible=False,
-            evaluations=1,
-            history=history,
-            stop="no way",
-            extra=extra,
-        )
+        return Plan.of_one(None, np.inf, "no way", extra)
     row, column = np.divmod(cells, walled.shape[1])
     centres = grid.in_units(np.column_stack([column, row]) - 0.5)
     return Plan(
@@ -149,18 +139,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def _turns(column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Whether (n,) a cell of a path is its first, its last, or one at which the direction
-    changes.
-    """
+    """Whether (n,) a cell of a path is its first, its last, or one where the direction changes."""
     steps = np.column_stack([np.diff(column), np.diff(row)])
     inner = (steps[1:] != steps[:-1]).any(axis=1)
     return np.concatenate([[True], inner, [True]])[-len(column) :]
 
 
 def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
-    """Points from start to target through centres of cells; start and target lie in the first and
-    last of these cells.
-    """
+    """Points from start to target, which lie in the first and last cell, through cells' centres."""
     points = [problem.start, *centres.tolist(), problem.target]
     # An end that coincides with a centre, up to rounding, replaces it.
     first, last = (
@@ -196,10 +182,8 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
     size, columns, population = len(walker.walled), walker.columns, rules.population
     # A path visits a cell once; before its loops are removed, a child consists of at most two paths
     # and a walk.
-    walk, last_visit = (
-        np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64),
-        np.empty(size, dtype=np.int64),
-    )
+    walk = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64)
+    last_visit = np.empty(size, dtype=np.int64)
     index, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
     paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk, last_visit)

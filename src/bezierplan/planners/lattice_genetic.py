@@ -25,8 +25,8 @@ from bezierplan.planners.parts.genetic import (
 )
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
-from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.lattice import Corners, Lattice, lattice
+from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
 exact = True
@@ -75,9 +75,7 @@ class Settings(NamedTuple):
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
 
 
-def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+check = check_pairs
 
 
 @with_settings(Settings)
@@ -129,29 +127,16 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         if sizes.all():
             rules = cell_paths.Rules(
                 settings.crossover_probability,
-                False,
                 settings.mutation_probability,
+                settings.elitism,
                 cell_paths.RECONNECT,
                 settings.longest_join,
-                0,
-                False,
-                settings.elitism,
+                shorter_parts=False,
             )
             best, history = cell_paths.evolve(
                 moves, places, paths, sizes, settings.generations, rules
             )
-    solved = len(best) > 0
-    return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best))
-        if solved
-        else None,
-        objective=history[-1] * grid.cell,
-        claimed_feasible=solved,
-        evaluations=population * len(history),
-        history=history * grid.cell,
-        stop="generations" if solved else "no path",
-        extra={},
-    )
+    return cell_paths.plan_of(problem, best, history, population * len(history), "generations")
 
 
 @compiled
@@ -166,10 +151,8 @@ def _search(rng, lattice, free, cells, rules):
     legal = np.zeros(1 << bits, dtype=np.bool_)
     legal[free] = True
     parents = np.empty_like(cells)
-    path, marks = (
-        np.empty(rules.longest_join, dtype=np.int64),
-        np.zeros(len(lattice.row), dtype=np.int64),
-    )
+    path = np.empty(rules.longest_join, dtype=np.int64)
+    marks = np.zeros(len(lattice.row), dtype=np.int64)
     lengths = np.empty(population)
     best, best_path, best_length = cells[0].copy(), path[:0].copy(), np.inf
     history = np.empty(rules.generations + 1)
@@ -230,10 +213,8 @@ def _first_paths(
     """Paths (population, longest) from start to target through a random cell of each row, and their
     sizes (population,); 0 for none.
     """
-    paths, sizes = (
-        np.zeros((population, longest), dtype=np.int64),
-        np.zeros(population, dtype=np.int64),
-    )
+    paths = np.zeros((population, longest), dtype=np.int64)
+    sizes = np.zeros(population, dtype=np.int64)
     if all(map(len, rows)):
         choices = np.zeros((len(rows), len(places.row)), dtype=np.int64)
         for row, free in enumerate(rows):

@@ -180,8 +180,7 @@ class Settings(NamedTuple):
 
 
 class Found(NamedTuple):
-    """Result of a search. ones: those of the best chromosome, empty if there is none. cost: its
-    length.
+    """Result of a search. ones: those of the best chromosome, empty if none. cost: its length.
 
     history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct
     chromosomes in the population. q: (iterations,) mean Q of the pool at the end of an iteration,
@@ -203,7 +202,7 @@ class Found(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+    check_pairs(settings)
     if settings["first_points"] > MOST_POINTS:
         raise ValueError(
             f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control "
@@ -254,15 +253,7 @@ def plan(
             "extra_batches": 0,
             "valid_share": math.nan,
         }
-        return Plan(
-            Path("polyline", grid.in_units(ends)),
-            0.0,
-            True,
-            1,
-            np.zeros(1),
-            "start is target",
-            nothing,
-        )
+        return Plan.of_one(Path("polyline", grid.in_units(ends)), 0.0, "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
     orders = (
@@ -275,10 +266,8 @@ def plan(
     if last is not None:
         known = genes_at(grid.in_cells(last), field)
         row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
-        first, counts = (
-            np.vstack([row, first])[: settings.population],
-            np.append(len(known), counts)[: settings.population],
-        )
+        first = np.vstack([row, first])[: settings.population]
+        counts = np.append(len(known), counts)[: settings.population]
     result = search(rng, field, settings, first, counts, scratch_for(field))
     solved = len(result.ones) > 0
     points = grid.in_units(polygon(result.ones, field))
@@ -315,8 +304,7 @@ def _from_roadmaps(
     problem: Problem, rng: np.random.Generator, field: Field, settings: Settings
 ) -> tuple[np.ndarray, np.ndarray]:
     """Chromosomes made of the inner nodes of paths through roadmaps, at most a population, and
-    their numbers of ones; straight paths and those with too many nodes are left out. Every cell is
-    a gene.
+    their numbers of ones; straight and too long paths are left out. Every cell is a gene.
     """
     ones, counts = np.zeros((settings.population, _ROOM), dtype=np.int64), []
     for _ in range(
@@ -356,10 +344,8 @@ def search(
         * (size * rules.children_per_parent // 2)
         * (2 if rules.offspring == Offspring.both else 1)
     )
-    pool, spare = (
-        gene_lists.empty_pool(size + batches * children, _ROOM),
-        gene_lists.empty_pool(size, _ROOM),
-    )
+    pool = gene_lists.empty_pool(size + batches * children, _ROOM)
+    spare = gene_lists.empty_pool(size, _ROOM)
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations)

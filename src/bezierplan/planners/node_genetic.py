@@ -177,7 +177,7 @@ class _Found(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    check_pairs(settings["population"])
+    check_pairs(settings)
     if settings["friction"] == 0:
         raise ValueError(
             "friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed"
@@ -283,9 +283,7 @@ def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
 
 
 def serves(problem: Problem) -> None:
-    """Raise ValueError, naming the end and what is expected, unless start and target are centres of
-    cells.
-    """
+    """Raise ValueError, naming the end, unless start and target are centres of cells."""
     for end in ("start", "target"):
         _cell_at(problem.workspace, end, getattr(problem, end))
 
@@ -307,14 +305,10 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
 
 @compiled
 def _search(starts, moves, ground, start, target, free, drawn, rules):
-    """The genetic algorithm. free: the free cells without start and target; drawn: the cells from
-    which random mutation draws.
-    """
+    """The genetic algorithm. free: free cells without the ends; drawn: for random mutation."""
     population = rules.population
-    paths, lengths = (
-        np.empty((population, rules.most_nodes + 2), dtype=np.int64),
-        np.empty(population, dtype=np.int64),
-    )
+    paths = np.empty((population, rules.most_nodes + 2), dtype=np.int64)
+    lengths = np.empty(population, dtype=np.int64)
     for i in range(population):
         paths[i, 0] = start
         lengths[i] = _first_path(starts, paths[i], target, free, ground, rules)
@@ -368,10 +362,8 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             if moves.random() < rules.crossover_probability:
                 cut = other_cut = 1 + below(moves, min(lengths[mother], lengths[father]) - 1)
                 if rules.cut == Cut.independent:
-                    cut, other_cut = (
-                        1 + below(moves, lengths[mother] - 1),
-                        1 + below(moves, lengths[father] - 1),
-                    )
+                    cut = 1 + below(moves, lengths[mother] - 1)
+                    other_cut = 1 + below(moves, lengths[father] - 1)
             else:
                 cut, other_cut = lengths[mother], lengths[father]
             child_lengths[i] = join(
@@ -397,12 +389,10 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             lengths[0] = best_length
 
     if rules.result == Result.last_generation:
-        best, best_length, best_objective, best_met = (
-            paths[first],
-            lengths[first],
-            objective[first],
-            met[first],
-        )
+        best = paths[first]
+        best_length = lengths[first]
+        best_objective = objective[first]
+        best_met = met[first]
     return _Found(
         best[:best_length].copy(),
         best_objective,
@@ -440,9 +430,7 @@ def join(
 
 @allocation_free
 def _evaluate(path, ground, penalty):
-    """Energy of a path plus its penalty, and the number of occupied cells that its edges meet
-    (meledje, eqs. 1 to 3).
-    """
+    """Energy of a path plus penalty, and occupied cells its edges meet (meledje, eqs. 1 to 3)."""
     energy = 0.0
     for k in range(len(path) - 1):
         energy += edge_energy(ground, path[k], path[k + 1])
@@ -473,9 +461,7 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 
 @allocation_free
 def _first_path(rng, path, target, free, ground, rules):
-    """A random path, written after its start; returns its number of nodes, or 0 if none was
-    found.
-    """
+    """A random path, written after its start; returns its number of nodes, 0 if none was found."""
     for _ in range(_MOST_TRIES):
         length = (
             _walk(rng, path, target, free, ground)

@@ -86,15 +86,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     while drawn < settings.attempts and not len(way):
         length, way, roads = roadmap(problem, rng, settings.nodes, neighbours, settings.d_min)
         drawn += 1
-    return Plan(
-        Path("polyline", way) if len(way) else None,
-        length,
-        claimed_feasible=len(way) > 0,
-        evaluations=drawn,
-        history=np.array([length]),
-        stop="direct",
-        extra={"roads": roads},
-    )
+    path = Path("polyline", way) if len(way) else None
+    return Plan.of_one(path, length, "direct", {"roads": roads})._replace(evaluations=drawn)
 
 
 def roadmap(
@@ -162,9 +155,7 @@ def _free_points(
     high: np.ndarray,
     is_free: Callable[[np.ndarray], np.ndarray],
 ) -> np.ndarray:
-    """Points (nodes or fewer, 2), uniform in the free part of a field; fewer if almost none of it
-    is free.
-    """
+    """Points (nodes or fewer, 2), uniform in a field's free part; fewer if almost none is free."""
     free = np.empty((0, 2))
     tries = 0
     while len(free) < nodes and tries < _MOST_DRAWS * nodes:
@@ -227,8 +218,7 @@ def _nearest(points, neighbours):
     """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties
     in their original order.
 
-    From each point to both sides, in the order of x, until the next one is too far away by its x
-    alone.
+    From each point to both sides, in the order of x, until one is too far away by x alone.
     """
     order = np.argsort(points[:, 0])
     nearest = np.empty((len(points), neighbours), dtype=np.int64)
@@ -305,10 +295,8 @@ def _dijkstra(count, starts, targets, lengths):
 
     far, before = np.full(count, np.inf), np.full(count, -1)
     # Nodes that are reached and not settled: few, so they need no heap.
-    waiting, waits = (
-        np.empty(count, dtype=np.int64),
-        1,
-    )
+    waiting = np.empty(count, dtype=np.int64)
+    waits = 1
     waiting[0], far[0] = 0, 0.0
     while waits > 0:
         slot = 0

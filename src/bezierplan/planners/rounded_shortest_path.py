@@ -5,8 +5,7 @@ placed so that the corner lies inside it; the path is a string of straight legs 
 tight around these circles. Corners too close together for two circles, such as those at the end of
 a wall, form one turn of two circles side by side. The certified check then judges the path. Where
 an arc or a leg enters an obstacle, or there is no room for the circles, the adjacent circles
-shrink, in the end to the corner itself: the shortest path is free, so this always ends in a free
-path.
+shrink, in the end to the corner itself: the shortest path is free, so this ends in a free path.
 """
 
 import math
@@ -75,9 +74,7 @@ class Turns(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """How round the path is. Where there is no room, both are smaller; the extra columns report by
-    how much.
-    """
+    """How round the path is. Without room, both are smaller; extra columns report by how much."""
 
     turning_radius: Annotated[
         float,
@@ -237,15 +234,7 @@ def _answer(
     """The shortest path, rounded."""
     if math.isinf(bound.length):
         nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
-        return Plan(
-            None,
-            math.inf,
-            claimed_feasible=False,
-            evaluations=1,
-            history=np.array([math.inf]),
-            stop="no way",
-            extra=nothing,
-        )
+        return Plan.of_one(None, math.inf, "no way", nothing)
     turns = turns_of(bound.points, problem.workspace)
     points, radii, tries, free = _rounded(problem, turns, blocked, settings)
     if not free:  # around corners of a grown obstacle there may be less room than for a circle
@@ -335,8 +324,7 @@ def _rounded(
 
     Where two circles of the same sense get in each other's way, they become one turn and are pulled
     inwards in the same direction. Where that does not help, circles are pulled inwards less, and
-    only then shrink. With `give_up`, there are no points if one has to be smaller than the turning
-    radius.
+    only then shrink. With `give_up`, there are no points if one has to be below the turning radius.
     """
     count = len(turns.side)
     # Share of the desired radius, share of the way inwards up to the corner's clearance, and

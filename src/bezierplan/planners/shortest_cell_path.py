@@ -23,23 +23,13 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
     bound = shortest_paths.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
-    exists = math.isfinite(bound.length)
-    length = bound.length * grid.cell
     path = None
-    if exists:
+    if math.isfinite(bound.length):
         points = _without_straight_vertices(grid.in_units(bound.points))
         # A computed cell centre can differ from the given one in the last bit.
         points[[0, -1]] = problem.start, problem.target
         path = Path("polyline", points)
-    return Plan(
-        path,
-        length,
-        claimed_feasible=exists,
-        evaluations=1,
-        history=np.array([length]),
-        stop="exact",
-        extra={},
-    )
+    return Plan.of_one(path, bound.length * grid.cell, "exact")
 
 
 def _without_straight_vertices(points: np.ndarray) -> np.ndarray:

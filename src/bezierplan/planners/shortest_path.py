@@ -1,6 +1,4 @@
-"""A baseline: the exact shortest path, which no other planner can beat
-(`shortest_paths.shortest_path`).
-"""
+"""A baseline: the exact shortest path, which none can beat (`shortest_paths.shortest_path`)."""
 
 import math
 
@@ -22,14 +20,5 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     Around circles it is a polyline at most 1e-6 units longer.
     """
     bound = shortest_paths.shortest_path(problem)
-    found = math.isfinite(bound.length)
-    path = Path("polyline", bound.points) if found else None
-    return Plan(
-        path,
-        bound.length,
-        claimed_feasible=found,
-        evaluations=1,
-        history=np.array([bound.length]),
-        stop="exact",
-        extra={},
-    )
+    path = Path("polyline", bound.points) if math.isfinite(bound.length) else None
+    return Plan.of_one(path, bound.length, "exact")

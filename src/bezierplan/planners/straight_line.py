@@ -16,12 +16,4 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     """
     length = math.dist(problem.start, problem.target)
     path = Path("polyline", np.array([problem.start, problem.target]))
-    return Plan(
-        path,
-        length,
-        claimed_feasible=True,
-        evaluations=1,
-        history=np.array([length]),
-        stop="direct",
-        extra={},
-    )
+    return Plan.of_one(path, length, "direct")

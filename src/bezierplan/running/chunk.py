@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 
@@ -35,9 +36,7 @@ class Chunk(NamedTuple):
     settings: dict[str, Any]
     """Those of the method."""
     problems: dict[str, dict[str, Any]]
-    """By name, the problem's workspace and, if present, its layout, its obstacles, and the settings
-    that belong to it.
-    """
+    """By name, the problem's workspace and, if present, layout, obstacles and their settings."""
     vary: dict[str, list]
     """Setting or preset -> values; every combination of problems and values is a condition."""
     presets: dict[str, dict[str, dict[str, Any]]]
@@ -66,3 +65,8 @@ class Chunk(NamedTuple):
     def name(self) -> str:
         """What the ids of its runs have in common, with a star for conditions."""
         return f"{self.study}/{self.experiment}/*/{self.method}"
+
+
+def chunk_files(folder: Path, pattern: str = "**/runs/*/*/*.parquet") -> list[Path]:
+    """The files of chunks below a folder, without the times and traces next to them."""
+    return [file for file in sorted(folder.glob(pattern)) if file.stem.isdecimal()]

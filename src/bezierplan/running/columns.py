@@ -268,9 +268,7 @@ def _types(*tables: type) -> dict[str, str]:
 
 
 PLANNED = _types(Planned)
-"""Columns of every runs table that are known before a run, beside the settings, with the types of
-their values (`TYPES`).
-"""
+"""Columns of every runs table known before a run, beside settings, with their types (`TYPES`)."""
 
 RESULTS = _types(Outcome)
 """Likewise: those that a run finds out."""
@@ -284,9 +282,7 @@ DRIVE_RESULTS = _types(DriveOutcome)
 """Columns of a runs table that only drives have."""
 
 JOINED = {name: kind for name, kind in _types(Bound, Times).items() if name not in PLANNED}
-"""Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the
-times.
-"""
+"""Columns joined to a runs table when it is read: those of `problems.bounds_of`, and the times."""
 
 DRIVE_JOINED = _types(DriveBound, DriveTimes)
 """Columns that are joined to the table of drives: of `rides.bounds_of`, and the times of plans."""

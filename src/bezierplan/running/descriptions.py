@@ -4,9 +4,7 @@ from typing import Any, NamedTuple
 
 
 class Descriptions(NamedTuple):
-    """What the problems of an experiment are built from, beside map files, as names and plain
-    values.
-    """
+    """What the problems of an experiment are built from, beside map files, as plain values."""
 
     study: str
     problems: dict[str, dict[str, Any]]

@@ -38,9 +38,7 @@ COMPUTING = ("numba", "llvmlite", "numpy", "scipy", "shapely", "pandas", "pyarro
 
 
 class _Module(NamedTuple):
-    """A module by its dotted name, and the folder in which that name is looked up: this package's,
-    or that of a file outside it.
-    """
+    """A module by its dotted name, and the folder in which it is looked up: ours or another."""
 
     home: Path
     name: str
@@ -83,9 +81,7 @@ class _Syntax(NamedTuple):
 
 @cache
 def _syntax(file: Path) -> _Syntax:
-    """The syntax of a file, kept from earlier processes: to parse the package takes as long as to
-    import it.
-    """
+    """The syntax of a file, kept from earlier processes: parsing takes as long as importing."""
     source = file.read_bytes()
     kept = (
         cache_folder()
@@ -206,9 +202,7 @@ def _reached(*modules: str) -> tuple[str, set[str]]:
 
 @cache
 def content_digest(*files: str) -> str:
-    """Digest of the content of files, in the given order: unlike a timestamp, it shows whether one
-    of them changed.
-    """
+    """Digest of the content of files, in this order: unlike a timestamp, it shows a change."""
     contents = (Path(file).read_bytes() for file in files)
     return hashlib.sha256(
         b"".join(hashlib.sha256(content).digest() for content in contents)
@@ -221,8 +215,6 @@ KERNELS = cache_folder() / "kernels"
 
 @cache
 def kernel_folder(module: str, file: str) -> Path:
-    """The folder of compiled kernels for the current state of a module, from this package or the
-    user's own.
-    """
+    """The folder of compiled kernels for the current state of a module, ours or the user's."""
     ours = module.split(".")[0] == ROOT and _module(module).file() is not None
     return KERNELS / f"{Path(file).stem}-{source_digest(module if ours else file)}"

@@ -55,17 +55,14 @@ def settings_in(chunk: Chunk, condition: Condition) -> dict[str, Any]:
 
 
 def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Generator:
-    """The random generator of a run, seeded from names only, so that nothing depends on order,
-    cores or chunks.
-    """
+    """The random generator of a run, seeded from names only, not from order, cores or chunks."""
     layout = chunk.problems[condition.problem].get("layout", "")
     parts = {
         "own": [condition.name, chunk.method],
         "shared": [condition.name],
-        "common": [str(layout)],
+        "common": [layout],
     }
-    name = "/".join([chunk.study, chunk.experiment, *parts[chunk.seeds], str(repeat)])
-    return seeds.generator(name)
+    return seeds.generator(chunk.study, chunk.experiment, *parts[chunk.seeds], repeat)
 
 
 def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> Plan:
@@ -79,9 +76,7 @@ class UnfitAnswer(watchdog.PlannerFailure):
 
 
 def accepted(plan: Any, problem: Problem, chunk: Chunk, condition: Condition, repeat: int) -> Plan:
-    """A planner's answer as plain values (`answer.accepted`). Raises UnfitAnswer if it is not valid
-    for the problem.
-    """
+    """A planner's answer as plain values. Raises UnfitAnswer if it is not valid for the problem."""
     try:
         return answer.accepted(
             plan, problem, {*TAKEN, *settings_in(chunk, condition), *condition.values}
@@ -102,9 +97,7 @@ def refuse_changed(loan: Loan, chunk: Chunk, condition: Condition, repeat: int) 
 
 
 def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
-    """The first columns of a row: the run's id and its parts, its place, and all settings in
-    force.
-    """
+    """The first columns of a row: the run's id and its parts, its place, all settings in force."""
     return {
         "id": run_id(chunk, condition, repeat),
         "study": chunk.study,
@@ -226,8 +219,7 @@ def _judgements(
     problems: dict[str, Problem], blocked: dict[str, Region]
 ) -> list[Callable[[], object]]:
     """The check of two paths in each type of region: of one that stays at the start, and so is
-    free, and of the straight line, which mostly collides. Together they need all kernels of the
-    check.
+    free, and of the straight line, which mostly collides. They need all kernels of the check.
     """
     one_of_each = {type(blocked[name]): name for name in problems}
     return [
@@ -248,9 +240,8 @@ def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int
     both effects over all conditions. It affects only times.
     """
     pairs = list(itertools.product(range(conditions), repeats))
-    name = "/".join([chunk.study, chunk.experiment, chunk.method, str(repeats.start), "order"])
-    shuffled = seeds.generator(name).permutation(len(pairs))
-    return [pairs[n] for n in shuffled]
+    name = chunk.study, chunk.experiment, chunk.method, repeats.start, "order"
+    return [pairs[n] for n in seeds.generator(*name).permutation(len(pairs))]
 
 
 def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:
@@ -270,9 +261,7 @@ def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:
 def refuse_unrepeatable(
     repetitions: Iterable[dict[str, Any]], row: dict[str, Any], chunk: Chunk, deterministic: bool
 ) -> None:
-    """Raise PlannerFailure, naming the run, if repetitions of a run do not have the bits of its
-    row.
-    """
+    """Raise PlannerFailure, naming the run, if its repetitions do not have the bits of its row."""
     for again in repetitions:
         # The text of a number tells all its bits, and unlike the number a NaN is equal to itself.
         column = next(

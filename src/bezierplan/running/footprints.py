@@ -17,9 +17,7 @@ from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.problem import Workspace
 
 DISCS = 6
-"""How many radii are tried, from that of the circle within the footprint to that of the circle
-around it.
-"""
+"""How many radii are tried, from that of the circle within the footprint to the one around it."""
 
 # The circle around the footprint touches its corners only; with this much more, as a share, so does
 # the rounding of corners of a grown map.

@@ -62,11 +62,9 @@ class Forks:
         """Take the path of Python's interpreter, and Snakemake's function that runs a script in an
         interpreter of its own.
         """
-        self._interpreter, self._script, self._names = (
-            interpreter,
-            script,
-            inspect.signature(script),
-        )
+        self._interpreter = interpreter
+        self._script = script
+        self._names = inspect.signature(script)
         self._starting, self._control = threading.Lock(), None
         self.process: int | None = None  # the number of the process that is forked
 
@@ -79,8 +77,7 @@ class Forks:
                 self._begin()
 
     def script(self, *arguments: Any) -> None:
-        """Run a script as Snakemake's function of the same name does, which is called with the same
-        arguments.
+        """Run a script as Snakemake's function of the same name does, with the same arguments.
 
         Raises subprocess.CalledProcessError if the script fails, after the script has said why on
         stderr.
@@ -180,18 +177,14 @@ def serve(control: socket.socket) -> None:
 
 
 def reap(*_: Any) -> None:
-    """Take note of the children that have ended, so that their CPU time is added to that of this
-    process's children.
-    """
+    """Note which children ended: their CPU time is added to that of this process's children."""
     with contextlib.suppress(ChildProcessError):
         while os.waitpid(-1, os.WNOHANG)[0]:
             pass
 
 
 def compile_first() -> None:
-    """Compile a function, for the first one takes numba half a second more than the others, cached
-    or not.
-    """
+    """Compile a function: the first one takes numba half a second more, cached or not."""
     import numba
 
     numba.njit(lambda: 0)()

@@ -34,9 +34,7 @@ def named(part: str, files: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def part(inputs: Any, name: str) -> dict[str, Any]:
-    """The files of a job's inputs that are all of one kind: what they are of -> file or list of
-    files; the reverse of `named`.
-    """
+    """A job's inputs of one kind: what they are of -> file or files; the reverse of `named`."""
     return {
         key.removeprefix(f"{name}/"): files
         for key, files in inputs.items()

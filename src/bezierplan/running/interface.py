@@ -16,16 +16,14 @@ from bezierplan import planners
 from bezierplan.planners import planner_module, planner_settings, setting_fault
 from bezierplan.planners.parts.settings import setting
 from bezierplan.running import watchdog
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.words import LONGEST, plain, told
 
 KINDS = ("grid", "circles", "polygons")
 """Kinds of workspace that planners meet."""
 
 LIMIT = 60.0
-"""Seconds that a planner's file may take to be executed, and each call of its `check` and
-`serves`.
-"""
+"""Seconds for which a planner's file may be executed, and each call of its `check` and `serves`."""
 
 MOST_EXPLAINED = 4
 """Missing settings that a message explains; of more it gives the names."""
@@ -128,8 +126,7 @@ def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> N
     """Raise Fault, beginning with a location, for a name that is no setting of a planner."""
     known = planner_settings(module)
     for name in names:
-        if name not in known:
-            raise Fault(f"{location}: {name}: unknown{closest(name, known)}")
+        check_known(name, known, location)
 
 
 def check_settings(module: ModuleType, settings: dict[str, Any], location: str) -> None:

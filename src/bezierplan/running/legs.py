@@ -1,6 +1,4 @@
-"""Way points: a problem becomes one problem from each to the next, and their answers become one
-path.
-"""
+"""Way points: a problem becomes one from each to the next, and their answers become one path."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -176,8 +174,7 @@ def _solved(
     settings: dict[str, Any],
     smooth: str,
 ) -> Plan:
-    """The same, without this column. Where rounding leaves a corner at a way point, the legs are
-    searched.
+    """The same, without this column. If rounding leaves a corner at a way point, legs are searched.
 
     With `continuous` curvature, transitions go before and after arcs wherever there is room. They
     shift arcs inwards, so these are planned wider and as much farther from the corners.
@@ -234,9 +231,7 @@ def _driven(
     blocked: Region,
     settings: dict[str, Any],
 ) -> list[Plan]:
-    """A search on each leg, which begins with the heading in which the one before ends; up to the
-    first one that finds nothing.
-    """
+    """A search on each leg, begun as the last one ends, up to the first that finds nothing."""
     answers: list[Plan] = []
     heading = settings["start_heading"]
     for number, (part, bound) in enumerate(zip(parts, bounds), start=1):
@@ -252,18 +247,14 @@ def _driven(
 
 
 def kept(planner: str, plan: Plan, settings: dict[str, Any]) -> float:
-    """Radius of a path's tightest turn, by a planner with a turning radius; nan of others and
-    without a path.
-    """
+    """Radius of a path's tightest turn; nan without a path, and of planners without a radius."""
     if planner == ROUNDED:
         return plan.extra["least_radius"]
     return settings["turning_radius"] if planner == DRIVEN and plan.path is not None else math.nan
 
 
 def joined(answers: Sequence[Plan]) -> Plan:
-    """One answer to all legs. At a way point where the direction changes, a corner is left, which
-    counts as a turn.
-    """
+    """One answer to all legs. A corner that is left at a way point counts as a turn."""
     if len(answers) == 1:
         return answers[0]
     paths = [answer.path for answer in answers]
@@ -320,9 +311,7 @@ def is_kept(asked: float, kept: float) -> bool:
 
 
 def check_offset(asked: float | None, kept: float, unit: str) -> None:
-    """Raise ValueError if a path comes closer to a corner than the offset that was asked for. kept:
-    nan where none was.
-    """
+    """Raise ValueError if a path does not keep the offset asked for. kept: nan where none was."""
     if asked and not math.isnan(kept) and not is_kept(asked, kept):
         raise ValueError(
             f"offset: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that can be "
@@ -331,9 +320,7 @@ def check_offset(asked: float | None, kept: float, unit: str) -> None:
 
 
 def check_kept(asked: float, kept: float, unit: str) -> None:
-    """Raise ValueError if the tightest turn of a path is tighter than asked, or if there is no
-    path.
-    """
+    """Raise ValueError if a path's tightest turn is tighter than asked, or there is no path."""
     if math.isnan(kept):
         raise ValueError(
             f"turning_radius: {asked:g} {unit} asked: no path was found; expected one that can be "

@@ -27,9 +27,7 @@ class Loan(NamedTuple):
     parts: dict[str, Any]
 
     def fault(self) -> str:
-        """Which part of the workspace is another object than when it was lent, in one line; empty
-        if none is.
-        """
+        """Which part of the workspace is another object than was lent, in one line; or empty."""
         found = dict(_parts(self.problem.workspace))
         changed = [
             place
@@ -71,9 +69,7 @@ def lend(problems: dict[str, Problem]) -> dict[str, Loan]:
 
 
 def lend_once(problem: Problem) -> Loan:
-    """A problem for one call of a planner, with a workspace object of its own around the same
-    read-only arrays.
-    """
+    """A problem for one call of a planner, with its own workspace around the same arrays."""
     workspace = replace(problem.workspace)
     return Loan(problem._replace(workspace=workspace), "", dict(_parts(workspace)))
 

@@ -83,9 +83,7 @@ def report(log: str, line: str) -> None:
 
 
 def account(error: BaseException) -> str:
-    """The traceback of an exception, each line without control characters and of a limited
-    length.
-    """
+    """The traceback of an exception, each line of limited length and without control characters."""
     lines = "".join(traceback.format_exception(error, limit=-MOST_FRAMES)).splitlines()
     shown = (
         lines
@@ -133,26 +131,19 @@ def damaged(files: Iterable[str]) -> str:
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
-    for file in files:
-        if (
-            str(file).endswith(".csv")
-            and "results" in Path(file).parts
-            and not _is_text(Path(file))
-        ):
-            return f"{file}: not a csv file; delete it and start again: the workflow reproduces it"
-        if str(file).endswith(".parquet"):
+    for file in map(Path, files):
+        what = ""
+        if file.suffix == ".csv" and "results" in file.parts and not _is_text(file):
+            what = "csv file"
+        if file.suffix == ".parquet":
             try:
                 columns = parquet.read_schema(file).names
+                if "runs" in file.parts[-4:] and RUNS_COLUMN not in columns:
+                    what = "table of runs"
             except (OSError, pa.ArrowException):
-                return (
-                    f"{file}: not a whole Parquet file; delete it and start again: the "
-                    "workflow reproduces it"
-                )
-            if "runs" in Path(file).parts[-4:] and RUNS_COLUMN not in columns:
-                return (
-                    f"{file}: not a table of runs; "
-                    "delete it and start again: the workflow reproduces it"
-                )
+                what = "whole Parquet file"
+        if what:
+            return f"{file}: not a {what}; delete it and start again: the workflow reproduces it"
     return ""
 
 

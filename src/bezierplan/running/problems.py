@@ -18,7 +18,7 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import Region, blocks, region
 from bezierplan.running.columns import Bound
 from bezierplan.running.descriptions import Descriptions
-from bezierplan.workspaces import files, lattice, random_blocks, robot
+from bezierplan.workspaces import files, lattice, robot
 from bezierplan.workspaces.frames import WORLD, Frame, corners, frame_of, inward_map
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import grown_of, original
@@ -192,9 +192,7 @@ _SAME_OPTIMUM = 1e-3
 
 
 def scenario(description: dict, number: int, workspace: Workspace, folder: Path) -> dict:
-    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length
-    differs from ours.
-    """
+    """Start and target of a scenario. Raises ValueError if it does not fit our map or length."""
     from bezierplan.geometry import shortest_paths
 
     assert isinstance(workspace, Grid)  # only a kind of grids has scenarios
@@ -238,13 +236,15 @@ def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
         )
         if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
             return grid
+    from bezierplan.workspaces.kinds.random_blocks import MOST_MAPS
+
     asked = (
         "a path from start to target"
         if wanted is None
         else f"a shortest lattice path of lattice_length {wanted:g}"
     )
     raise ValueError(
-        f"obstacles: {problem['obstacles']}: of {random_blocks.MOST_MAPS} maps none has so many "
+        f"obstacles: {problem['obstacles']}: of {MOST_MAPS} maps none has so many "
         f"occupied cells and {asked}"
     )
 
@@ -270,9 +270,7 @@ def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -
 
 
 def read(file: str) -> dict[str, Problem]:
-    """The problems of a file, by name, in file order. Problems in the same workspace share one
-    object.
-    """
+    """The problems of a file, by name, in file order; those in one workspace share its object."""
     import pyarrow.parquet as parquet
 
     table = parquet.read_table(file).to_pylist()

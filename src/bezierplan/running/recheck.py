@@ -29,6 +29,7 @@ import pyarrow.parquet as parquet
 from bezierplan.geometry import curves
 from bezierplan.geometry.region import Region, region, walled
 from bezierplan.running import answer, columns, problems, rides, rows, worlds
+from bezierplan.running.chunk import chunk_files
 from bezierplan.running.digest import COMPUTING, library_version
 from bezierplan.running.log import end_with_parent
 from bezierplan.schema.words import plain
@@ -45,9 +46,7 @@ _TRACE = 1e-3
 
 
 class Fault(NamedTuple):
-    """A stored value that differs from what follows from the points. run: its id, or the name of a
-    problem, or `all rows`.
-    """
+    """A stored value that the points contradict. run: its id, a problem's name, or `all rows`."""
 
     file: str
     run: str
@@ -95,13 +94,10 @@ class Verdict(NamedTuple):
 
 
 def tasks(folder: File) -> list[Task]:
-    """What there is to check below the folder of a scale. Raises FileNotFoundError if there is no
-    table of runs or of problems.
-    """
+    """What to check below a scale's folder. Raises FileNotFoundError without runs or problems."""
     experiments: dict[File, list[str]] = {}
-    for file in sorted(folder.rglob("runs/*/*/*.parquet")):
-        if file.stem.isdecimal():  # not the times and traces next to it
-            experiments.setdefault(file.parents[1], []).append(str(file))
+    for file in chunk_files(folder):
+        experiments.setdefault(file.parents[1], []).append(str(file))
     if not experiments:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
@@ -120,9 +116,7 @@ def tasks(folder: File) -> list[Task]:
 
 
 def _problems_of(experiment: File, folder: File) -> File:
-    """The file of the problems of an experiment's runs; at `extended` an experiment may be that of
-    `full`.
-    """
+    """The file of the problems of an experiment's runs; at `extended` it may be that of `full`."""
     study = experiment.relative_to(folder).parts[0]
     places = [
         scale / study / "problems" / f"{experiment.name}.parquet"
@@ -137,9 +131,7 @@ def _problems_of(experiment: File, folder: File) -> File:
 def verify(
     tasks: list[Task], processes: int, told: Callable[[str], None] = lambda line: None
 ) -> Verdict:
-    """The verdict on some tasks, in several processes. told: gets a line of progress now and
-    then.
-    """
+    """The verdict on tasks, in several processes. told: gets a line of progress now and then."""
     # The largest first, so that no process ends long after the others: bounds take longest.
     largest = sorted(
         tasks,
@@ -189,9 +181,7 @@ def merged(verdicts: Iterable[Verdict]) -> Verdict:
 
 
 def write(verdict: Verdict, file: str) -> None:
-    """Write what was checked, and with which versions, as JSON. Raises ValueError with the first
-    fault if there is any.
-    """
+    """Write what was checked, and with which versions, as JSON. Raises ValueError with a fault."""
     if verdict.faults:
         raise ValueError(
             f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the "
@@ -209,9 +199,7 @@ def versions() -> dict[str, str]:
 
 
 def judged(task: Task) -> Verdict:
-    """The verdict on one task. Raises ValueError for a file that is not the table that belongs
-    there.
-    """
+    """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
     try:
         made, moving = problems.read(task.problems), worlds.read(task.problems)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
@@ -262,31 +250,14 @@ class _Chunk(NamedTuple):
 
 _IDENTITY = ("id", "study", "experiment", "condition", "problem", "method", "repeat")
 _RUN_COLUMNS = (
-    *(
-        *_IDENTITY,
-        "length",
-        "feasible",
-        "collision_at",
-        "collision_depth",
-        "clearance",
-        "clearance_error",
-        "generations",
-        "history",
-    ),
-    *("path_curve", "path_points"),
+    *_IDENTITY,
+    *("length", "feasible", "collision_at", "collision_depth", "clearance", "clearance_error"),
+    *("generations", "history", "path_curve", "path_points"),
 )
 _DRIVE_COLUMNS = (
-    *(
-        *_IDENTITY,
-        "objective",
-        "length",
-        "claimed_feasible",
-        "feasible",
-        "collision_at",
-        "clearance",
-        "path_points",
-    ),
-    *("arrival", "travelled", "clearance_least"),
+    *_IDENTITY,
+    *("objective", "length", "claimed_feasible", "feasible", "collision_at", "clearance"),
+    *("path_points", "arrival", "travelled", "clearance_least"),
 )
 
 _TYPES: dict[str, tuple[str, Callable[[pa.DataType], bool]]] = {
@@ -410,9 +381,7 @@ def _twice(chunks: list[_Chunk]) -> list[Fault]:
 
 
 def _differing(chunk: _Chunk, again: dict[str, tuple[np.ndarray, Any]]) -> Iterator[Fault]:
-    """The values of a chunk that differ from those computed again, by column, given with their
-    tolerance.
-    """
+    """A chunk's values that differ from those computed again, by column, with its tolerance."""
     for name, (values, tolerance) in again.items():
         stored = chunk.numbers[name]
         plain = bool if name in _FLAGS else float
@@ -669,7 +638,8 @@ def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World
         rides.bounds_again(made, moving, kept, task.runs) if moving else problems.bounds_of(made)
     )
     for field in again.schema:
-        _column(task.bounds, kept, field.name, _kind(field.type))
+        kind = next(kind for kind, (_, fits) in _TYPES.items() if fits(field.type))
+        _column(task.bounds, kept, field.name, kind)
     stored = {row["problem"]: row for row in kept.to_pylist()}
     faults = [
         Fault(task.bounds, name, "problem", name, "no problem of that name")
@@ -678,10 +648,6 @@ def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World
     for row in again.to_pylist():
         faults += _bound_faults(task.bounds, stored.get(row["problem"]), row)
     return Verdict(faults, 0, 0, 0, len(again), 0, ())
-
-
-def _kind(type_: pa.DataType) -> str:
-    return next(kind for kind, (_, fits) in _TYPES.items() if fits(type_))
 
 
 def _bound_faults(file: str, stored: dict[str, Any] | None, row: dict[str, Any]) -> Iterator[Fault]:

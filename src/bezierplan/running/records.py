@@ -24,9 +24,7 @@ _RUNS = re.compile(r"(?P<name>[^/]+/runs/.+)/(?P<chunk>\d+)")
 
 
 class Job(NamedTuple):
-    """A job by its log file. chunk: number of the block of repeats, or None for a job that runs no
-    planner.
-    """
+    """A job by its log file. chunk: number of the block of repeats, None if no planner runs."""
 
     scale: str
     name: str
@@ -67,8 +65,7 @@ def job_of(log: str) -> Job | None:
 
 
 def measured(folder: Path, units: Callable[[Job], int]) -> dict[tuple[str, str], Record]:
-    """Record of each job noted in a working folder, by scale and name; of several chunks, their
-    mean.
+    """Record of each job noted in a working folder, by scale and name; of chunks their mean.
 
     units: how many runs a job makes. Of a job of runs, its planner's CPU time counts; of others the
     clock's, as far as a core was theirs: as CPU time to the clock's in the jobs of runs.
@@ -106,9 +103,7 @@ def output_of(file: Path) -> str:
 
 
 def planner_times(outputs: Iterable[Path]) -> tuple[float, float] | None:
-    """Seconds of the CPU and of the clock that the runs of a job took; None for a job without
-    runs.
-    """
+    """Seconds of the CPU and of the clock that a job's runs took; None for a job without runs."""
     import pyarrow as pa
     import pyarrow.parquet as parquet
 

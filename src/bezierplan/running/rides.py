@@ -31,7 +31,7 @@ from bezierplan.running.columns import (
     Times,
 )
 from bezierplan.running.loans import lend_once
-from bezierplan.running.simulation import cells, hindsight, motion_check
+from bezierplan.running.simulation import cells, hindsight, motion_check, ways
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
@@ -40,12 +40,10 @@ from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_jso
 
 
 def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
-    """The drive of one run. Raises `execution.UnfitAnswer` for a plan that is not valid for the
-    problem that the robot saw.
-    """
+    """The drive of one run. Raises UnfitAnswer for a plan not valid for what the robot saw."""
     module, rng = planner_module(chunk.planner), execution.generator(chunk, condition, repeat)
     settings = execution.settings_in(chunk, condition)
-    policy = _policy(chunk)
+    policy = Policy.model_construct(**chunk.policy)
 
     def planner(seen: Problem, state: Any) -> tuple:
         loan = lend_once(seen)
@@ -61,10 +59,6 @@ def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem, world
     return drive(world, problem, policy, planner)
 
 
-def _policy(chunk: Chunk) -> Policy:
-    return Policy(**chunk.policy | {"plan_margins": tuple(chunk.policy["plan_margins"])})
-
-
 def row(
     chunk: Chunk, condition: Condition, repeat: int, ride: Ride, problem: Problem, world: World
 ) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -76,7 +70,7 @@ def row(
     points, times = ride.motion
     moved = np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])
     path = Path("polyline", points[moved] if moved.sum() > 1 else np.repeat(points[:1], 2, axis=0))
-    done = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    done = ways.lengths(points)
     travelled, collided = float(done[-1]), not math.isnan(verdict.collision_at)
     least = float(verdict.clearance.min())
     lengths = [plan.length for plan in ride.plans]
@@ -88,12 +82,13 @@ def row(
         if collided
         else 0
     )
+    policy = Policy.model_construct(**chunk.policy)
     known = (
-        hindsight.known_at(ride.motion, verdict.collision_at, world, _policy(chunk))
+        hindsight.known_at(ride.motion, verdict.collision_at, world, policy)
         if collided
         else math.nan
     )
-    moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
+    places = ride.motion.at(np.append(np.arange(0, math.ceil(times[-1])), times[-1]))
     # Without regard to what the robot believes: the motion itself leads from start to target.
     joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (
         problem.start,
@@ -135,8 +130,8 @@ def row(
     columns = execution.identity(chunk, condition, repeat) | outcome._asdict() | driving._asdict()
     trace = {
         "id": columns["id"],
-        "x": np.interp(moments, times, points[:, 0]).astype(np.float32),
-        "y": np.interp(moments, times, points[:, 1]).astype(np.float32),
+        "x": places[:, 0].astype(np.float32),
+        "y": places[:, 1].astype(np.float32),
         "clearance": verdict.clearance.astype(np.float32),
         "plan_time": [plan.time for plan in ride.plans],
         "plan_curve": [plan.path.curve if plan.path else "" for plan in ride.plans],
@@ -198,9 +193,7 @@ def run_chunk(
 def rerun(
     chunk: Chunk, condition: str, repeat: int, problem: Problem, world: World
 ) -> tuple[Ride, motion_check.Verdict]:
-    """The drive of a run, by the name of its condition, and the verdict on it: for what no table
-    keeps.
-    """
+    """A run's drive, by its condition's name, and the verdict on it: for what no table keeps."""
     named = {each.name: each for each in chunk.conditions()}
     ride = run(chunk, named[condition], repeat, problem, world)
     return ride, motion_check.check(ride.motion, world)

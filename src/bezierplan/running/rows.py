@@ -45,9 +45,7 @@ def table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
 
 
 def fault(schema: pa.Schema, *declared: type) -> str:
-    """The first declared column that a file lacks or has in another type, in words; empty if there
-    is none.
-    """
+    """The first declared column that a file lacks or has in another type, in words, or empty."""
     for name, (kind, _) in columns.declared(*declared).items():
         if name not in schema.names:
             return f"no column {name}"
@@ -78,9 +76,7 @@ def edited(table: pa.Table) -> bool:
 
 
 def rows_digest(table: pa.Table) -> str:
-    """A hash over the content of a table, column by column in order of name: to the last bit,
-    whatever the layout of the file.
-    """
+    """A hash over a table's columns in order of name: of all bits, whatever the file's layout."""
     digest = hashlib.sha256()
     for name in sorted(table.column_names):
         column = table[name].combine_chunks()

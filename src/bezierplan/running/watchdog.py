@@ -90,9 +90,7 @@ def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
 
 
 class PlannerFailure(RuntimeError):
-    """What a planner does that no result may come from; the message is one line that names the
-    planner and its run.
-    """
+    """What a planner does that no result may come from; the message names planner and run."""
 
 
 @contextmanager
@@ -153,9 +151,7 @@ def end_children(spared: frozenset[int] = frozenset()) -> None:
 
 
 def _flush() -> None:
-    """Print what is still to be printed, which a fork would print once more. A process may have
-    been started without streams.
-    """
+    """Print what a fork would print again. A process may have been started without streams."""
     for stream in filter(None, (sys.stdout, sys.stderr)):
         stream.flush()
 
@@ -213,9 +209,7 @@ def _tell(text: str) -> None:
 
 
 def _forget() -> None:
-    """A fork of the watched process is not the watched one; if it held the pipe, the end of that
-    one would go unnoticed.
-    """
+    """A fork is not watched; if it held the pipe, the watched process's end would go unnoticed."""
     global _pipe
     if _pipe is not None:
         os.close(_pipe)

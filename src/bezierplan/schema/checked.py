@@ -1,5 +1,4 @@
-"""YAML files read strictly, within stated limits; every fault is reported in one line with its
-place.
+"""YAML files read strictly, within stated limits; a fault is one line with its place.
 
 YAML is written by people and read from folders of unknown origin, so anything that could overload
 the reader is rejected before it is built: files that are not regular, long files, deep nesting, and
@@ -90,9 +89,7 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def read(file: Path, location: str | None = None) -> Any:
-    """The content of a YAML file. Raises Fault, beginning with the place (by default the file's
-    name).
-    """
+    """The content of a YAML file. Raises Fault, beginning with the place (default: file name)."""
     return parse(text_of(file, location or str(file)), location or str(file))
 
 
@@ -163,6 +160,13 @@ def _check_size(text: str, location: str) -> None:
                 f"{_line(location, event.start_mark)}: more than {MOST_NODES} values, aliases "
                 "counted as what they stand for"
             )
+
+
+def check_known(name: Any, known: Iterable[Any], location: str) -> None:
+    """Raise Fault, beginning with a location, for a name that is not among those known."""
+    known = list(known)
+    if name not in known:
+        raise Fault(f"{location}: {name}: unknown{closest(name, known)}")
 
 
 # More known words than this are not all listed, but only some that are most alike.

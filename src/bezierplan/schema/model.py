@@ -123,9 +123,7 @@ J = TypeVar("J")
 
 
 def job(kind: type[J], params: Any) -> J:
-    """A job as the named tuple that it was before `plain`. Raises ValidationError for any other
-    content.
-    """
+    """A job as the named tuple from before `plain`. Raises ValidationError for other content."""
     return TypeAdapter(kind).validate_python(params)
 
 
@@ -138,9 +136,7 @@ def parsed(model: type[M], content: Any, location: str) -> M:
 
 
 def first_fault(error: ValidationError) -> list[str]:
-    """The fault that is reported of several: the keys that lead to it, and the end of the
-    message.
-    """
+    """The fault that is reported of several: the keys that lead to it, and its message's end."""
     # After a key that is itself wrong, pydantic puts `[key]`.
     faults = [
         ([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None))
@@ -153,6 +149,11 @@ def first_fault(error: ValidationError) -> list[str]:
 def wrong(text: str) -> PydanticCustomError:
     """An error with this text at the end of the line, unchanged even if it contains braces."""
     return PydanticCustomError("wrong", "{text}", {"text": text})
+
+
+def expected(text: str) -> PydanticCustomError:
+    """An error of a value in the place of which this was expected."""
+    return PydanticCustomError("expected", "{text}", {"text": text})
 
 
 def shown(value: Any) -> str:
@@ -171,9 +172,7 @@ _EXPECTED = {
 
 
 def _fault(fault: Any, field: FieldInfo | None) -> str:
-    """The end of a message, from a pydantic record; for the value of a field, from the field's
-    description.
-    """
+    """The end of a message, by a pydantic record; for a field's value, by its description."""
     context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
@@ -191,12 +190,12 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
 # Types of values.
 
 
-def value(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
+def value(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
     """A type of single value, kept as written."""
 
     def check(entry: Any) -> Any:
         if not fits(entry):
-            raise PydanticCustomError("expected", "{text}", {"text": expected})
+            raise expected(wanted)
         return entry
 
     return PlainValidator(check)
@@ -222,9 +221,7 @@ LONGEST_LINE = 600
 
 
 def is_line(entry: Any, longest: int = LONGEST_LINE) -> bool:
-    """Whether it is one line of printable text that is not blank, with at most so many
-    characters.
-    """
+    """Whether it is one line of printable text that is not blank, of at most so many characters."""
     return (
         isinstance(entry, str)
         and bool(entry.strip())
@@ -243,12 +240,12 @@ SMALLEST, LARGEST = 1e-12, 1e12
 """Size of a number other than 0: beyond, arithmetic with coordinates and lengths means nothing."""
 
 
-def sized(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
+def sized(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
     """A type of number, kept as written, of a size that can be meant."""
 
     def check(entry: Any) -> Any:
         if not (is_number(entry) and fits(entry)):
-            raise PydanticCustomError("expected", "{text}", {"text": expected})
+            raise expected(wanted)
         if entry and not SMALLEST <= abs(entry) <= LARGEST:
             raise wrong(f"{shown(entry)}: expected a size from {SMALLEST:g} to {LARGEST:g}, or 0")
         return entry
@@ -259,22 +256,19 @@ def sized(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
 Number = Annotated[float, sized(lambda entry: True, "a number")]
 Positive = Annotated[float, sized(lambda entry: entry > 0, "a number above 0")]
 NotNegative = Annotated[float, sized(lambda entry: entry >= 0, "a number of at least 0")]
-Whole = Annotated[
-    int,
-    value(
-        lambda entry: _is_whole(entry) and 0 <= entry <= MOST, f"a whole number from 0 to {MOST}"
-    ),
-]
-Count = Annotated[
-    int,
-    value(
-        lambda entry: _is_whole(entry) and 1 <= entry <= MOST,
-        f"a whole number of at least 1, at most {MOST}",
-    ),
-]
-Decimals = Annotated[
-    int, value(lambda entry: _is_whole(entry) and 0 <= entry <= 15, "a whole number from 0 to 15")
-]
+
+
+def whole(low: int, high: int) -> PlainValidator:
+    """A type of whole number, not true or false, between two limits that are part of it."""
+    return value(
+        lambda entry: _is_whole(entry) and low <= entry <= high,
+        f"a whole number from {low} to {high}",
+    )
+
+
+Whole = Annotated[int, whole(0, MOST)]
+Count = Annotated[int, whole(1, MOST)]
+Decimals = Annotated[int, whole(0, 15)]
 
 
 def line(longest: int) -> PlainValidator:
@@ -332,14 +326,14 @@ DEVICES = frozenset(
 """Names that no file can have on Windows."""
 
 
-def matching(pattern: str, expected: str) -> PlainValidator:
+def matching(pattern: str, wanted: str) -> PlainValidator:
     """A type of text that a regular expression matches as a whole, and that a file or folder can be
     called.
     """
 
     def check(entry: Any) -> Any:
         if not (isinstance(entry, str) and re.fullmatch(pattern, entry)):
-            raise PydanticCustomError("expected", "{text}", {"text": expected})
+            raise expected(wanted)
         if len(entry) > LONGEST_NAME:
             raise wrong(f"{shown(entry)}: {len(entry)} characters; expected at most {LONGEST_NAME}")
         if entry in DEVICES:
@@ -402,16 +396,17 @@ def _distinct(
 
     def check(entry: Any) -> Any:
         if not isinstance(entry, list) and not single:
-            raise PydanticCustomError("expected", "{text}", {"text": "a list"})
+            raise expected("a list")
         if isinstance(entry, list) and len(entry) > most:
             raise wrong(f"{len(entry)} entries; expected at most {most}")
-        items = (
-            adapter.validate_python(one_or_list(entry))
-            if isinstance(entry, list)
-            else _one(adapter, entry)
-        )
+        try:
+            items = adapter.validate_python(one_or_list(entry))
+        except ValidationError:
+            if isinstance(entry, list):
+                raise
+            raise expected("a value or a list of values") from None
         if isinstance(entry, list) and len(items) < least:
-            raise PydanticCustomError("expected", "{text}", {"text": f"a list of at least {least}"})
+            raise expected(f"a list of at least {least}")
         texts: dict[str, None] = {}
         for each in items:
             if (text := identity(each)) in texts:
@@ -420,15 +415,6 @@ def _distinct(
         return items if isinstance(entry, list) else items[0]
 
     return PlainValidator(check)
-
-
-def _one(adapter: TypeAdapter, entry: Any) -> list:
-    try:
-        return adapter.validate_python([entry])
-    except ValidationError:
-        raise PydanticCustomError(
-            "expected", "{text}", {"text": "a value or a list of values"}
-        ) from None
 
 
 Values = Annotated[list[Scalar], _distinct(Scalar, single=True)]
@@ -440,7 +426,7 @@ def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
 
     def check(entry: Any) -> Model:
         if not isinstance(entry, dict):
-            raise PydanticCustomError("expected", "{text}", {"text": f"a mapping with {key}"})
+            raise expected(f"a mapping with {key}")
         if key not in entry:
             raise wrong(f"{key}: missing key; one of {', '.join(sorted(models))}")
         kind = entry[key]
@@ -493,9 +479,7 @@ Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]
 Where = Annotated[dict[Column, Values], Names("where")]
 Arguments = dict[Name, Any]
-"""Keyword-only arguments of a function of a study's module, which `checks` compares with their
-annotations.
-"""
+"""Keyword-only arguments of a study's function, which `checks` compares with annotations."""
 ARGUMENTS = (
     "the function's keyword-only arguments, by name: "
     "values that the paper gives, or that were chosen"
@@ -503,9 +487,7 @@ ARGUMENTS = (
 
 
 def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    """Every name in a model that is defined elsewhere: the keys that lead to it, what it names, and
-    the name.
-    """
+    """Every name in a model that is defined elsewhere: the keys to it, what it names, the name."""
     for key, field in type(model).model_fields.items():
         if key in model.model_fields_set:
             yield from _named(getattr(model, key), field.metadata, field.annotation, (*path, key))

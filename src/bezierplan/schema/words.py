@@ -30,9 +30,7 @@ def plain(text: str, most: int | None = None) -> str:
 
 
 def told(error: BaseException, most: int = LONGEST) -> str:
-    """An exception as one line: its class and its text, which code of unknown origin may have
-    written.
-    """
+    """An exception as one line: its class and its text, which foreign code may have written."""
     try:
         text = str(error)
     except BaseException as fault:  # of a class of unknown origin

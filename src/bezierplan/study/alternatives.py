@@ -12,12 +12,10 @@ from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study
 
 
-def alternatives(study: Study) -> dict[str, tuple[str, Any]]:
-    """Every alternative of an assumption that governs a setting: its name, such as `O2_8`, -> the
-    assumption's id and the value.
-    """
+def alternatives(study: Study) -> dict[str, tuple[Assumption, Any]]:
+    """Every alternative that governs a setting: name, such as `O2_8`, -> assumption and value."""
     return {
-        f"{assumption.id}_{value}": (assumption.id, value)
+        f"{assumption.id}_{value}": (assumption, value)
         for assumption in study.assumptions
         if assumption.setting
         for value in assumption.alternatives
@@ -26,16 +24,7 @@ def alternatives(study: Study) -> dict[str, tuple[str, Any]]:
 
 def tried(study: Study) -> list[str]:
     """Names of the alternatives that are tried on claims."""
-    return [
-        name
-        for name, (identity, _) in alternatives(study).items()
-        if assumption_of(study, identity).claims
-    ]
-
-
-def assumption_of(study: Study, identity: str) -> Assumption:
-    """The assumption with this id."""
-    return next(assumption for assumption in study.assumptions if assumption.id == identity)
+    return [name for name, (assumption, _) in alternatives(study).items() if assumption.claims]
 
 
 def concerned(study: Study, assumption: Assumption) -> list[str]:
@@ -54,13 +43,12 @@ def concerned(study: Study, assumption: Assumption) -> list[str]:
 
 def methods_changed(study: Study, name: str) -> list[str]:
     """Methods of the headline claims whose settings an alternative changes."""
-    return concerned(study, assumption_of(study, alternatives(study)[name][0]))
+    return concerned(study, alternatives(study)[name][0])
 
 
 def with_alternative(study: Study, name: str) -> Study:
     """The study under one alternative of `alternatives`."""
-    identity, value = alternatives(study)[name]
-    assumption = assumption_of(study, identity)
+    assumption, value = alternatives(study)[name]
     methods = dict(study.methods)
     for method in methods_changed(study, name):
         changed = (
@@ -74,7 +62,7 @@ def with_alternative(study: Study, name: str) -> Study:
 
 def claims_tried(study: Study, name: str) -> list[Claim]:
     """The claims on which an alternative is tried."""
-    wanted = assumption_of(study, alternatives(study)[name][0]).claims
+    wanted = alternatives(study)[name][0].claims
     return [claim for claim in study.claims if claim.id in wanted]
 
 
@@ -85,12 +73,11 @@ def headline_claims(study: Study, name: str) -> list[Claim]:
 
 def alternatives_described(study: Study) -> dict[str, Tried]:
     """What `analysis.sensitivity` prints about each alternative, by name."""
-    described = {}
-    for name in tried(study):
-        identity, value = alternatives(study)[name]
-        of = assumption_of(study, identity)
-        described[name] = Tried(study.key, identity, of.detail, of.setting, of.default, value)
-    return described
+    return {
+        name: Tried(study.key, of.id, of.detail, of.setting, of.default, value)
+        for name, (of, value) in alternatives(study).items()
+        if of.claims
+    }
 
 
 def methods_of_claims(study: Study, claims: list[Claim], experiment: str) -> list[str]:
@@ -122,9 +109,7 @@ def _compared(study: Study, claim: Claim, check: Check) -> set[str]:
 
 
 def experiments_of_claims(claims: list[Claim]) -> list[str]:
-    """Names of the experiments whose runs decide claims, each once, in order; variants may name
-    more.
-    """
+    """Names of the experiments whose runs decide claims, once each; variants may name more."""
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
     named += itertools.chain.from_iterable(
         one_or_list(value) for claim in claims for value in claim.variants.get("experiment", [])

@@ -36,9 +36,7 @@ _PANEL = TypeAdapter(Annotated[Panel, one_of("kind", kinds())])
 
 
 def _expanded(entry: Any) -> dict[str, Panel]:
-    """The panels that an entry in a list of panels stands for, by the keys in it that lead to
-    them.
-    """
+    """The panels that an entry in a list of panels stands for, by the keys that lead to them."""
     if not isinstance(entry, dict) or "each" not in entry:
         return {"": _PANEL.validate_python(entry)}
     panels = {}

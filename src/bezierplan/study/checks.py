@@ -17,13 +17,13 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import Check, PublishedMargin
 from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures.panels import Panel, spheres
-from bezierplan.planners import PLACE, planner_module
+from bezierplan.planners import planner_module
 from bezierplan.running import columns, interface, problems, worlds
 from bezierplan.running.chunk import conditions
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.interface import check_settings
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list, parsed
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
@@ -37,14 +37,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
 
-RESERVED = {
-    *columns.RUN_COLUMNS,
-    *columns.DRIVE_RESULTS,
-    *columns.JOINED,
-    *columns.DRIVE_JOINED,
-    *columns.WORDS,
-    *PLACE,
-} - {"generations"}
+RESERVED = columns.TAKEN.union(columns.WORDS) - {"generations"}
 """Names that no setting can have. The column `generations` holds the number actually performed, so
 a setting of that name adds nothing.
 """
@@ -60,7 +53,7 @@ def check(study: Study) -> None:
     location = relative(study.folder / "artefacts.yaml")
     _check_labels(study, f"{location}: labels")
     for method in study.looks:
-        _known(method, study.methods, f"{location}: looks")
+        check_known(method, study.methods, f"{location}: looks")
     for name, table in study.tables.items():
         _check_table(design, functions, table, f"{location}: tables: {name}")
     for name, figure in study.figures.items():
@@ -105,12 +98,6 @@ def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], location: str) -
             raise Fault(f"{location}: {identity}: another one has this id already")
 
 
-def _known(name: Any, known: Iterable[Any], location: str) -> None:
-    known = list(known)
-    if name not in known:
-        raise Fault(f"{location}: {name}: unknown{closest(name, known)}")
-
-
 def _functions(study: Study) -> dict[str, Callable]:
     """The public functions of a study's module, by name."""
     names = vars(importlib.import_module(study.module())) if study.module() else {}
@@ -133,11 +120,11 @@ def _check_experiments(study: Study, location: str) -> None:
                     "results; give it another name"
                 )
         if method.variant_of:
-            _known(method.variant_of, study.methods.keys() - {name}, f"{where}: variant_of")
+            check_known(method.variant_of, study.methods.keys() - {name}, f"{where}: variant_of")
         for setting in method.settings:
-            _known(setting, study.accepted(name), f"{where}: settings")
+            check_known(setting, study.accepted(name), f"{where}: settings")
         if method.policy:
-            _known(method.policy, study.policies, f"{where}: policy")
+            check_known(method.policy, study.policies, f"{where}: policy")
             if study.policies[method.policy].warm and not hasattr(
                 planner_module(study.planner(name)), "resume"
             ):
@@ -158,9 +145,9 @@ def _check_experiments(study: Study, location: str) -> None:
     for name in study.workspaces:
         _check_workspace(study, name, f"{location}: workspaces: {name}")
     for name, problem in study.problems.items():
-        _known(problem.workspace, study.workspaces, f"{location}: problems: {name}: workspace")
+        check_known(problem.workspace, study.workspaces, f"{location}: problems: {name}: workspace")
         for setting in problem.settings:
-            _known(setting, used, f"{location}: problems: {name}: settings")
+            check_known(setting, used, f"{location}: problems: {name}: settings")
         _check_problem(study, built, name, f"{location}: problems: {name}")
     for name in study.experiments:
         _check_experiment(study, built, name, f"{location}: experiments: {name}")
@@ -184,7 +171,9 @@ def _check_shared_settings(study: Study, used: set[str], location: str) -> None:
                 f"planner{closest(planner, planners)}"
             )
         for setting in settings:
-            _known(setting, study.accepted(planners[planner]), f"{location}: settings: {planner}")
+            check_known(
+                setting, study.accepted(planners[planner]), f"{location}: settings: {planner}"
+            )
     for preset, values in study.presets.items():
         if preset in used or preset in RESERVED:
             taken = "a planner's setting" if preset in used else "a column of results"
@@ -193,7 +182,7 @@ def _check_shared_settings(study: Study, used: set[str], location: str) -> None:
             )
         for value, settings in values.items():
             for setting in settings:
-                _known(setting, used, f"{location}: presets: {preset}: {value}")
+                check_known(setting, used, f"{location}: presets: {preset}: {value}")
 
 
 def _check_workspace(study: Study, name: str, location: str) -> None:
@@ -249,7 +238,9 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
     if problem.reference is not None:
         # The exact bound takes too long for a start; the job that computes it tells a reference
         # below it.
-        least, most = math.dist(seen.start, seen.target), LONGEST_REFERENCE * _perimeter(seen)
+        west, east, south, north = seen.workspace.bounds
+        least = math.dist(seen.start, seen.target)
+        most = LONGEST_REFERENCE * 2 * (east - west + north - south)
         if not (1 - measures.ROUNDED) * least <= problem.reference <= most:
             limits = (
                 f"a length from {least:.6g}, the straight line, to {most:.6g}, "
@@ -258,15 +249,8 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, loc
             raise Fault(f"{location}: reference: {problem.reference}: expected {limits}")
 
 
-def _perimeter(problem: Problem) -> float:
-    west, east, south, north = problem.workspace.bounds
-    return 2 * (east - west + north - south)
-
-
 def _built(study: Study, name: str) -> Problem:
-    """A problem as planners see it, in the first layout if the workspace is random. Raises
-    ValueError.
-    """
+    """A problem as planners see it, in the first layout if there are several. Raises ValueError."""
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
     described = Descriptions(
@@ -285,11 +269,11 @@ def _check_experiment(
 ) -> None:
     experiment = study.experiments[name]
     for problem in experiment.problems:
-        _known(problem, study.problems, f"{location}: problems")
+        check_known(problem, study.problems, f"{location}: problems")
     for method in experiment.methods:
         if method in study.baselines:
             raise Fault(f"{location}: methods: {method}: a baseline; it joins by itself")
-        _known(method, study.methods.keys() - study.baselines, f"{location}: methods")
+        check_known(method, study.methods.keys() - study.baselines, f"{location}: methods")
     still = [problem for problem in experiment.problems if not study.workspace_of(problem).moves]
     if study.moves(name) and still:
         raise Fault(
@@ -306,15 +290,15 @@ def _check_experiment(
             raise Fault(f"{location}: methods: {method}: {wrong}")
     accepted = {setting for method in experiment.methods for setting in study.accepted(method)}
     for setting, values in experiment.vary.items():
-        _known(setting, accepted | set(study.presets), f"{location}: vary")
+        check_known(setting, accepted | set(study.presets), f"{location}: vary")
         for value in values if setting in study.presets else []:
-            _known(str(value).lower(), study.presets[setting], f"{location}: vary: {setting}")
+            check_known(str(value).lower(), study.presets[setting], f"{location}: vary: {setting}")
     methods = [*experiment.methods, *study.baselines]
     factors = {"method": methods, "problem": experiment.problems} | experiment.vary
     for factor, fewer in experiment.fewer.items():
-        _known(factor, factors, f"{location}: fewer")
+        check_known(factor, factors, f"{location}: fewer")
         for value in fewer:
-            _known(value, map(str, factors[factor]), f"{location}: fewer: {factor}")
+            check_known(value, map(str, factors[factor]), f"{location}: fewer: {factor}")
     for method in experiment.methods:
         _check_method_in(study, built, name, method, location)
 
@@ -322,9 +306,9 @@ def _check_experiment(
 def _check_baseline_comparison(study: Study, location: str) -> None:
     """The methods of each experiment have the baseline beside them."""
     baseline = study.baseline_comparison.baseline
-    _known(baseline, study.baselines, f"{location}: baseline")
+    check_known(baseline, study.baselines, f"{location}: baseline")
     for experiment in study.baseline_comparison.experiments:
-        _known(experiment, study.experiments, f"{location}: experiments")
+        check_known(experiment, study.experiments, f"{location}: experiments")
         if baseline not in study.methods_of(experiment):
             raise Fault(
                 f"{location}: experiments: {experiment}: the baseline {baseline} does not join "
@@ -387,15 +371,15 @@ def _check_names(
     }
     for path, what, name in named(model):
         if what == "experiment":
-            _known(name, known[what], _at(location, path))
+            check_known(name, known[what], _at(location, path))
     for path, what, name in named(model):
         where = _at(location, path)
         if what in known:
-            _known(name, known[what], where)
+            check_known(name, known[what], where)
         elif what == "published":
             inside(study.folder, f"published/{name}", f"{where}: {name}")
         elif what == "metric" and (experiments or isinstance(model, Comparison)):
-            _known(name, metrics.METRICS, where)
+            check_known(name, metrics.METRICS, where)
             design.check_metric(experiments, name, where)
         elif experiments:
             _check_of_runs(design, experiments, what, name, where, isinstance(model, Check))
@@ -420,7 +404,7 @@ def _check_of_runs(
         case "repeat":
             design.check_repeat(experiments, name, location)
         case "problem of runs":
-            _known(
+            check_known(
                 name,
                 [
                     problem
@@ -439,7 +423,7 @@ def _check_arguments(function: Callable, arguments: dict[str, Any], location: st
         if parameter.kind is parameter.KEYWORD_ONLY
     }
     for name in arguments:
-        _known(name, accepted, location)
+        check_known(name, accepted, location)
     for name, parameter in accepted.items():
         if name not in arguments:
             raise Fault(f"{location}: {name}: missing; {function.__name__} needs it")
@@ -517,7 +501,7 @@ def _check_table(
         )
     keys = published.keys(design.study, table)
     for column in table.primary:
-        _known(column, keys, f"{location}: primary")
+        check_known(column, keys, f"{location}: primary")
 
 
 def _check_comparison(design: Design, table: Comparison, location: str) -> None:
@@ -529,13 +513,13 @@ def _check_comparison(design: Design, table: Comparison, location: str) -> None:
         for key in published.keys(design.study, pivot)
     }
     for metric in table.metrics:
-        _known(
+        check_known(
             metric,
             {entry.metric for pivot in pivots for entry in pivot.values},
             f"{location}: metrics",
         )
     for column, wanted in table.where.items():
-        _known(column, keys, f"{location}: where")
+        check_known(column, keys, f"{location}: where")
         for value in one_or_list(wanted):
             design.check_where(keys[column], {column: value}, f"{location}: where")
 
@@ -578,10 +562,10 @@ def _check_variants(design: Design, claim: Claim, location: str) -> None:
             raise Fault(f"{location}: {column}: no check of the claim is about runs; leave it out")
         for value in (check for entry in values for check in one_or_list(entry)):
             if column == "metric":
-                _known(value, metrics.METRICS, f"{location}: metric")
+                check_known(value, metrics.METRICS, f"{location}: metric")
                 design.check_metric(experiments, value, f"{location}: metric")
             elif column == "experiment":
-                _known(value, design.study.experiments, f"{location}: experiment")
+                check_known(value, design.study.experiments, f"{location}: experiment")
             else:
                 design.check_where(experiments, {column: value}, location, baselines=False)
         if column in ("metric", "experiment"):
@@ -652,14 +636,14 @@ def _check_dimensions(study: Study, panel: Panel, location: str) -> None:
         )
     if not panel.plans:
         return
-    _known(panel.method, study.methods, f"{location}: method")
+    check_known(panel.method, study.methods, f"{location}: method")
     if study.methods[panel.method].planner != spheres.PLANNER:
         raise Fault(
             f"{location}: method: {panel.method}: its planner cannot plan among spheres; expected "
             f"a method of {spheres.PLANNER}"
         )
     for setting in panel.settings:
-        _known(setting, study.accepted(panel.method), f"{location}: settings")
+        check_known(setting, study.accepted(panel.method), f"{location}: settings")
     check_settings(
         planner_module(spheres.PLANNER),
         study.resolved(panel.method) | panel.settings,
@@ -679,7 +663,7 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
     alternative is a valid value of its setting.
     """
     for identity in assumption.claims:
-        _known(identity, [claim.id for claim in study.claims], f"{location}: claims")
+        check_known(identity, [claim.id for claim in study.claims], f"{location}: claims")
         claim = next(each for each in study.claims if each.id == identity)
         drives = [name for each in claim.checks for name in each.experiments if study.moves(name)]
         if drives:
@@ -688,14 +672,14 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
                 "alternatives do not repeat"
             )
     for name in assumption.problems:
-        _known(name, study.problems, f"{location}: problems")
+        check_known(name, study.problems, f"{location}: problems")
     for name, key in assumption.workspace.items():
         _check_key(study, assumption, name, key, location)
     if not assumption.setting:
         return
     if isinstance(assumption.default, dict):
         for method in assumption.default:
-            _known(method, study.methods, f"{location}: default")
+            check_known(method, study.methods, f"{location}: default")
     methods = concerned(study, assumption)
     if not methods:
         used = {setting for method in study.methods for setting in study.resolved(method)}
@@ -713,15 +697,15 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
         }
         _check_used(study, assumption, used, location)
     for method, settings in assumption.along.items():
-        _known(method, methods, f"{location}: with")
+        check_known(method, methods, f"{location}: with")
         for setting in settings:
-            _known(
+            check_known(
                 setting,
                 study.accepted(method).keys() - {assumption.setting},
                 f"{location}: with: {method}",
             )
-    for name, (identity, value) in alternatives(study).items():
-        if identity == assumption.id:
+    for name, (of, value) in alternatives(study).items():
+        if of.id == assumption.id:
             changed = with_alternative(study, name)
             for method in methods_changed(study, name):
                 module = planner_module(study.planner(method))
@@ -736,9 +720,9 @@ def _check_key(study: Study, assumption: Assumption, name: str, key: str, locati
     """The key of a workspace that an assumption governs has the default, and can have every
     alternative.
     """
-    _known(name, study.workspaces, f"{location}: workspace")
+    check_known(name, study.workspaces, f"{location}: workspace")
     workspace = study.workspaces[name]
-    _known(key, workspace.plain(), f"{location}: workspace: {name}")
+    check_known(key, workspace.plain(), f"{location}: workspace: {name}")
     if workspace.plain()[key] != assumption.default:
         raise Fault(
             f"{location}: default: {assumption.default}: not the one that is used; "

@@ -59,9 +59,7 @@ def _published(study: Study, table: str) -> list[dict[str, str]]:
 
 
 def choices(study: Study) -> list[Choice]:
-    """All choices: settings that assumptions govern, and worlds between which the tables leave the
-    choice.
-    """
+    """All choices: settings that assumptions govern, and worlds that the tables leave open."""
     tables = printed_tables(study)
     printed = {method for name, table in tables.items() for method in _methods(study, name, table)}
     compared = {

@@ -130,9 +130,7 @@ class Study:
         return described
 
     def home(self, experiment: str, scale: str) -> str:
-        """The scale under which an experiment's runs for a scale are kept: `full` for `extended` if
-        that has the same runs.
-        """
+        """The scale under which runs are kept: `full` for `extended` if that has the same runs."""
         content = self.experiments[experiment]
         layouts = [self.problems[name].layouts for name in content.problems]
         sizes = [content.repeats, content.chunk, *filter(None, layouts)]
@@ -148,9 +146,7 @@ class Study:
         return sorted({relative(file) for each in named for file in each})
 
     def compared(self) -> dict[str, Pivot]:
-        """The tables of runs, which are compared with published numbers; for the others see
-        `listing_job`.
-        """
+        """The tables of runs, which are compared with published numbers; see also `listing_job`."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
     def published_file(self, table: str) -> str | None:

@@ -10,7 +10,7 @@ from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.geometry.curves import CURVES
 from bezierplan.planners import PLACE, planner_module
-from bezierplan.running.chunk import Chunk
+from bezierplan.running.chunk import Chunk, conditions
 from bezierplan.running.columns import (
     DRIVE_JOINED,
     DRIVE_RESULTS,
@@ -19,7 +19,7 @@ from bezierplan.running.columns import (
     RESULTS,
     RUN_COLUMNS,
 )
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import identity, is_number, one_or_list
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job
@@ -47,8 +47,7 @@ class Design:
         self.reported = cache(self._reported)
 
     def _rows(self, experiment: str) -> list[Row]:
-        from bezierplan.running.chunk import conditions
-        from bezierplan.running.execution import settings_in
+        from bezierplan.running.execution import identity as identity_of
 
         content, rows = self.study.experiments[experiment], []
         for method in self.study.methods_of(experiment):
@@ -57,24 +56,8 @@ class Design:
                 name for name, problem in described.problems.items() if problem.get("layout", 0) < 2
             ]
             for condition in conditions(problems, content.vary):
-                problem = {
-                    key: value
-                    for key, value in described.problems[condition.problem].items()
-                    if key != "settings"
-                }
-                names = {
-                    "experiment": experiment,
-                    "condition": condition.name,
-                    "problem": condition.problem,
-                    "method": method,
-                }
-                rows.append(
-                    names
-                    | problem
-                    | settings_in(described, condition)
-                    | condition.values
-                    | {"planner": described.planner}
-                )
+                row = identity_of(described, condition, 0)
+                rows.append({key: row[key] for key in row if key not in ("id", "study", "repeat")})
         return rows
 
     def _planned(self, experiment: str) -> dict[str, str]:
@@ -111,10 +94,6 @@ class Design:
             | {name: each for name, each in joined.items() if name not in _LEFT_OUT}
             | self.planned(experiment)
         )
-
-    def columns(self, experiment: str) -> frozenset[str]:
-        """Columns of the runs table of an experiment that a selection may name."""
-        return frozenset(self.types(experiment))
 
     def _reported(self, experiment: str) -> frozenset[str] | None:
         """Extra columns that the planners of an experiment report; None if one of them does not say
@@ -264,8 +243,8 @@ class Design:
                 raise Fault(f"{location}: {value}: expected true or false")
             if kind == "word" and not isinstance(value, str):
                 raise Fault(f"{location}: {value}: expected a word")
-            if column == "path_curve" and value not in CURVES:
-                raise Fault(f"{location}: {value}: unknown{closest(value, CURVES)}")
+            if column == "path_curve":
+                check_known(value, CURVES, location)
         elif column == "repeat":
             if not is_number(value) or value != int(value) or value < 0:
                 raise Fault(f"{location}: {value}: expected a whole number of at least 0")
@@ -292,8 +271,6 @@ class Design:
 
     def _every(self, experiment: str, column: str) -> list[Any]:
         """All problems, layouts or conditions of an experiment at scale full."""
-        from bezierplan.running.chunk import conditions
-
         described = self.study.problems_of(experiment, "full")
         if column == "condition":
             return [
@@ -372,9 +349,7 @@ def _type(values: list[Any]) -> str:
 
 
 def fits(row: Row, where: dict[str, Any]) -> bool:
-    """Whether a run matches the conditions of a selection, as far as that is known before it is
-    run.
-    """
+    """Whether a run matches the conditions of a selection, as far as known before it is run."""
     for column, wanted in where.items():
         outcome = (
             column in METRICS

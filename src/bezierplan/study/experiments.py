@@ -6,15 +6,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from bezierplan.running.simulation.policy import Policy
 from bezierplan.schema.model import (
-    LARGEST,
     MOST_ENTRIES,
     Count,
-    Flag,
     Line,
     Model,
     Name,
-    NotNegative,
     Number,
     Positive,
     Setting,
@@ -26,6 +24,7 @@ from bezierplan.schema.model import (
     matching,
     one_of,
     value,
+    whole,
     wrong,
 )
 from bezierplan.workspaces.kinds import File, Workspace, kinds, of_length
@@ -78,94 +77,6 @@ class Method(Model):
     )
 
 
-Margins = Annotated[
-    list[float],
-    value(
-        lambda given: (
-            isinstance(given, list)
-            and 0 < len(given) <= 100
-            and all(is_number(each) and 0 <= each <= LARGEST for each in given)
-        ),
-        "",
-    ),
-]
-
-
-class Policy(Model):
-    """When a robot in a dynamic environment replans, and what it knows."""
-
-    replan: Literal["never", "every_step", "when_blocked", "when_changed"] = Field(
-        description="when the robot replans: never; every_step, that is at every `every`-th one; "
-        "when_blocked, that is when the rest of its path is blocked; or when_changed, that is "
-        "when the environment has changed (cells at some moments, circles that move at every step)"
-    )
-    every: Count = Field(
-        1,
-        description="of every_step: the number of steps between plans, "
-        "a whole number of at least 1; left out: 1",
-    )
-    warm: Flag = Field(
-        False,
-        description="whether a plan starts from the last one, for planners with a function "
-        "`resume`; left out: false",
-    )
-    waits: Flag = Field(
-        True,
-        description="whether the robot stops in front of an obstacle on its path, "
-        "true or false; left out: true",
-    )
-    sees: Literal["before", "after"] = Field(
-        "before",
-        description="whether it sees circles as they are before or after they move in a step; "
-        "left out: before",
-    )
-    knows: Literal["positions", "velocities"] = Field(
-        "positions",
-        description="whether it knows positions alone or also velocities, and looks ahead; left "
-        "out: positions",
-    )
-    check_margin: NotNegative = Field(
-        0.0,
-        description="the distance that circles must keep from the rest of its path, in units; "
-        "left out: 0",
-    )
-    plan_margins: Margins = Field(
-        [0.0],
-        description="by how much circles grow for a plan: a list of numbers, tried in this order "
-        "until there is a plan; left out: [0]",
-    )
-    brake: NotNegative = Field(
-        0.0,
-        description="the look-ahead distance along its path that must be free before it moves, in "
-        "units; left out: 0",
-    )
-    horizon: Positive = Field(
-        math.inf,
-        description="the distance ahead along its path that it checks, in units; left out: all "
-        "of it",
-    )
-    evades: Flag = Field(
-        False,
-        description="among circles, whether it makes an evasive manoeuvre where it would stop and "
-        "a circle is about to arrive; left out: false",
-    )
-    spacing: Positive = Field(
-        0.5,
-        description="mean length of the chords that it drives "
-        "along a curve, in units; left out: 0.5",
-    )
-    start: Literal["position", "centre"] = Field(
-        "position",
-        description="whether a plan begins at the robot's position, or at the centre of its cell, "
-        "to which it drives first",
-    )
-    step_seconds: Positive = Field(
-        0.05,
-        description="how long a step lasts, in seconds: metric `replans_late` counts the plans "
-        "that take longer; left out: 0.05",
-    )
-
-
 class Problem(Model):
     """A workspace with a start and a target."""
 
@@ -195,15 +106,7 @@ class Problem(Model):
         description="in a workspace drawn at random: "
         "how many are drawn, for each scale; column `layout`",
     )
-    obstacles: listed(
-        Annotated[
-            int,
-            value(
-                lambda given: type(given) is int and 0 <= given <= 100_000,
-                "a whole number from 0 to 100000",
-            ),
-        ]
-    ) = Field(
+    obstacles: listed(Annotated[int, whole(0, 100_000)]) = Field(
         None,
         description="in a workspace drawn at random, a list of whole numbers: how many circles "
         "(of `random_circles` the first so many of a "
@@ -211,12 +114,10 @@ class Problem(Model):
         "time (`random_changing_cells`); one problem "
         "for each of them and each layout; column `obstacles`",
     )
-    side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = (
-        Field(
-            None,
-            description="the side of a random field or of a map of blocks in cells, a whole "
-            "number from 1 to 5000",
-        )
+    side: Annotated[int, whole(1, 5000)] = Field(
+        None,
+        description="the side of a random field or of a map of blocks in cells, a whole "
+        "number from 1 to 5000",
     )
     route: Annotated[str, matching(PART, PART_EXPECTED)] = Field(
         None,

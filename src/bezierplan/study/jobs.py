@@ -1,8 +1,6 @@
-"""The jobs that follow from a study: named tuples, all that a job depends on beside its input
-files.
+"""The jobs that follow from a study: named tuples of all that a job depends on but files.
 
-A script receives them as plain values (`schema.model.plain`), in which Snakemake can detect
-changes.
+A script receives them as plain values (`schema.model.plain`), so that Snakemake detects changes.
 """
 
 import itertools
@@ -241,9 +239,7 @@ def _shown(artefact: Table | Figure) -> list[Shown]:
 
 
 def kind_of(study: Study, artefact: str) -> str:
-    """The kind of a table, or of the first panel of a figure; for a comparison, the kind of its
-    tables.
-    """
+    """The kind of a table, or of the first panel of a figure; for a comparison, of its tables."""
     if artefact in study.figures:
         return study.figures[artefact].panels[0].kind
     table = study.tables[artefact]
@@ -308,9 +304,7 @@ def leaders(studies: dict[str, Study], scale: str) -> dict[tuple[str, str, str],
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
-    """The caption of a table or figure: its title, and the methods, settings and repeats in
-    force.
-    """
+    """The caption of a table or figure: title, and the methods, settings and repeats in force."""
     sentences = [(study.tables.get(artefact) or study.figures[artefact]).title]
     for experiment in experiments_of(study, artefact):
         content = study.experiments[experiment]

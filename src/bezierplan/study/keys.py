@@ -4,7 +4,6 @@ test ensures that they are up to date.
 """
 
 import re
-from functools import partial
 
 from pydantic.fields import FieldInfo
 
@@ -145,10 +144,6 @@ def _columns(rows: list[tuple[str, type, str, str]]) -> str:
     return "\n".join(["| column | values | unit | meaning |", "| --- | --- | --- | --- |", *lines])
 
 
-def _between(content: str, marks: re.Match) -> str:
-    return f"{marks[1]}\n{content}\n\n{marks[2]}"
-
-
 def renewed(text: str) -> str:
     """The text of config/README.md with tables that match the current models."""
     return _renewed(text, {f"{name}.yaml": described(name) for name in GROUPS}, "keys")
@@ -174,7 +169,7 @@ def _renewed(text: str, tables: dict[str, str], what: str) -> str:
         marked = re.compile(
             rf"(<!-- {what} of {re.escape(name)} -->\n).*?(<!-- /{what} -->)", re.DOTALL
         )
-        text = marked.sub(partial(_between, table), text)
+        text = marked.sub(lambda marks, table=table: f"{marks[1]}\n{table}\n\n{marks[2]}", text)
     return text
 
 

@@ -38,9 +38,7 @@ def file(scale: str) -> str:
 
 
 def is_whole(page_file: Path) -> bool:
-    """Whether a page ends as it should: one that was cut short is as new as its inputs, and would
-    never be made again.
-    """
+    """Whether a page ends as it should: one cut short is as new as its inputs, and would stay."""
     with page_file.open("rb") as content:
         content.seek(max(0, page_file.stat().st_size - len(_END) - 2))
         return content.read().strip().endswith(_END)
@@ -150,9 +148,7 @@ def _outcome(studies: Studies, scale: str) -> list[str]:
 
 
 def _tried(folder: str) -> dict[str, str]:
-    """Tables in the folder of a study that are made only if asked for; those of interpretations are
-    made together.
-    """
+    """Tables of a study that are made only if asked for; those of interpretations together."""
     files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", *SEARCHED)}
     there = {name: file for name, file in files.items() if Path(file).is_file()}
     return (
@@ -235,9 +231,7 @@ def _traces(study: Study, experiment: str, files: Files) -> list[str]:
 def _study(
     studies: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str
 ) -> StudyShown:
-    """What the page needs to know of a study beside its results. made: the names of its tables and
-    figures.
-    """
+    """What the page needs of a study beside its results. made: names of its tables and figures."""
     study, folder = studies[key], f"{root}results/{scale}/{key}"
     judged = scale != "smoke" and study.claims
     files = (
@@ -310,9 +304,7 @@ def _paper(key: str) -> PaperCited | None:
 def _experiments(
     studies: Studies, scale: str, key: str, made: list[str], root: str
 ) -> dict[str, ExperimentShown]:
-    """The experiments whose runs the page shows: methods other than baselines, repeats, and
-    files.
-    """
+    """The experiments whose runs the page shows: methods but baselines, repeats, and files."""
     study, experiments = studies[key], {}
     for name, files in _experiments_behind(studies, scale, key, made).items():
         if files.chunks:

@@ -36,9 +36,7 @@ def loaded(study: Study, method: str, location: str) -> ModuleType:
 
 
 def check_complete(study: Study, location: str) -> None:
-    """Every method has a value for each of its settings. Raises Fault, which names all missing
-    ones, by planner.
-    """
+    """Every method has a value for each setting. Raises Fault, with all missing ones by planner."""
     missing: dict[str, dict[str, None]] = {}
     for method in study.methods:
         lacking = [name for name in study.accepted(method) if name not in study.resolved(method)]

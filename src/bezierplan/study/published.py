@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.table_kinds import Pivot
-from bezierplan.schema.checked import Fault, closest, text_of
+from bezierplan.schema.checked import Fault, check_known, closest, text_of
 from bezierplan.schema.model import is_number, one_or_list
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.design import Design
@@ -150,11 +150,7 @@ def check(design: Design, table: Pivot, told: str) -> None:
     for number, row in rows:
         where = f"{location}: line {number}"
         for column in (name for name in known if name in row):
-            if row[column] not in known[column]:
-                raise Fault(
-                    f"{where}: {column}: {row[column]}: "
-                    f"unknown{closest(row[column], known[column])}"
-                )
+            check_known(row[column], known[column], f"{where}: {column}")
         for column in by_name:
             _check_key(design, experiment, column, row[column], chosen, where)
         _check_numbers(row, where)
@@ -317,8 +313,7 @@ def _cells(study: Study, selector: dict[str, Any], location: str) -> list[dict[s
     for column, wanted in selector.items():
         if column == "table":
             continue
-        if column not in header:
-            raise Fault(f"{location}: {column}: unknown{closest(column, header)}")
+        check_known(column, header, location)
         rows = [
             row
             for row in rows

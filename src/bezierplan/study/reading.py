@@ -77,8 +77,7 @@ def load(
     at_changes: Callable[[], object] = lambda: None,
     is_needed: Callable[[Path], bool] = lambda folder: True,
 ) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked, unless the same content was before. Raises
-    Fault.
+    """The studies in folders, by name, read and checked, unless that was done before. Raises Fault.
 
     at_changes: called before each check, which takes seconds. is_needed: whether a study is read
     that has not been checked before; the others are left out.
@@ -128,10 +127,8 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
         )
     artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
-    claims, assumptions = (
-        _read(folder, "claims", ClaimsFile),
-        _read(folder, "assumptions", AssumptionsFile),
-    )
+    claims = _read(folder, "claims", ClaimsFile)
+    assumptions = _read(folder, "assumptions", AssumptionsFile)
     for name in experiments.baselines:
         if name in experiments.methods:
             raise Fault(

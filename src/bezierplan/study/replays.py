@@ -1,7 +1,5 @@
 """One run again, from its name alone."""
 
-from typing import Any
-
 import pandas as pd
 
 from bezierplan.analysis import results
@@ -9,7 +7,7 @@ from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems, rides, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.loans import lend
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, check_known
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job, problems_job
 from bezierplan.workspaces.worlds import from_json, to_json
@@ -28,13 +26,15 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
             "such as song2016/routes/15_240/smooth/3"
         )
     key, experiment, condition_name, method, repeat = parts
-    study = _named(key, studies, f"{name}: study")
-    _named(experiment, study.experiments, f"{name}: experiment")
-    _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
+    check_known(key, studies, f"{name}: study")
+    study = studies[key]
+    check_known(experiment, study.experiments, f"{name}: experiment")
+    check_known(method, study.methods_of(experiment), f"{name}: method")
     # Neither the seed nor the settings of a run depend on scale or chunk.
     chunk = job(study, experiment, method, "full", 0)
     conditions = {each.name: each for each in chunk.conditions()}
-    condition = _named(condition_name, conditions, f"{name}: condition")
+    check_known(condition_name, conditions, f"{name}: condition")
+    condition = conditions[condition_name]
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
@@ -67,9 +67,3 @@ def _redriven(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> 
         pd.DataFrame([row]), named, rides.bounds_of(named, moving, arrivals).to_pandas()
     )
     return joined._replace(worlds=moving, jobs={chunk.method: chunk})
-
-
-def _named(name: str, known: dict[str, Any], place: str) -> Any:
-    if name not in known:
-        raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
-    return known[name]

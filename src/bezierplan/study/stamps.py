@@ -66,9 +66,7 @@ class _Unpickler(pickle.Unpickler):
     """Makes models of this package, studies, and plain values."""
 
     def find_class(self, module: str, name: str) -> type:
-        """The class of a name. Raises UnpicklingError for anything else that a pickle could
-        call.
-        """
+        """The class of a name. Raises UnpicklingError for anything else that a pickle can call."""
         if (module, name) in (
             ("builtins", "frozenset"),
             ("builtins", "set"),

@@ -64,9 +64,7 @@ def _folder(scale: str, study: str, alternative: str | None = None) -> str:
 
 
 def _files(study: Study, scale: str, experiment: str, methods: Iterable[str] = ()) -> Files:
-    """Files of an experiment: chunks of methods as configured, whatever else the folder contains,
-    problems and bounds.
-    """
+    """Files of an experiment: chunks of methods as configured, problems and bounds, no others."""
     folder = _folder(study.home(experiment, scale), study.key)
     runs = {
         method: [
@@ -288,10 +286,8 @@ def narrow_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict
 
 def figure_params(studies: Studies, scale: str, study: str, figure: str) -> dict:
     """Params of a figure."""
-    job, inputs = (
-        jobs.figure_job(studies[study], figure, scale),
-        figure_inputs(studies, scale, study, figure),
-    )
+    job = jobs.figure_job(studies[study], figure, scale)
+    inputs = figure_inputs(studies, scale, study, figure)
     panels = studies[study].figures[figure].panels
     kinds = {f"bezierplan.figures.panels.{panel.kind}" for panel in panels}
     module = (
@@ -428,10 +424,8 @@ def alternative_inputs(
 ) -> dict[str, Any]:
     """Input files of an alternative: runs of the methods that it does not change."""
     primary = studies[study]
-    claims, changed = (
-        alternatives.headline_claims(primary, alternative),
-        alternatives.methods_changed(primary, alternative),
-    )
+    claims = alternatives.headline_claims(primary, alternative)
+    changed = alternatives.methods_changed(primary, alternative)
     methods = {
         name: alternatives.methods_of_claims(primary, claims, name)
         for name in alternatives.experiments_of_claims(claims)
@@ -444,14 +438,10 @@ def alternative_inputs(
 
 
 def alternative_params(studies: Studies, scale: str, study: str, alternative: str) -> dict:
-    """Params of an alternative: `chunks`, the numbers and jobs of the chunks of runs that it
-    changes.
-    """
+    """Params of an alternative: `chunks`, numbers and jobs of the chunks that it changes."""
     content, tried = studies[study], alternatives.with_alternative(studies[study], alternative)
-    claims, changed = (
-        alternatives.headline_claims(content, alternative),
-        alternatives.methods_changed(content, alternative),
-    )
+    claims = alternatives.headline_claims(content, alternative)
+    changed = alternatives.methods_changed(content, alternative)
     chunks = [
         (number, design.judged_only(jobs.job(tried, experiment, method, scale, number), claims))
         for experiment in alternatives.experiments_of_claims(claims)
@@ -479,27 +469,18 @@ def _audited(study: Study) -> dict[str, Pivot]:
     }
 
 
-def _audited_experiments(study: Study) -> list[str]:
-    return sorted({table.experiment for table in _audited(study).values()})
-
-
 def audit_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the audit."""
-    audited = studies[study]
-    files = {name: _files(audited, scale, name) for name in _audited_experiments(audited)}
+    tables = _audited(studies[study]).values()
+    # Printed lengths are sought among those of paths of their problems.
+    sought = {table.experiment for table in tables if table.identify}
+    experiments = sorted({table.experiment for table in tables})
+    files = {name: _files(studies[study], scale, name) for name in experiments}
     bounds = named(BOUNDS, {name: each.bounds for name, each in files.items()})
     problems = named(
-        PROBLEMS,
-        {name: each.problems for name, each in files.items() if _identifies(audited, name)},
+        PROBLEMS, {name: each.problems for name, each in files.items() if name in sought}
     )
-    return bounds | problems | _all_published(audited)
-
-
-def _identifies(study: Study, experiment: str) -> bool:
-    """Whether printed lengths are sought among those of paths of an experiment's problems."""
-    return any(
-        table.identify and table.experiment == experiment for table in _audited(study).values()
-    )
+    return bounds | problems | _all_published(studies[study])
 
 
 def audit_params(studies: Studies, scale: str, study: str) -> dict:
@@ -546,7 +527,8 @@ def interpretations_inputs(studies: Studies, scale: str, study: str) -> dict[str
 
 def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the search for an interpretation."""
-    job = choices.search_job(studies[study])
+    content = studies[study]
+    job = choices.search_job(content)
     screened = job.stages["screened"]
     planners = {
         _planner(chunk.planner)
@@ -560,13 +542,8 @@ def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
     }
     return {
         "job": plain(job),
-        "folder": definition.relative(studies[study].folder),
-        "published": content_digest(
-            *(
-                studies[study].published_file(name)
-                for name in choices.printed_tables(studies[study])
-            )
-        ),
+        "folder": definition.relative(content.folder),
+        "published": content_digest(*map(content.published_file, choices.printed_tables(content))),
         "code": _code("interpretations", *sorted(planners), *sorted(kinds)),
     }
 
@@ -575,7 +552,7 @@ def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
 # All studies together
 
 
-def _published_tables(studies: Studies) -> dict[tuple[str, str], Pivot]:
+def published_tables(studies: Studies) -> dict[tuple[str, str], Pivot]:
     """The tables compared with published numbers, by study and table."""
     return {
         (key, name): table
@@ -589,7 +566,7 @@ def comparison_files(studies: Studies, scale: str) -> dict[tuple[str, str], str]
     """The comparison of each table with published numbers, by study and table."""
     return {
         (study, table): _comparison_file(scale, study, table)
-        for study, table in _published_tables(studies)
+        for study, table in published_tables(studies)
     }
 
 
@@ -612,24 +589,22 @@ def summary_inputs(studies: Studies, scale: str) -> dict[str, Any]:
 def summary_params(studies: Studies, scale: str) -> dict:
     """Params of the summary."""
     titles = {key: study.title for key, study in studies.items()}
-    job = SummaryJob([*_published_tables(studies)], titles)
+    job = SummaryJob([*published_tables(studies)], titles)
     return {"job": plain(job), "code": _code("summary")}
 
 
 def baseline_comparison_inputs(studies: Studies, scale: str) -> dict[str, Any]:
     """Input files of the comparison with the baseline: experiments by study and name."""
-    files = {
-        f"{key}/{name}": _files(study, scale, name, _measured(study, name))
-        for key, study in studies.items()
-        if study.baseline_comparison
-        for name in study.baseline_comparison.experiments
-    }
-    return of_experiments(files)
-
-
-def _measured(study: Study, experiment: str) -> list[str]:
-    """Methods of an experiment, and the baseline that they are measured against."""
-    return [*study.experiments[experiment].methods, study.baseline_comparison.baseline]
+    return of_experiments(
+        {
+            f"{key}/{name}": _files(
+                study, scale, name, [*study.experiments[name].methods, measured.baseline]
+            )
+            for key, study in studies.items()
+            if (measured := study.baseline_comparison)
+            for name in measured.experiments
+        }
+    )
 
 
 def baseline_comparison_params(studies: Studies, scale: str) -> dict:
@@ -637,14 +612,11 @@ def baseline_comparison_params(studies: Studies, scale: str) -> dict:
     repeats."""
     job = {
         key: MeasuredJob(
-            study.baseline_comparison.baseline,
-            {
-                name: study.experiments[name].repeats[scale]
-                for name in study.baseline_comparison.experiments
-            },
+            measured.baseline,
+            {name: study.experiments[name].repeats[scale] for name in measured.experiments},
         )
         for key, study in studies.items()
-        if study.baseline_comparison
+        if (measured := study.baseline_comparison)
     }
     return {"job": plain(job), "code": _code("baseline_comparison")}
 
@@ -722,10 +694,8 @@ def files_of_study(studies: Studies, scale: str, study: str) -> list[str]:
 
 def files_of_scale(studies: Studies, scale: str) -> list[str]:
     """Everything that is made at a scale; a summary if some table has published numbers."""
-    summary = _published_tables(studies)
-    return [file for study in studies for file in files_of_study(studies, scale, study)] + (
-        [f"results/{scale}/summary.md"] if summary else []
-    )
+    files = [file for study in studies for file in files_of_study(studies, scale, study)]
+    return files + ([f"results/{scale}/summary.md"] if published_tables(studies) else [])
 
 
 def files_of_sensitivity(studies: Studies, scale: str) -> list[str]:

@@ -11,9 +11,7 @@ workspaces = ("grid",)
 
 
 def plan(problem, rng, *, tries: Annotated[int, Range(1)]):
-    """The shortest of some polylines through one random point whose samples are all in free
-    cells.
-    """
+    """The shortest of some polylines through a random point whose samples are in free cells."""
     grid, best, history = problem.workspace, None, []
     x_low, x_high, y_low, y_high = grid.bounds
     for middle in rng.uniform((x_low, y_low), (x_high, y_high), (tries, 2)):

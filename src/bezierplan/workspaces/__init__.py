@@ -1,3 +1,1 @@
-"""What a robot moves in: circles in a rectangle, a grid of cells, or polygons; and reading their
-descriptions and files.
-"""
+"""What a robot moves in: circles, a grid of cells, or polygons; and how these are read."""

@@ -99,13 +99,9 @@ def _simplified(points: np.ndarray) -> np.ndarray:
 
 
 def _turns(polygon: np.ndarray) -> np.ndarray:
-    """The angle (n,) by which the boundary turns to the left at each corner; at a spike a half
-    turn.
-    """
-    arriving, leaving = (
-        polygon - np.roll(polygon, 1, axis=0),
-        np.roll(polygon, -1, axis=0) - polygon,
-    )
+    """The angle (n,) by which the boundary turns left at each corner; at a spike a half turn."""
+    arriving = polygon - np.roll(polygon, 1, axis=0)
+    leaving = np.roll(polygon, -1, axis=0) - polygon
     return np.arctan2(
         arriving[:, 0] * leaving[:, 1] - arriving[:, 1] * leaving[:, 0],
         (arriving * leaving).sum(axis=1),

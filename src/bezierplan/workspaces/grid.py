@@ -1,8 +1,7 @@
 """A grid of square cells, each free or occupied.
 
 Cells are numbered row by row from the bottom left, from 0: number = column + columns * row
-(song2016, Section III; code for papers that number differently converts where it reads or prints
-numbers).
+(song2016, Section III; code for papers that number differently converts when it reads or prints).
 """
 
 import math
@@ -86,10 +85,8 @@ class Grid:
             x_low <= x <= x_low + columns * self.cell and y_low <= y <= y_low + rows * self.cell
         ):
             return None
-        column, row = (
-            math.floor((x - x_low) / self.cell + ON_LINE),
-            math.floor((y - y_low) / self.cell + ON_LINE),
-        )
+        column = math.floor((x - x_low) / self.cell + ON_LINE)
+        row = math.floor((y - y_low) / self.cell + ON_LINE)
         return min(row, rows - 1), min(column, columns - 1)
 
     def centre(self, number: int) -> tuple[float, float]:

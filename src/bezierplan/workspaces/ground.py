@@ -210,11 +210,9 @@ def _cheapest(ground, start, target):
     An edge is examined only if it would be an improvement: on a large map few are.
     """
     cells = ground.occupied.size
-    energy, before, done = (
-        np.full(cells, np.inf),
-        np.full(cells, -1),
-        ground.occupied.ravel().copy(),
-    )
+    energy = np.full(cells, np.inf)
+    before = np.full(cells, -1)
+    done = ground.occupied.ravel().copy()
     energy[start] = 0.0
     while True:
         here, least = -1, np.inf

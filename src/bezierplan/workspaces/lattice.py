@@ -102,9 +102,7 @@ def neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
 
 
 def _around(occupied: np.ndarray) -> np.ndarray:
-    """The free cells around each cell, free or occupied: (cells, 8) numbers, -1 where there is
-    none.
-    """
+    """The free cells around each cell, free or occupied: (cells, 8) numbers, or -1 for none."""
     number = np.pad(
         np.where(occupied, -1, np.arange(occupied.size).reshape(occupied.shape)),
         1,

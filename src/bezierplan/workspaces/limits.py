@@ -3,9 +3,7 @@
 import numpy as np
 
 LARGEST = 1e5
-"""Largest size of a coordinate, in units: beyond it the certified checker could not keep its
-tolerance.
-"""
+"""Largest size of a coordinate, in units: beyond it the checker could not keep its tolerance."""
 
 FARTHEST = 3e7
 """Largest size of a coordinate of a map that is computed with in a frame of its own: beyond all

@@ -183,9 +183,7 @@ def _anywhere(file: Path, description: dict[str, Any]) -> Workspace:
 
 
 def needs_cells(served: Collection[str] | None) -> bool:
-    """Whether a planner that serves some kinds of workspace, None for all, does not serve
-    polygons.
-    """
+    """Whether a planner that serves some kinds of workspace, None for all, excludes polygons."""
     return served is not None and "polygons" not in served
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.workspaces.limits import check_bounds, check_thickness
-from bezierplan.workspaces.random_circles import MOST_DRAWS
+from bezierplan.workspaces.random_field import drawn_centres
 
 if TYPE_CHECKING:
     from bezierplan.workspaces.worlds import MovingCircles
@@ -16,9 +16,7 @@ Walls = tuple[float, float, float, float]
 
 
 def walls_of(bounds: list[float]) -> Walls:
-    """The walls of a field, from a description's bounds. Raises ValueError for bounds without
-    room.
-    """
+    """The walls of a field, from a description's bounds. Raises ValueError if they have no room."""
     x_low, x_high, y_low, y_high = map(float, bounds)
     check_bounds((x_low, x_high, y_low, y_high))
     return x_low, x_high, y_low, y_high
@@ -53,27 +51,6 @@ def drawn(
 
     Raises ValueError if no free place is found.
     """
-    centres = _drawn_centres(rng, count, walls, ends, radius + description["clear_ends"])
+    centres = drawn_centres(rng, count, walls, ends, radius + description["clear_ends"])
     heading = rng.uniform(0.0, 2 * np.pi, count)
     return centres, description["speed"] * np.column_stack([np.cos(heading), np.sin(heading)])
-
-
-def _drawn_centres(
-    rng: np.random.Generator, count: int, walls: Walls, ends: np.ndarray, least: float
-) -> np.ndarray:
-    """Centres (count, 2) within the walls, none of them closer to an end than the minimum
-    distance.
-    """
-    low, high = np.reshape(walls, (2, 2)).T
-    centres = np.empty((count, 2))
-    for i in range(count):
-        for _ in range(MOST_DRAWS):
-            centres[i] = rng.uniform(low, high)
-            if np.hypot(*(ends - centres[i]).T).min() >= least:
-                break
-        else:
-            raise ValueError(
-                f"radius: no circle keeps {least:g} away "
-                f"from start and target in {MOST_DRAWS} draws"
-            )
-    return centres

@@ -31,9 +31,7 @@ class Scenario(NamedTuple):
 
 
 def read(file: Path, unit: str) -> Grid:
-    """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line and what
-    is expected.
-    """
+    """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line."""
     lines = lines_of(read_text(file, largest=2 * MOST_CELLS))
     kind, height, width = (
         _header(lines, number, key)

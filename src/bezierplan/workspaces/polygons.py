@@ -1,11 +1,15 @@
 """Polygonal obstacles, with or without holes, in a rectangle."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.grown import Grown
+
+if TYPE_CHECKING:
+    import shapely
 
 
 @dataclass(frozen=True)
@@ -27,3 +31,46 @@ class Polygons:
             tuple(read_only(ring, float) for ring in rings) for rings in self.obstacles
         )
         object.__setattr__(self, "obstacles", obstacles)
+
+    def union(self) -> "shapely.Geometry":
+        """All obstacles as one shape."""
+        import shapely
+
+        return shapely.union_all(
+            [shapely.Polygon(outer, holes) for outer, *holes in self.obstacles]
+        )
+
+    def free(self) -> "shapely.Geometry":
+        """What is within the border and in no obstacle."""
+        import shapely
+
+        left, right, bottom, top = self.bounds
+        return shapely.box(left, bottom, right, top).difference(self.union())
+
+
+def parts(shape: "shapely.Geometry") -> list["shapely.Polygon"]:
+    """The polygons of a shape, without points and lines at which others touch."""
+    import shapely
+
+    return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon)]
+
+
+def rings(shape: "shapely.Geometry") -> list[np.ndarray]:
+    """The boundary of a shape's polygons, not closed: rings (n, 2), the inside on their left."""
+    import shapely
+
+    return [
+        shapely.get_coordinates(ring)[:-1]
+        for part in map(shapely.geometry.polygon.orient, parts(shape))
+        for ring in (part.exterior, *part.interiors)
+    ]
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 2) of length 1."""
+    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Cross products (n,) of vectors (n, 2), positive where b lies to the left of a."""
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

@@ -31,18 +31,10 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     can be found.
     """
     side = problem["side"]
-    parts = [
-        name,
-        side,
-        *problem["start"],
-        *problem["target"],
-        problem["obstacles"],
-        problem["layout"],
-    ]
-    rng = generator("/".join(map(str, parts)))
-    empty = from_circles(
-        Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"])
-    )
+    numbers = *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]
+    rng = generator(name, side, *numbers)
+    square = 0.0, side, 0.0, side
+    empty = from_circles(Circles(square, np.empty((0, 2)), np.empty(0), description["unit"]))
     ends = np.array([problem["start"], problem["target"]], dtype=float)
     cells = []
     for key, end in zip(("start", "target"), ends):
@@ -54,14 +46,11 @@ def field(description: dict, problem: dict, name: str) -> Grid:
         cells.append(cell)
     radius = description["radius"] * side
     for _ in range(MOST_FIELDS):
-        centres = _centres(
-            rng, problem["obstacles"], side, ends, radius + description["clear_ends"]
+        centres = drawn_centres(
+            rng, problem["obstacles"], square, ends, radius + description["clear_ends"]
         )
-        grid = from_circles(
-            Circles(
-                (0.0, side, 0.0, side), centres, np.full(len(centres), radius), description["unit"]
-            )
-        )
+        radii = np.full(len(centres), radius)
+        grid = from_circles(Circles(square, centres, radii, description["unit"]))
         if connected(grid.occupied, *cells):
             return grid
     raise ValueError(
@@ -70,19 +59,24 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     )
 
 
-def _centres(
-    rng: np.random.Generator, count: int, side: float, ends: np.ndarray, least: float
+def drawn_centres(
+    rng: np.random.Generator,
+    count: int,
+    bounds: tuple[float, float, float, float],
+    ends: np.ndarray,
+    least: float,
 ) -> np.ndarray:
-    """Centres (count, 2), none of them closer to an end than the minimum distance."""
+    """Centres (count, 2) within bounds, none of them closer to an end than the least distance."""
+    low, high = np.reshape(bounds, (2, 2)).T
     centres = np.empty((count, 2))
     for i in range(count):
         for _ in range(MOST_DRAWS):
-            centres[i] = rng.uniform(0.0, side, 2)
+            centres[i] = rng.uniform(low, high)
             if np.hypot(*(ends - centres[i]).T).min() >= least:
                 break
         else:
             raise ValueError(
-                f"radius: no circle keeps {least:g} cells away from start and target in "
+                f"radius: no circle keeps {least:g} away from start and target in "
                 f"{MOST_DRAWS} draws"
             )
     return centres

@@ -29,8 +29,7 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
 
     rule: a cell is occupied if its inside overlaps an obstacle (`overlap`), so that a path over
     free cells is free; or if its centre lies in one or on its edge (`centre`), so that a path may
-    cut up to half a cell into a wall. A cell whose centre lies outside the border is always
-    occupied.
+    cut up to half a cell into a wall. A cell whose centre is outside the border is occupied.
 
     Raises ValueError, naming the key, for more than `MOST_CELLS` cells. Warns of obstacles that
     occupy no cell.
@@ -50,10 +49,8 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
         shape = shapely.Polygon(outer, holes)
         # The cells within the obstacle's bounds, and one more on each side.
         low, high = outer.min(axis=0) - (left, bottom), outer.max(axis=0) - (left, bottom)
-        first, end = (
-            np.maximum(np.floor(low / cell).astype(int) - 1, 0),
-            np.ceil(high / cell).astype(int) + 2,
-        )
+        first = np.maximum(np.floor(low / cell).astype(int) - 1, 0)
+        end = np.ceil(high / cell).astype(int) + 2
         near = np.s_[first[1] : end[1], first[0] : end[0]]
         centre_x, centre_y = np.meshgrid(x[near[1]], y[near[0]])
         shapely.prepare(shape)
@@ -77,15 +74,10 @@ def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
     """
     import shapely
 
-    left, right, bottom, top = polygons.bounds
-    free = shapely.box(left, bottom, right, top).difference(
-        shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles])
-    )
+    free = polygons.free()
     rows, columns = grid.occupied.shape
     x, y = np.meshgrid(np.arange(columns), np.arange(rows))
-    low, high = (
-        grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE),
-        grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE),
-    )
+    low = grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE)
+    high = grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE)
     shapely.prepare(free)
     return ~shapely.covers(free, shapely.box(low[..., 0], low[..., 1], high[..., 0], high[..., 1]))

@@ -23,7 +23,7 @@ from bezierplan.workspaces.frames import frame_of, inward_map, outward_map
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import Grown, grown_of
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.polygons import Polygons, cross, rings, unit
 
 if TYPE_CHECKING:
     import shapely
@@ -44,9 +44,7 @@ what the certified checker tolerates.
 """
 
 MOST_CORNERS = 1_000
-"""Most corners of the boundary of cells that grow as polygons: with more, the exact shortest path
-would take minutes.
-"""
+"""Most corners of cells that grow as polygons: with more, the shortest path would take minutes."""
 
 # Points of a boundary this close together, in units, are one.
 _SAME_POINT = 1e-10
@@ -82,10 +80,10 @@ def _grow(workspace: Workspace, radius: float) -> Workspace:
         grown = Grown(radius, workspace, workspace.centres)
         return replace(workspace, bounds=bounds, radii=workspace.radii + radius, grown=grown)
     if isinstance(workspace, Polygons):
-        return _polygons(workspace, _union_of_polygons(workspace), workspace.bounds, radius)
+        return _polygons(workspace, _clean(workspace.union()), workspace.bounds, radius)
     if isinstance(workspace.drawn, Polygons):
         polygons = _polygons(
-            workspace, _union_of_polygons(workspace.drawn), workspace.drawn.bounds, radius
+            workspace, _clean(workspace.drawn.union()), workspace.drawn.bounds, radius
         )
         return raster.from_polygons(polygons, workspace.cell, "overlap")
     shape = _union_of_cells(workspace)
@@ -148,12 +146,12 @@ def _polygons(
     if inside.difference(outline).area == 0:
         raise _nothing_free(radius)
     parts = [part for part in shapely.get_parts(outline) if part.intersects(inside)]
-    rings = tuple(
+    obstacles = tuple(
         tuple(np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors))
         for part in parts
     )
     return Polygons(
-        limits, rings, workspace.unit, Grown(radius, workspace, read_only(centres, float))
+        limits, obstacles, workspace.unit, Grown(radius, workspace, read_only(centres, float))
     )
 
 
@@ -184,14 +182,14 @@ def _outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry
     corners, before, after = _corners(shape)
     if not len(corners):
         return shape, corners
-    along = _unit(after - corners)
+    along = unit(after - corners)
     out = np.column_stack([along[:, 1], -along[:, 0]])  # the shape lies to the left
     sides = shapely.polygons(
         np.stack([corners, corners + reach * out, after + reach * out, after], axis=1)
     )
-    arriving = _unit(corners - before)
+    arriving = unit(corners - before)
     first = np.column_stack([arriving[:, 1], -arriving[:, 0]])
-    turn = np.arctan2(_cross(arriving, along), (arriving * along).sum(axis=1))
+    turn = np.arctan2(cross(arriving, along), (arriving * along).sum(axis=1))
     convex = np.flatnonzero(turn > _STRAIGHT)
     sectors = [
         shapely.Polygon(_sector(corners[k], reach, first[k], out[k], turn[k])) for k in convex
@@ -214,28 +212,12 @@ def _corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndar
     """The corners (n, 2) of a shape, which lies to the left of its boundary, and those before and
     after each.
     """
-    import shapely
-
-    rings = []
-    for part in shapely.get_parts(shape):
-        oriented = shapely.geometry.polygon.orient(part)
-        rings += [
-            shapely.get_coordinates(ring)[:-1] for ring in (oriented.exterior, *oriented.interiors)
-        ]
-    around = [(ring, np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)) for ring in rings]
+    around = [(ring, np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)) for ring in rings(shape)]
     nothing = np.empty((0, 2))
     if not around:
         return nothing, nothing, nothing
     corners, before, after = (np.concatenate([nothing, *each]) for each in zip(*around))
     return corners, before, after
-
-
-def _union_of_polygons(polygons: Polygons) -> "shapely.Geometry":
-    import shapely
-
-    return _clean(
-        shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles])
-    )
 
 
 def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
@@ -268,11 +250,3 @@ def by_cells(grid: Grid, radius: float) -> Grid:
     if occupied.all():
         raise _nothing_free(radius)
     return replace(grid, occupied=occupied[1:-1, 1:-1], grown=Grown(radius, grid, np.empty((0, 2))))
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

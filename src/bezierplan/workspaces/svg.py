@@ -18,16 +18,14 @@ import numpy as np
 from bezierplan.workspaces import geojson
 from bezierplan.workspaces.geojson import Shape
 from bezierplan.workspaces.limits import FARTHEST, check_bounds, check_numbers
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.polygons import Polygons, parts
 from bezierplan.workspaces.text_file import number
 
 if TYPE_CHECKING:
     import shapely
 
 FLATNESS = 1e-5
-"""By how much a polygon is off the curve that it stands for, at most, as a share of the border's
-longer side.
-"""
+"""By how much a polygon is off its curve, at most, as a share of the border's longer side."""
 
 _SHAPES = {
     "path": (),
@@ -37,9 +35,7 @@ _SHAPES = {
     "circle": ("r",),
     "ellipse": ("rx", "ry"),
 }
-"""Elements that are obstacles, and the lengths of which none may be 0 for the element to be
-drawn.
-"""
+"""Elements that are obstacles, and the lengths without which an element is not drawn."""
 
 _PLACES = {"rect": ("x", "y", "rx", "ry"), "circle": ("cx", "cy"), "ellipse": ("cx", "cy")}
 _GROUPS = ("svg", "g", "a")
@@ -71,9 +67,7 @@ _SIDES = 10_000
 
 
 class _Style(NamedTuple):
-    """What an element has from those around it: properties by name, and the words of all
-    transforms.
-    """
+    """What an element has from those around it: properties by name, and all transforms' words."""
 
     properties: dict[str, str]
     transform: str
@@ -244,9 +238,7 @@ def _rings(name: str, element: ET.Element, style: _Style, flatness: float) -> li
 
 
 def _distinct(ring: np.ndarray, apart: float) -> np.ndarray:
-    """A ring (n, 2) without points that are as good as the one before: arcs end where rounding puts
-    them.
-    """
+    """A ring (n, 2) without points as good as the one before: arcs end where rounding puts them."""
     ring = ring[np.append(True, np.hypot(*np.diff(ring, axis=0).T) > apart)]
     if math.dist(ring[0], ring[-1]) <= apart:
         ring[-1] = ring[0]
@@ -314,9 +306,7 @@ def _path(name: str, element: ET.Element) -> Any:
 
 
 def _sides(name: str, segment: Any, flatness: float) -> int:
-    """How many sides a polygon needs for a curve, by the largest second derivative or the largest
-    radius.
-    """
+    """How many sides a polygon needs for a curve, by its largest second derivative or radius."""
     import svgelements
 
     if isinstance(segment, svgelements.Arc):
@@ -335,9 +325,7 @@ def _sides(name: str, segment: Any, flatness: float) -> int:
 
 
 def _filled(rings: list[np.ndarray], even_odd: bool) -> list["shapely.Polygon"]:
-    """The polygons that rings (n, 2) fill, which may cross themselves and each other: the faces
-    around which they wind.
-    """
+    """The polygons that rings (n, 2) fill, which may cross: the faces around which they wind."""
     import shapely
 
     closed = [np.vstack([ring, ring[:1]]) for ring in rings if len(np.unique(ring, axis=0)) > 2]
@@ -352,11 +340,7 @@ def _filled(rings: list[np.ndarray], even_odd: bool) -> list["shapely.Polygon"]:
         winding = sum(_winding(ring, point.x, point.y) for ring in closed)
         if winding % 2 if even_odd else winding:
             inside.append(face)
-    return [
-        part
-        for part in shapely.get_parts(shapely.union_all(inside))
-        if isinstance(part, shapely.Polygon)
-    ]
+    return parts(shapely.union_all(inside))
 
 
 def _winding(ring: np.ndarray, x: float, y: float) -> int:

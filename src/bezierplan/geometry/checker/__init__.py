@@ -144,9 +144,7 @@ def check(
 
 
 def refuse_unfit(pieces: np.ndarray) -> None:
-    """Raise ValueError for pieces that `check` cannot judge: wrong shape, degree too high,
-    coordinates too large or not finite.
-    """
+    """Raise ValueError for pieces of a wrong shape, too high a degree or unfit coordinates."""
     if pieces.ndim != 3 or pieces.shape[2] != 2 or not 2 <= pieces.shape[1] <= LARGEST_DEGREE + 1:
         raise ValueError(
             f"pieces have the shape {pieces.shape}; expected (pieces, degree + 1, 2) with a "

@@ -1,8 +1,7 @@
 """What the searches ask about a region: whether a point is blocked, whether a hull is free, and how
 deep they are.
 
-Each kind of region has its own answers. The overloads at the end select them by the type of the
-region.
+Each kind of region has its own answers. The overloads at the end select them by its type.
 """
 
 import math
@@ -12,8 +11,8 @@ from numba.extending import overload
 
 from bezierplan.geometry.bins import columns_between, rows_between, rows_near
 from bezierplan.geometry.checker.hulls import (
+    BINOMIAL,
     LARGEST_COORDINATE,
-    LARGEST_DEGREE,
     TOLERANCE,
     box,
     bulge_of,
@@ -34,15 +33,6 @@ _WIDEST_RANGE = 12
 # An edge at this distance from a hull cannot be passed within the tolerance of its ends, so it is
 # irrelevant to the hull.
 _APART = 4 * TOLERANCE
-
-_BINOMIAL = np.array(
-    [
-        [math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)]
-        for n in range(2 * LARGEST_DEGREE + 1)
-    ],
-    dtype=float,
-)
-
 
 # --------------------------------------------------------------------------------------------------
 # The questions. numba compiles the answer for a kind of region in their place, by the overloads
@@ -125,10 +115,8 @@ def _is_free_in_grid(points, region):
     # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every
     # seam, the range extends as far beyond the hull as a hull may reach into a rectangle.
     reach = 2.0 * TOLERANCE
-    left, right = (
-        _element(x_low - reach, cell, columns - 1),
-        _element(x_high + reach, cell, columns - 1),
-    )
+    left = _element(x_low - reach, cell, columns - 1)
+    right = _element(x_high + reach, cell, columns - 1)
     bottom, top = _element(y_low - reach, cell, rows - 1), _element(y_high + reach, cell, rows - 1)
     if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:
         return False
@@ -206,8 +194,8 @@ def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
             product = (points[i, 0] - x) * (points[j, 0] - x) + (points[i, 1] - y) * (
                 points[j, 1] - y
             )
-            coefficient += _BINOMIAL[n, i] * _BINOMIAL[n, j] * product
-        least = min(least, coefficient / _BINOMIAL[2 * n, k])
+            coefficient += BINOMIAL[n, i] * BINOMIAL[n, j] * product
+        least = min(least, coefficient / BINOMIAL[2 * n, k])
     return math.sqrt(max(0.0, least))
 
 
@@ -316,9 +304,7 @@ def _is_blocked_in_polygons(x, y, region):
 
 @allocation_free
 def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
-    """Smallest and largest distance of control points from the line of an edge, positive on its
-    free side.
-    """
+    """Smallest and largest distance of control points from an edge's line, positive where free."""
     low = math.inf
     high = -math.inf
     for x, y in points:
@@ -396,8 +382,7 @@ def _touches(points, hull_box, along_x, along_y, across_low, across_high, region
 
 @allocation_free
 def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
-    """Number of edges of a chain of touched edges if a hull passes it on the free side, otherwise
-    0.
+    """Number of edges of a chain of touched edges if a hull passes it on the free side, or 0.
 
     It does if it lies on the free side of all lines of the chain. Where the blocked region is
     convex at the chain's corners, one of these lines is enough, or any line between hull and chain
@@ -458,21 +443,7 @@ _DEPTH_BOUND = {
 }
 
 
-@overload(is_blocked)
-def _choose_is_blocked(x, y, region):
-    return _IS_BLOCKED[region.instance_class]
-
-
-@overload(is_free)
-def _choose_is_free(points, region):
-    return _IS_FREE[region.instance_class]
-
-
-@overload(depth_at)
-def _choose_depth(x, y, region):
-    return _DEPTH_AT[region.instance_class]
-
-
-@overload(depth_bound)
-def _choose_depth_bound(points, region):
-    return _DEPTH_BOUND[region.instance_class]
+overload(is_blocked)(lambda x, y, region: _IS_BLOCKED[region.instance_class])
+overload(is_free)(lambda points, region: _IS_FREE[region.instance_class])
+overload(depth_at)(lambda x, y, region: _DEPTH_AT[region.instance_class])
+overload(depth_bound)(lambda points, region: _DEPTH_BOUND[region.instance_class])

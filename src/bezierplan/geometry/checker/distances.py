@@ -114,9 +114,7 @@ def _clearance_of_point(
     centres: np.ndarray,
     radii: np.ndarray,
 ) -> float:
-    """Minimum distance of a point to some of the obstacles, given by number: edges first, then
-    discs.
-    """
+    """Minimum distance of a point to some of the obstacles, by number: edges, then discs."""
     least = math.inf
     for obstacle in obstacles:
         disc = obstacle - len(edges)

@@ -1,5 +1,4 @@
-"""The certified check of a footprint, a convex polygon that turns with the path's direction of
-travel.
+"""The certified check of a footprint, a convex polygon that turns as it travels.
 
 While a part of a path is driven, each corner of the footprint moves along a curve that deviates
 from the line between its places at both ends by at most an eighth of its largest acceleration (with
@@ -65,9 +64,7 @@ class FootprintCheck(NamedTuple):
 
 
 def check_footprint(pieces: np.ndarray, region: Region, footprint: Footprint) -> FootprintCheck:
-    """Check the footprint along a path of Bézier pieces (pieces, degree + 1, 2) whose own points
-    are free (`check`).
-    """
+    """Check the footprint along Bézier pieces (pieces, degree + 1, 2) that are free (`check`)."""
     reach = footprint.circumscribed
     tolerance = CLEARANCE_SHARE * reach
     share = max(SHARE, 4 * TOLERANCE / footprint.thickness)
@@ -97,9 +94,7 @@ def check_footprint(pieces: np.ndarray, region: Region, footprint: Footprint) ->
 
 
 def _middle_at_start(pieces: np.ndarray, footprint: Footprint) -> tuple[float, float]:
-    """Where the footprint's centroid is at the start; the reference point, which is free, where the
-    heading is not known.
-    """
+    """Where the centroid is at the start; the reference point where the heading is not known."""
     x, y = pieces[0, 0]
     along = pieces[0, 1] - pieces[0, 0]
     length = math.hypot(*along)
@@ -182,9 +177,7 @@ def first_entry(moves, headings, outer, inner, reach, edges, centres, radii):
 
 @compiled
 def footprint_clearance(moves, headings, corners, reach, tolerance, edges, centres, radii):
-    """Least distance of a footprint that collides nowhere from edges (n, 4) and discs, to a
-    tolerance, by branch and bound.
-    """
+    """Least distance of a free footprint from edges (n, 4) and discs, to a tolerance."""
     stack, begin, width, turn, considered, places, hull = _room(moves, corners)
     obstacles = np.arange(len(edges) + len(radii))
     least = np.inf
@@ -325,10 +318,8 @@ def _derivative(points, order, x, y):
     for k in range(n + 1 - order):
         east, north = points[k + 1, 0] - points[k, 0], points[k + 1, 1] - points[k, 1]
         if order > 1:
-            east, north = (
-                points[k + 2, 0] - points[k + 1, 0] - east,
-                points[k + 2, 1] - points[k + 1, 1] - north,
-            )
+            east = points[k + 2, 0] - points[k + 1, 0] - east
+            north = points[k + 2, 1] - points[k + 1, 1] - north
         if order > 2:
             east = points[k + 3, 0] - 3.0 * points[k + 2, 0] + 3.0 * points[k + 1, 0] - points[k, 0]
             north = (
@@ -383,9 +374,7 @@ def _hull(points, hull):
 
 @allocation_free
 def _left_of(a, b, x, y):
-    """Twice the area of the triangle of a, b and a point, positive if the point lies to the
-    left.
-    """
+    """Twice the area of the triangle of a, b and a point, positive if that lies to the left."""
     return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
 
 
@@ -398,18 +387,10 @@ def _nearer(obstacles, count, hull, limit, edges, centres, radii):
     """Sort those of the first obstacles that are no farther from a convex polygon than a limit to
     the beginning; returns their number.
     """
-    left, right, bottom, top = box(hull)
+    around = box(hull)
     near = 0
     for k in range(count):
-        disc = obstacles[k] - len(edges)
-        if disc < 0:
-            ax, ay, bx, by = edges[obstacles[k]]
-            beside = max(
-                left - max(ax, bx), min(ax, bx) - right, bottom - max(ay, by), min(ay, by) - top
-            )
-        else:
-            x, y = centres[disc, 0], centres[disc, 1]
-            beside = max(left - x, x - right, bottom - y, y - top) - radii[disc]
+        beside = _beside(obstacles[k], around, edges, centres, radii)
         if beside <= limit and _distance(obstacles[k], hull, edges, centres, radii) <= limit:
             obstacles[near], obstacles[k] = obstacles[k], obstacles[near]
             near += 1
@@ -419,21 +400,24 @@ def _nearer(obstacles, count, hull, limit, edges, centres, radii):
 @allocation_free
 def _least_distance(obstacles, hull, edges, centres, radii):
     """Distance of a convex polygon, or a point, from the nearest of some obstacles."""
-    left, right, bottom, top = box(hull)
+    around = box(hull)
     least = np.inf
     for obstacle in obstacles:
-        disc = obstacle - len(edges)
-        if disc < 0:
-            ax, ay, bx, by = edges[obstacle]
-            beside = max(
-                left - max(ax, bx), min(ax, bx) - right, bottom - max(ay, by), min(ay, by) - top
-            )
-        else:
-            x, y = centres[disc, 0], centres[disc, 1]
-            beside = max(left - x, x - right, bottom - y, y - top) - radii[disc]
-        if beside < least:
+        if _beside(obstacle, around, edges, centres, radii) < least:
             least = min(least, _distance(obstacle, hull, edges, centres, radii))
     return least
+
+
+@allocation_free
+def _beside(obstacle, around, edges, centres, radii):
+    """A lower bound of the distance of an obstacle from what a box is around."""
+    left, right, bottom, top = around
+    disc = obstacle - len(edges)
+    if disc < 0:
+        ax, ay, bx, by = edges[obstacle]
+        return max(left - max(ax, bx), min(ax, bx) - right, bottom - max(ay, by), min(ay, by) - top)
+    x, y = centres[disc, 0], centres[disc, 1]
+    return max(left - x, x - right, bottom - y, y - top) - radii[disc]
 
 
 @allocation_free

@@ -22,6 +22,10 @@ LARGEST_COORDINATE = 1e5
 
 LARGEST_DEGREE = 60
 
+# Binomial coefficients of squares of such polynomials, too.
+_ORDERS = range(2 * LARGEST_DEGREE + 1)
+BINOMIAL = np.array([[math.comb(n, k) for k in _ORDERS] for n in _ORDERS], dtype=float)
+
 # From the largest coordinate, halving reaches the tolerance in about fifty levels; each level needs
 # one stack entry.
 STACK = 64
@@ -109,9 +113,7 @@ def direction(points: np.ndarray) -> tuple[float, float]:
 
 @allocation_free
 def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
-    """Smallest and largest component of the control points in a direction, relative to the first
-    one.
-    """
+    """Smallest and largest component of control points in a direction, relative to the first."""
     low = high = 0.0
     for i in range(1, len(points)):
         component = (points[i, 0] - points[0, 0]) * x + (points[i, 1] - points[0, 1]) * y

@@ -233,9 +233,7 @@ def _shortest_between(tail: np.ndarray, head: np.ndarray, length: np.ndarray) ->
 
 
 def _covered_angles(k: int, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Parts of a circle that lie in other circles or outside the border: middle and half-width of
-    each angular interval.
-    """
+    """Parts of a circle in other circles or outside the border: middle and half-width of each."""
     centres, radii = scene.centres, scene.radii
     radius = radii[k]
     others = np.delete(np.arange(2, len(radii)), k - 2)

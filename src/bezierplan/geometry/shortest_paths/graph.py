@@ -40,9 +40,7 @@ def moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
 
 
 def along(points: np.ndarray, nodes: np.ndarray) -> Bound:
-    """The polyline along some of the points (n, 2), without repeated ones; no path without
-    nodes.
-    """
+    """The polyline along some of the points (n, 2), without repetitions; no path without nodes."""
     if not len(nodes):
         return no_path()
     path = points[nodes]
@@ -67,9 +65,7 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
 
 
 def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, np.ndarray]:
-    """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along
-    it; empty if there is no path.
-    """
+    """Length of a shortest path in a sparse, undirected graph, and its nodes; empty without one."""
     from scipy.sparse.csgraph import dijkstra
 
     distances, predecessors = dijkstra(
@@ -85,9 +81,7 @@ def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, n
 
 @compiled
 def way_back(before, length):
-    """The nodes from node 0 to node 1, from each node's predecessor; empty if the length is
-    infinite.
-    """
+    """The nodes from node 0 to 1, from each one's predecessor; empty if the length is infinite."""
     nodes = [1]
     while before[nodes[-1]] >= 0:
         nodes.append(before[nodes[-1]])

@@ -1,6 +1,4 @@
-"""Shortest paths on grids: visibility between corners of cells, or between their centres, in
-integer arithmetic.
-"""
+"""Shortest paths on grids: visibility between corners or centres of cells, in integers."""
 
 import math
 from fractions import Fraction
@@ -88,10 +86,8 @@ def centre_path(problem: Problem) -> Bound:
     cells = np.concatenate([nodes, np.argwhere(~grid.occupied)])
     refuse_large(len(cells))
     lattice = 2 * cells[:, ::-1] + 1
-    any_slope, any_quadrant = (
-        np.zeros(len(cells), dtype=np.int64),
-        np.zeros((len(cells), 2), dtype=np.int64),
-    )
+    any_slope = np.zeros(len(cells), dtype=np.int64)
+    any_quadrant = np.zeros((len(cells), 2), dtype=np.int64)
     visible = _visible_on_grid(lattice, any_slope, any_quadrant, walled(grid.occupied), 2, False)
     return moved(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
 
@@ -146,9 +142,7 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
 
 
 def _lattice(points: np.ndarray, finest: int) -> int:
-    """The smallest number of lattice points per cell that makes all coordinates integers; `finest`
-    if even that is not enough.
-    """
+    """The least lattice points per cell that make all coordinates integers; `finest` at most."""
     fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
     exact = all(

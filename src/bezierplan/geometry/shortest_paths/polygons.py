@@ -165,9 +165,7 @@ def _apart(first: float, second: float) -> bool:
 
 @allocation_free
 def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
-    """Distance of a point from the line through a and b, positive on its left; 0 if a and b
-    coincide.
-    """
+    """Distance of a point from the line through a and b, positive on its left; 0 if a equals b."""
     length = math.hypot(b[0] - a[0], b[1] - a[1])
     if length == 0.0:
         return 0.0

@@ -239,9 +239,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
 
 @allocation_free
 def _first_run_beyond(column: int, band: int, scene: Scene) -> int:
-    """The first run of a row that ends to the right of a grid line. The ring around the cells ends
-    every row with one.
-    """
+    """The first run of a row that ends right of a grid line; every row ends with the ring's."""
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
     while low < high:
         middle = (low + high) // 2

@@ -1,8 +1,7 @@
 """Operators on paths over a lattice of cells, and a genetic algorithm that uses them.
 
 A path is an array (n,) of cell numbers, each a neighbour of the one before on a lattice
-(`workspaces.lattice.Lattice`). `marks` is scratch (cells,) of integers: all 0 before and after each
-operator.
+(`workspaces.lattice.Lattice`). `marks` is scratch (cells,) of integers: all 0 between operators.
 """
 
 from typing import NamedTuple
@@ -10,8 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
+from bezierplan.planners import Plan
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.workspaces.lattice import points
+from bezierplan.workspaces.problem import Path, Problem
 
 ONE_CELL, RECONNECT, WALK = range(3)
 
@@ -19,21 +21,39 @@ ONE_CELL, RECONNECT, WALK = range(3)
 class Rules(NamedTuple):
     """Settings of `evolve`.
 
-    crossover_probability: of a pair of parents. shorter_parts: whether the first child gets the
-    shorter head and the shorter tail and the second is parent 2; otherwise tails are swapped.
-    mutation_probability: of a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: maximum
-    number of cells in a part made by the last two; tries: see `forage`. cut_loops: whether children
-    lose their loops. elitism: whether the best so far replaces a child.
+    crossover_probability: of a pair of parents. mutation_probability: of a child. elitism: whether
+    the best so far replaces a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: maximum
+    number of cells in a part made by the last two; tries: see `forage`. shorter_parts: whether the
+    first child gets the shorter head and the shorter tail, the second is parent 2, and children
+    lose their loops; otherwise tails are swapped.
     """
 
     crossover_probability: float
-    shorter_parts: bool
     mutation_probability: float
+    elitism: int
     mutation: int
     longest_part: int
-    tries: int
-    cut_loops: bool
-    elitism: int
+    tries: int = 0
+    shorter_parts: bool = True
+
+
+def plan_of(
+    problem: Problem, cells: np.ndarray, history: np.ndarray, evaluations: int, stop: str
+) -> Plan:
+    """The plan with a path over the cells (n,) of a grid, or with none for no cells. history: in
+    cells. stop: why the search ended if it found a path.
+    """
+    grid, solved = problem.workspace, len(cells) > 0
+    path = Path("polyline", points(grid, problem.start, problem.target, cells)) if solved else None
+    return Plan(
+        path=path,
+        objective=history[-1] * grid.cell,
+        claimed_feasible=solved,
+        evaluations=evaluations,
+        history=history * grid.cell,
+        stop=stop if solved else "no path",
+        extra={},
+    )
 
 
 @compiled
@@ -46,10 +66,8 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
     """
     population, longest = paths.shape
     parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
-    child, part = (
-        np.empty(longest + max(longest, rules.longest_part), dtype=np.int64),
-        np.empty(rules.longest_part, dtype=np.int64),
-    )
+    child = np.empty(longest + max(longest, rules.longest_part), dtype=np.int64)
+    part = np.empty(rules.longest_part, dtype=np.int64)
     marks = np.zeros(len(lattice.row), dtype=np.int64)
     lengths = np.empty(population)
     best, best_size, best_length = paths[0].copy(), sizes[0], np.inf
@@ -71,10 +89,8 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
             sizes[i] = put(parents[drawn[i], : parent_sizes[drawn[i]]], paths[i], 0)
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
-                father, mother = (
-                    parents[drawn[i], : parent_sizes[drawn[i]]],
-                    parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]],
-                )
+                father = parents[drawn[i], : parent_sizes[drawn[i]]]
+                mother = parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]]
                 k, m = common_cell(rng, father, mother, marks)
                 if k == 0:
                     continue
@@ -93,15 +109,17 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
                 else:
                     size = put(father[k:], child, put(mother[:m], child, 0))
                     sizes[i + 1] = _replace(
-                        paths[i + 1], sizes[i + 1], child[:size], rules.cut_loops, marks
+                        paths[i + 1], sizes[i + 1], child[:size], rules.shorter_parts, marks
                     )
                     size = put(mother[m:], child, put(father[:k], child, 0))
-                sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
+                sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.shorter_parts, marks)
         for i in range(population):
             if rng.random() < rules.mutation_probability:
                 size = _mutant(rng, lattice, paths[i, : sizes[i]], rules, child, part, marks)
                 if size:
-                    sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
+                    sizes[i] = _replace(
+                        paths[i], sizes[i], child[:size], rules.shorter_parts, marks
+                    )
         if rules.elitism:
             sizes[0] = put(best[:best_size], paths[0], 0)
     return best[:best_size], history
@@ -117,9 +135,7 @@ def put(part, path, size):
 
 @allocation_free
 def _replace(path, size, child, cut, marks):
-    """Replace a path of the given size by a child if it fits, with its loops removed if `cut` says
-    so. Returns the new size.
-    """
+    """Replace a path by a child if it fits, without its loops if `cut` says so; the new size."""
     child_size = cut_loops(child, marks) if cut else len(child)
     if child_size > len(path):
         return size
@@ -211,10 +227,8 @@ def _between(lattice, start, end, marks):
     """The cell that `join` inserts between two cells, -1 if there is none."""
     # Cells are numbered row by row, so the last one gives the number of columns.
     columns = lattice.column[-1] + 1
-    row, column = (
-        (lattice.row[start] + lattice.row[end]) // 2,
-        (lattice.column[start] + lattice.column[end]) // 2,
-    )
+    row = (lattice.row[start] + lattice.row[end]) // 2
+    column = (lattice.column[start] + lattice.column[end]) // 2
     middle = columns * row + column
     if not lattice.occupied[middle] and middle != start and middle != end:
         return middle
@@ -297,10 +311,8 @@ def reconnect(rng, lattice, first, last, part, marks):
     """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if
     that cell is occupied or out of reach.
     """
-    rows, columns = (
-        (lattice.row[first], lattice.row[last]),
-        (lattice.column[first], lattice.column[last]),
-    )
+    rows = (lattice.row[first], lattice.row[last])
+    columns = (lattice.column[first], lattice.column[last])
     row = integer(rng, min(rows), max(rows) + 1)
     cell = row * (lattice.column[-1] + 1) + integer(rng, min(columns), max(columns) + 1)
     if lattice.occupied[cell]:
@@ -330,8 +342,7 @@ def walk(rng, lattice, first, last, tries, part, marks):
 
 @allocation_free
 def forage(rng, lattice, cell, target, tries, visited):
-    """A fish's next cell when it looks for prey (ma2020, reference 31), -1 if all neighbours are
-    visited.
+    """A fish's next cell when it looks for prey (ma2020, reference 31), or -1 if all are visited.
 
     The first of `tries` random neighbours that is unvisited and nearer to the target, otherwise a
     random unvisited neighbour.

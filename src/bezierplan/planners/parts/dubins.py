@@ -48,9 +48,7 @@ def _put(words, k, first, turn, t, middle, p, last, q, radius):
 
 @allocation_free
 def words_between(a: np.ndarray, b: np.ndarray, radius: float, words: np.ndarray) -> None:
-    """Fill in the words (6, 8) from a pose to another; those that do not exist have an infinite
-    length.
-    """
+    """Fill in the words (6, 8) from a pose to another; those that do not exist are infinite."""
     for k in range(WORDS):
         words[k, 7] = np.inf
     x, y = b[0] - a[0], b[1] - a[1]
@@ -93,13 +91,11 @@ def _between_headings(first, alpha, beta, d, radius, words):
     """The six words between two headings, relative to the bearing, at a distance in radii (Shkel
     and Lumelsky 2001).
     """
-    sa, ca, sb, cb, cab = (
-        math.sin(alpha),
-        math.cos(alpha),
-        math.sin(beta),
-        math.cos(beta),
-        math.cos(alpha - beta),
-    )
+    sa = math.sin(alpha)
+    ca = math.cos(alpha)
+    sb = math.sin(beta)
+    cb = math.cos(beta)
+    cab = math.cos(alpha - beta)
     for k in range(2):  # both arcs to the same side: LSL, RSR
         turn = 1.0 - 2.0 * k
         east, north = d + turn * (sa - sb), turn * (cb - ca)
@@ -158,24 +154,18 @@ def pieces_of(
                 heading += angle
                 x += turn * radius * (math.sin(heading) - across)
                 y += turn * radius * (along - math.cos(heading))
-            pieces[count, 2, 0], pieces[count, 2, 1] = (
-                x - handle * math.cos(heading),
-                y - handle * math.sin(heading),
-            )
+            pieces[count, 2, 0] = x - handle * math.cos(heading)
+            pieces[count, 2, 1] = y - handle * math.sin(heading)
             pieces[count, 3, 0], pieces[count, 3, 1] = x, y
             count += 1
     if count == 0:
         for k in range(4):
-            pieces[0, k, 0], pieces[0, k, 1] = (
-                a[0] + k / 3.0 * (b[0] - a[0]),
-                a[1] + k / 3.0 * (b[1] - a[1]),
-            )
+            pieces[0, k, 0] = a[0] + k / 3.0 * (b[0] - a[0])
+            pieces[0, k, 1] = a[1] + k / 3.0 * (b[1] - a[1])
         return 1
     if not math.isnan(b[2]):
         heading = b[2]
-    pieces[count - 1, 2, 0], pieces[count - 1, 2, 1] = (
-        b[0] - handle * math.cos(heading),
-        b[1] - handle * math.sin(heading),
-    )
+    pieces[count - 1, 2, 0] = b[0] - handle * math.cos(heading)
+    pieces[count - 1, 2, 1] = b[1] - handle * math.sin(heading)
     pieces[count - 1, 3, 0], pieces[count - 1, 3, 1] = b[0], b[1]
     return count

@@ -43,8 +43,7 @@ class Field(NamedTuple):
 def field_of(
     grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, point_order: str
 ) -> Field:
-    """The genes of a grid and the order in which they are joined; ends: (2, 2) start and target in
-    cells.
+    """The genes of a grid and the order in which they are joined; ends: (2, 2) both ends in cells.
 
     Raises ValueError if no cell of the lattice is free.
     """

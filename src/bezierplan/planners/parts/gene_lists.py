@@ -1,5 +1,4 @@
-"""Chromosomes of many genes, few of which are 1, stored as ascending lists of these; and pools of
-them.
+"""Chromosomes of many genes, few of which are 1, stored as ascending lists; and pools of these.
 
 Functions that change a list or a pool say so; no function keeps state.
 """
@@ -81,9 +80,7 @@ def position(genes: np.ndarray, count: int, gene: int) -> int:
 
 @allocation_free
 def flip(genes: np.ndarray, count: int, gene: int) -> int:
-    """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are
-    dropped.
-    """
+    """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are lost."""
     index = position(genes, count, gene)
     if index < count:
         for i in range(index, count - 1):
@@ -139,9 +136,7 @@ def same(one: np.ndarray, other: np.ndarray) -> bool:
 
 @allocation_free
 def distinct(pool: Pool, size: int) -> int:
-    """Number of distinct chromosomes among the first `size` of the pool; equal ones have equal
-    costs.
-    """
+    """Number of distinct chromosomes among the first `size` of the pool, told by their costs."""
     count = size
     for i in range(size):
         for j in range(i - 1, -1, -1):  # in a sorted pool equal ones are neighbours
@@ -213,9 +208,7 @@ _REMEMBERED = 1024
 
 @compiled
 def empty_memory(room: int) -> Pool:
-    """A memory of the costs of chromosomes of `room` genes each; a newer one can overwrite an older
-    one.
-    """
+    """A memory of the costs of chromosomes of `room` genes each; newer ones replace older ones."""
     memory = empty_pool(_REMEMBERED, room)
     memory.count[:] = -1
     return memory

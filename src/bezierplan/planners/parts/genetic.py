@@ -7,6 +7,7 @@ chromosome say so; no function keeps state.
 
 import numpy as np
 
+from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.random_integers import integer
 
@@ -15,14 +16,37 @@ from bezierplan.planners.parts.random_integers import integer
 _FLIP_TRIES = 50
 
 
-def check_pairs(population: int) -> None:
-    """Raise ValueError, naming the setting and what is expected, for a population that cannot be
-    crossed in pairs.
-    """
-    if population % 2:
+def check_pairs(settings: dict) -> None:
+    """Raise ValueError, naming the setting, for a population that cannot be crossed in pairs."""
+    if settings["population"] % 2:
         raise ValueError(
-            f"population: {population}; parents are crossed in pairs, so an even number is needed"
+            f"population: {settings['population']}; parents are crossed in pairs, so an even "
+            "number is needed"
         )
+
+
+def check_curve(settings: dict, points: str) -> None:
+    """Raise ValueError, naming the setting and what is expected, for too few free control points,
+    whose number is the setting `points`, or too few samples for a kind of curve.
+    """
+    curve, samples = settings["curve"], settings["samples"]
+    least = curves.least_points(curve) - 2
+    if settings[points] < least:
+        raise ValueError(
+            f"{points}: {settings[points]}; a curve of kind {curve} needs at least {least}"
+        )
+    pieces = len(curves.piece_matrix(curve, settings[points] + 2))
+    if samples < pieces + 1:
+        raise ValueError(
+            f"samples: {samples}; the {pieces} pieces of this curve need at least {pieces + 1}"
+        )
+
+
+@allocation_free
+def copy(source: np.ndarray, target: np.ndarray) -> None:
+    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
+    for k in range(len(source)):
+        target[k] = source[k]
 
 
 @compiled

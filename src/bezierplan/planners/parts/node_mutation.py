@@ -39,11 +39,10 @@ def mutate(
     rules: NamedTuple,
     neighbours: np.ndarray,
 ) -> int:
-    """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it
-    evaluated.
+    """Apply the operator once to a path of cells (n,), n at least 3; returns how many it evaluated.
 
-    drawn: the cells from which random mutation draws. rules: `node_genetic.Settings`. neighbours:
-    (MOST_NEIGHBOURS,) scratch.
+    drawn: cells for random mutation. rules: `node_genetic.Settings`. neighbours: (MOST_NEIGHBOURS,)
+    scratch.
     """
     if rules.mutation == Mutation.random:
         path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
@@ -169,14 +168,10 @@ def _ref21(rng, path, ground, rules, neighbours):
 
 @allocation_free
 def _towards(start, cell, target, columns, same_signs):
-    """Whether the direction from a cell to the target agrees with that from the start to the
-    target.
-    """
+    """Whether a cell's direction to the target agrees with that from the start to the target."""
     across, up = target % columns - cell % columns, target // columns - cell // columns
-    whole_across, whole_up = (
-        target % columns - start % columns,
-        target // columns - start // columns,
-    )
+    whole_across = target % columns - start % columns
+    whole_up = target // columns - start // columns
     if same_signs:
         return np.sign(across) == np.sign(whole_across) and np.sign(up) == np.sign(whole_up)
     return across * whole_across + up * whole_up > 0

@@ -43,9 +43,7 @@ class Range(NamedTuple):
 
 
 class About(NamedTuple):
-    """What a setting means, in one line; where the paper gives it, and its unit, empty for a pure
-    number or a choice.
-    """
+    """What a setting means, in one line; where the paper gives it; its unit, empty if none."""
 
     text: str
     source: str = ASSUMED
@@ -160,17 +158,13 @@ def _declared(settings: type) -> dict[str, Setting]:
 
 
 def filled(settings: type[T], values: dict[str, Any]) -> T:
-    """A class of settings with these values, given by name as in a study. Raises TypeError for a
-    missing or unknown name.
-    """
+    """A class of settings with values by name. Raises TypeError for a missing or unknown name."""
     return _filled(settings, tuple(values.items()), tuple(map(type, values.values())))
 
 
 @lru_cache(maxsize=256)
 def _filled(settings: type[T], values: tuple[tuple[str, Any], ...], types: tuple[type, ...]) -> T:
-    """`filled`, once for all runs with the same settings. types: of the values, since 1, 1.0 and
-    true are equal.
-    """
+    """`filled`, once for all runs with the same settings. types: tells 1, 1.0 and true apart."""
     declared = _declared(settings)
     return settings(
         **{
@@ -181,9 +175,7 @@ def _filled(settings: type[T], values: tuple[tuple[str, Any], ...], types: tuple
 
 
 def in_cells(settings: T, cell: float) -> T:
-    """The same settings for kernels that count in cells: what is in units is divided by the side of
-    a cell.
-    """
+    """The same settings for kernels that count in cells: units are divided by a cell's side."""
     lengths = [
         name
         for name, each in _declared(type(settings)).items()

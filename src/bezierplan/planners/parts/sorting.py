@@ -23,8 +23,7 @@ def sort(indices: np.ndarray, values: np.ndarray) -> None:
     """Sort indices (n,), in place, by their values in ascending order, ties in their original
     order.
 
-    An insertion sort: as fast as any for a few values, and for sorted survivors followed by their
-    offspring.
+    An insertion sort: as fast as any for a few values, and for sorted survivors before offspring.
     """
     for k in range(1, len(indices)):
         i, place = indices[k], k

@@ -79,9 +79,7 @@ def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 
 
 def free_length(grid: Grid, way: Way, s: float) -> float:
-    """The length of a way, from a length s of it on, at which it first enters an occupied cell;
-    infinite if it does not.
-    """
+    """The length from s on at which a way first enters an occupied cell; infinite if never."""
     points = way.part(s, way.length)
     obstacles = region(grid)
     collision_at, _ = checker.first_collision(
@@ -89,7 +87,7 @@ def free_length(grid: Grid, way: Way, s: float) -> float:
     )
     if math.isinf(collision_at):
         return math.inf
-    lengths = np.concatenate([[s], s + np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    lengths = s + ways.lengths(points)
     return float(np.interp(collision_at, np.arange(len(lengths)), lengths))
 
 
@@ -110,9 +108,7 @@ def way_out(grid: Grid, way: Way) -> float:
 
 
 def _crossings(begin: float, end: float) -> np.ndarray:
-    """The shares of a way from one coordinate to another, in cells, at which it crosses a grid
-    line.
-    """
+    """The shares of a way between two coordinates, in cells, at which it crosses a grid line."""
     lines = np.arange(math.floor(min(begin, end)) + 1, math.ceil(max(begin, end)))
     return (lines - begin) / (end - begin) if len(lines) else np.empty(0)
 
@@ -131,9 +127,9 @@ def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"
     if begin is not None:
         return np.array([robot, begin])
     back = motion.points[::-1]
-    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(back, axis=0).T))])
+    lengths = ways.lengths(back)
     for s in np.arange(_BACK, lengths[-1], _BACK):
-        robot = np.array([np.interp(s, lengths, back[:, axis]) for axis in range(2)])
+        robot = Way(back, lengths).place(s)
         begin = _start(grid, robot, start)
         if begin is not None:
             return np.concatenate([back[lengths < s], [robot, begin]])

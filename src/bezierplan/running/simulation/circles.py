@@ -121,10 +121,8 @@ def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
             )
             step_x, step_y = next_x - x, next_y - y
             early, late = (s - begin) / pace, (following - begin) / pace
-            dx, dy = (
-                x - centres[k, 0] - drift[k, 0] * early,
-                y - centres[k, 1] - drift[k, 1] * early,
-            )
+            dx = x - centres[k, 0] - drift[k, 0] * early
+            dy = y - centres[k, 1] - drift[k, 1] * early
             ex, ey = step_x - drift[k, 0] * (late - early), step_y - drift[k, 1] * (late - early)
             last_x, last_y = dx + ex, dy + ey
             along, size = -(dx * ex + dy * ey), ex * ex + ey * ey

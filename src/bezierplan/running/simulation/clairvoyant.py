@@ -31,9 +31,7 @@ from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, po
 
 
 class Schedule(NamedTuple):
-    """arrival: in steps, infinite if none was found before the world's end. length: of the way, in
-    units.
-    """
+    """arrival: in steps, infinite if none was found in time. length: of the way, in units."""
 
     arrival: float
     length: float
@@ -102,10 +100,8 @@ def _straight(world: MovingCircles, problem: Problem, before: float) -> float:
     """Arrival of the first straight drive after a wait of whole steps that is free and arrives
     before a time; infinite if there is none.
     """
-    ends, duration = (
-        np.array([problem.start, problem.target]),
-        math.dist(problem.start, problem.target) / world.pace,
-    )
+    ends = np.array([problem.start, problem.target])
+    duration = math.dist(problem.start, problem.target) / world.pace
     for wait in range(world.end):
         arrival = wait + duration
         if arrival >= before:
@@ -160,22 +156,18 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
     # `best` and `parents` hold what is reached: to fill them before takes longer than the search,
     # which reaches few intervals.
     reached = np.zeros(begins.shape, dtype=np.bool_)
-    best, parents, since = (
-        np.empty(begins.shape),
-        np.empty(begins.shape, dtype=np.int64),
-        np.empty(begins.shape, dtype=np.int64),
-    )
+    best = np.empty(begins.shape)
+    parents = np.empty(begins.shape, dtype=np.int64)
+    since = np.empty(begins.shape, dtype=np.int64)
     first_node = round((start[1] - origin[1]) / pace) * columns + round(
         (start[0] - origin[0]) / pace
     )
     # Where a circle comes during the first step, the robot must leave at once.
     hurried = begins[first_node, 0] < 0
-    reached[first_node, 0], best[first_node, 0], parents[first_node, 0], since[first_node, 0] = (
-        True,
-        0.0,
-        -1,
-        0,
-    )
+    reached[first_node, 0] = True
+    best[first_node, 0] = 0.0
+    parents[first_node, 0] = -1
+    since[first_node, 0] = 0
     heap = [(math.hypot(target[0] - start[0], target[1] - start[1]) / pace, 0.0, first_node, 0)]
     while len(heap) > 0:
         _, time, node, interval = heapq.heappop(heap)
@@ -198,15 +190,11 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
                 heapq.heappush(
                     heap, (depart + home / pace, depart + home / pace, -1 - node, interval)
                 )
-        parent, parent_interval = (
-            parents[node, interval] if any_angle else -1,
-            since[node, interval],
-        )
+        parent = parents[node, interval] if any_angle else -1
+        parent_interval = since[node, interval]
         if parent >= 0:
-            parent_x, parent_y = (
-                origin[0] + parent % columns * pace,
-                origin[1] + parent // columns * pace,
-            )
+            parent_x = origin[0] + parent % columns * pace
+            parent_y = origin[1] + parent // columns * pace
             parent_leave = _leave(
                 begins, parent, parent_interval, end, hurried and parent == first_node
             )
@@ -233,10 +221,8 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
                     arrival, before, before_interval = known, node, interval
                     if parent >= 0:
                         direct = math.hypot(other_x - parent_x, other_y - parent_y) / pace
-                        first, last = (
-                            max(best[parent, parent_interval], into - direct),
-                            min(parent_leave, until - direct),
-                        )
+                        first = max(best[parent, parent_interval], into - direct)
+                        last = min(parent_leave, until - direct)
                         if first + direct < arrival:
                             depart = _departure(
                                 parent_x,
@@ -250,11 +236,9 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
                                 radii,
                             )
                             if depart + direct < arrival:
-                                arrival, before, before_interval = (
-                                    depart + direct,
-                                    parent,
-                                    parent_interval,
-                                )
+                                arrival = depart + direct
+                                before = parent
+                                before_interval = parent_interval
                     first, last = max(time, into - duration), min(leave, until - duration)
                     if first + duration < arrival:
                         depart = _departure(
@@ -272,9 +256,7 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
 
 @allocation_free
 def _leave(begins, node, interval, end, hurried):
-    """The step at which a place's safe interval ends; 0 if the robot must leave its first one at
-    once.
-    """
+    """The step at which a place's safe interval ends; 0 if the first one must be left at once."""
     leave = interval
     while leave < end and begins[node, leave] == interval and not (hurried and interval == 0):
         leave += 1
@@ -292,10 +274,8 @@ def _traced(arrival, node, interval, origin, columns, target, pace, best, parent
     points, times = np.empty((count, 2)), np.empty(count)
     points[count - 1, 0], points[count - 1, 1], times[count - 1] = target[0], target[1], arrival
     for k in range(count - 2, -1, -1):
-        points[k, 0], points[k, 1] = (
-            origin[0] + node % columns * pace,
-            origin[1] + node // columns * pace,
-        )
+        points[k, 0] = origin[0] + node % columns * pace
+        points[k, 1] = origin[1] + node // columns * pace
         times[k] = best[node, interval]
         node, interval = parents[node, interval], since[node, interval]
     waits = np.zeros(count)
@@ -320,10 +300,8 @@ def _with_one_bend(origin, counts, centres, radii, start, target, pace, before):
     tried = np.empty((3, 2))
     tried[0, 0], tried[0, 1], tried[2, 0], tried[2, 1] = start[0], start[1], target[0], target[1]
     for node in range(columns * rows):
-        tried[1, 0], tried[1, 1] = (
-            origin[0] + node % columns * pace,
-            origin[1] + node // columns * pace,
-        )
+        tried[1, 0] = origin[0] + node % columns * pace
+        tried[1, 1] = origin[1] + node // columns * pace
         length = math.hypot(tried[1, 0] - start[0], tried[1, 1] - start[1]) + math.hypot(
             target[0] - tried[1, 0], target[1] - tried[1, 1]
         )
@@ -365,11 +343,9 @@ def _pulled(points, waits, centres, radii, bounds, pace):
                 for i in range(n):
                     j = i + 1 if attempt == -2 and i >= k else i
                     if j < n:
-                        tried[i, 0], tried[i, 1], tried_waits[i] = (
-                            points[j, 0],
-                            points[j, 1],
-                            waits[j],
-                        )
+                        tried[i, 0] = points[j, 0]
+                        tried[i, 1] = points[j, 1]
+                        tried_waits[i] = waits[j]
                 m = n - 1 if attempt == -2 else n
                 if attempt == -1:
                     tried_waits[k] = max(waits[k] - shift / pace, 0.0)
@@ -385,11 +361,9 @@ def _pulled(points, waits, centres, radii, bounds, pace):
                 if found < arrival - _EARLIER:
                     n, arrival, better = m, found, True
                     for i in range(n):
-                        points[i, 0], points[i, 1], waits[i] = (
-                            tried[i, 0],
-                            tried[i, 1],
-                            tried_waits[i],
-                        )
+                        points[i, 0] = tried[i, 0]
+                        points[i, 1] = tried[i, 1]
+                        waits[i] = tried_waits[i]
                     if attempt == -2:
                         k -= 1
                         break
@@ -429,22 +403,14 @@ def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
     for step in range(end):
         for k in range(len(radii)):
             reach = radii[k]
-            low_x, high_x = (
-                min(centres[step, k, 0], centres[step + 1, k, 0]),
-                max(centres[step, k, 0], centres[step + 1, k, 0]),
-            )
-            low_y, high_y = (
-                min(centres[step, k, 1], centres[step + 1, k, 1]),
-                max(centres[step, k, 1], centres[step + 1, k, 1]),
-            )
-            first, last = (
-                math.ceil((low_x - reach - origin[0]) / pace),
-                math.floor((high_x + reach - origin[0]) / pace),
-            )
-            bottom, top = (
-                math.ceil((low_y - reach - origin[1]) / pace),
-                math.floor((high_y + reach - origin[1]) / pace),
-            )
+            low_x = min(centres[step, k, 0], centres[step + 1, k, 0])
+            high_x = max(centres[step, k, 0], centres[step + 1, k, 0])
+            low_y = min(centres[step, k, 1], centres[step + 1, k, 1])
+            high_y = max(centres[step, k, 1], centres[step + 1, k, 1])
+            first = math.ceil((low_x - reach - origin[0]) / pace)
+            last = math.floor((high_x + reach - origin[0]) / pace)
+            bottom = math.ceil((low_y - reach - origin[1]) / pace)
+            top = math.floor((high_y + reach - origin[1]) / pace)
             for row in range(max(bottom, 0), min(top, rows - 1) + 1):
                 for column in range(max(first, 0), min(last, columns - 1) + 1):
                     x, y = origin[0] + column * pace, origin[1] + row * pace

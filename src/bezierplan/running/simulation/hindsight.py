@@ -36,9 +36,7 @@ def known_at(motion: Motion, collision_at: float, world: World, policy: Policy) 
         began = float(np.concatenate([[0.0], world.moments])[world.index(collision_at)])
         return began if began < collision_at else math.nan
     moments = np.linspace(collision_at, min(collision_at + 1.0, motion.times[-1]), _MOMENTS)
-    robot = np.column_stack(
-        [np.interp(moments, motion.times, motion.points[:, axis]) for axis in range(2)]
-    )
+    robot = motion.at(moments)
     hit = _met(robot[0], collision_at, world)
     moment, step = math.nan, math.floor(collision_at)
     while step >= 0:
@@ -65,9 +63,7 @@ def avoidable(motion: Motion, since: float, world: World, problem: Problem) -> b
     """
     if math.isnan(since):
         return False
-    robot = tuple(
-        float(np.interp(since, motion.times, motion.points[:, axis])) for axis in range(2)
-    )
+    robot = tuple(motion.at(since).tolist())
     enough = _LONGER + _DETOUR * math.dist(robot, problem.target) / world.pace
     end = math.ceil(min(world.end - since, enough))
     if isinstance(world, ChangingCells):

@@ -29,6 +29,12 @@ class Motion(NamedTuple):
     points: np.ndarray
     times: np.ndarray
 
+    def at(self, times: np.ndarray | float) -> np.ndarray:
+        """Places (..., 2) at some times."""
+        return np.stack(
+            [np.interp(times, self.times, self.points[:, axis]) for axis in range(2)], axis=-1
+        )
+
 
 class Verdict(NamedTuple):
     """collision_at: time of the first collision, in steps; nan without one. clearance: (steps,)
@@ -72,17 +78,13 @@ def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
 
 @compiled
 def _approach(points, times, centres, velocities, walls, radii, tolerance):
-    """Time of the first collision, infinite without one, and least clearance (steps,) in each
-    step.
-    """
+    """Time of the first collision, infinite without, and least clearance (steps,) in each step."""
     first_step, last_step = int(np.floor(times[0])), int(np.ceil(times[-1]))
     clearance = np.full(max(last_step - first_step, 1), np.inf)
     collision_at = np.inf
     step = first_step
-    before, after = (
-        positions(centres, velocities, walls, step),
-        positions(centres, velocities, walls, step + 1),
-    )
+    before = positions(centres, velocities, walls, step)
+    after = positions(centres, velocities, walls, step + 1)
     for i in range(len(times) - 1):
         begin = times[i]
         while True:
@@ -130,12 +132,10 @@ def _relative(points, i, share, before, after, moved):
 def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     first, last = math.floor(motion.times[0]), math.ceil(motion.times[-1])
     regions = [region(each) for each in world.maps]
-    clearance, collision_at, depth, tolerance = (
-        np.full(max(last - first, 1), np.inf),
-        math.nan,
-        0.0,
-        0.0,
-    )
+    clearance = np.full(max(last - first, 1), np.inf)
+    collision_at = math.nan
+    depth = 0.0
+    tolerance = 0.0
     inner = world.moments[(world.moments > motion.times[0]) & (world.moments < motion.times[-1])]
     cuts = np.unique(
         np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner])
@@ -160,7 +160,5 @@ def between(motion: Motion, begin: float, end: float) -> Motion:
     """The part of a motion between two times, of at least two vertices."""
     inside = (motion.times > begin) & (motion.times < end)
     times = np.concatenate([[begin], motion.times[inside], [end]])
-    ends = np.column_stack(
-        [np.interp([begin, end], motion.times, motion.points[:, axis]) for axis in range(2)]
-    )
+    ends = motion.at(np.array([begin, end]))
     return Motion(np.concatenate([ends[:1], motion.points[inside], ends[1:]]), times)

@@ -1,36 +1,104 @@
 """What a robot does when its world changes."""
 
-from typing import Literal, NamedTuple
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from bezierplan.schema.model import (
+    LARGEST,
+    Count,
+    Flag,
+    Model,
+    NotNegative,
+    Positive,
+    is_number,
+    value,
+)
+
+Margins = Annotated[
+    list[float],
+    value(
+        lambda given: (
+            isinstance(given, list)
+            and 0 < len(given) <= 100
+            and all(is_number(each) and 0 <= each <= LARGEST for each in given)
+        ),
+        "",
+    ),
+]
 
 
-class Policy(NamedTuple):
-    """Rules of a robot.
+class Policy(Model):
+    """When a robot in a dynamic environment replans, and what it knows."""
 
-    replan: when it plans again: never, at every `every`-th step, when its way is blocked, or when
-    the world changes. warm: whether a plan starts from an earlier one. waits: whether it stops in
-    front of what is in its way. sees: circles as they are at the beginning of a step or where they
-    will be at its end. knows: their positions alone, or also their velocities, with which it looks
-    ahead. check_margin: how far circles must stay away from the rest of its way, in units.
-    plan_margins: by how much circles are grown for a plan, one value after the other until there is
-    a plan. brake: how far ahead, in units, its way must be clear for it to move. horizon: how far
-    ahead along its way it checks, in units. evades: whether it steps aside, among circles, where it
-    would stop and one is about to come there. spacing: length of the chords that stand for a curve,
-    in units. start: a plan begins where the robot is, or at the centre of its cell, to which it
-    first drives; from a cell that has become occupied it first drives back. step_seconds: how long
-    a step lasts, for the count of plans that take longer.
-    """
-
-    replan: Literal["never", "every_step", "when_blocked", "when_changed"]
-    every: int
-    warm: bool
-    waits: bool
-    sees: Literal["before", "after"]
-    knows: Literal["positions", "velocities"]
-    check_margin: float
-    plan_margins: tuple[float, ...]
-    brake: float
-    horizon: float
-    evades: bool
-    spacing: float
-    start: Literal["position", "centre"]
-    step_seconds: float
+    replan: Literal["never", "every_step", "when_blocked", "when_changed"] = Field(
+        description="when the robot replans: never; every_step, that is at every `every`-th one; "
+        "when_blocked, that is when the rest of its path is blocked; or when_changed, that is "
+        "when the environment has changed (cells at some moments, circles that move at every step)"
+    )
+    every: Count = Field(
+        1,
+        description="of every_step: the number of steps between plans, "
+        "a whole number of at least 1; left out: 1",
+    )
+    warm: Flag = Field(
+        False,
+        description="whether a plan starts from the last one, for planners with a function "
+        "`resume`; left out: false",
+    )
+    waits: Flag = Field(
+        True,
+        description="whether the robot stops in front of an obstacle on its path, "
+        "true or false; left out: true",
+    )
+    sees: Literal["before", "after"] = Field(
+        "before",
+        description="whether it sees circles as they are before or after they move in a step; "
+        "left out: before",
+    )
+    knows: Literal["positions", "velocities"] = Field(
+        "positions",
+        description="whether it knows positions alone or also velocities, and looks ahead; left "
+        "out: positions",
+    )
+    check_margin: NotNegative = Field(
+        0.0,
+        description="the distance that circles must keep from the rest of its path, in units; "
+        "left out: 0",
+    )
+    plan_margins: Margins = Field(
+        [0.0],
+        description="by how much circles grow for a plan: a list of numbers, tried in this order "
+        "until there is a plan; left out: [0]",
+    )
+    brake: NotNegative = Field(
+        0.0,
+        description="the look-ahead distance along its path that must be free before it moves, in "
+        "units; left out: 0",
+    )
+    horizon: Positive = Field(
+        math.inf,
+        description="the distance ahead along its path that it checks, in units; left out: all "
+        "of it",
+    )
+    evades: Flag = Field(
+        False,
+        description="among circles, whether it makes an evasive manoeuvre where it would stop and "
+        "a circle is about to arrive; left out: false",
+    )
+    spacing: Positive = Field(
+        0.5,
+        description="mean length of the chords that it drives "
+        "along a curve, in units; left out: 0.5",
+    )
+    start: Literal["position", "centre"] = Field(
+        "position",
+        description="whether a plan begins at the robot's position, or at the centre of its cell, "
+        "to which it drives first",
+    )
+    step_seconds: Positive = Field(
+        0.05,
+        description="how long a step lasts, in seconds: metric `replans_late` counts the plans "
+        "that take longer; left out: 0.05",
+    )

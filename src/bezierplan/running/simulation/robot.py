@@ -41,9 +41,7 @@ class Planned(NamedTuple):
 
 
 class Ride(NamedTuple):
-    """A robot's way through a world. arrived: whether it reached the target. waited: time spent
-    waiting, in steps.
-    """
+    """A robot's way through a world. arrived: at the target. waited: time, in steps."""
 
     motion: Motion
     arrived: bool

@@ -16,9 +16,7 @@ _SHORTEST = 1e-4
 
 
 class Way(NamedTuple):
-    """points: (n, 2), in units, no two successive ones equal. at: (n,) length of the way up to each
-    of them.
-    """
+    """points: (n, 2), in units, successive ones differ. at: (n,) length of the way up to each."""
 
     points: np.ndarray
     at: np.ndarray
@@ -39,12 +37,15 @@ class Way(NamedTuple):
 
 
 def way(points: np.ndarray) -> Way:
-    """A way through points (n, 2); repeated ones are left out, except that a way has at least one
-    point.
-    """
+    """A way through points (n, 2); repeated ones are left out, but at least one is kept."""
     points = np.asarray(points, dtype=float)
     points = points[np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])]
-    return Way(points, np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))]))
+    return Way(points, lengths(points))
+
+
+def lengths(points: np.ndarray) -> np.ndarray:
+    """Length (n,) of a polyline (n, 2) up to each of its points."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
 
 
 def polyline(path: Path, spacing: float) -> np.ndarray:

@@ -26,7 +26,6 @@ from types import ModuleType
 from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Field, PlainValidator
-from pydantic_core import PydanticCustomError
 
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
@@ -38,10 +37,12 @@ from bezierplan.schema.model import (
     Number,
     Positive,
     after,
+    expected,
     is_number,
     keys,
     unwrapped,
     value,
+    whole,
     wrong,
 )
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
@@ -62,7 +63,7 @@ def _fits_everywhere(part: str) -> bool:
 
 def _check_file(value: Any) -> str:
     if not (isinstance(value, str) and value.isprintable() and 0 < len(value) <= 200):
-        raise PydanticCustomError("expected", "{text}", {"text": "the name of a file"})
+        raise expected("the name of a file")
     if _NOT_IN_NAMES & set(value) or not all(map(_fits_everywhere, value.split("/"))):
         wanted = (
             f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and "
@@ -83,12 +84,12 @@ Unit = Annotated[
 ]
 
 
-def of_length(length: int, expected: str) -> AfterValidator:
+def of_length(length: int, wanted: str) -> AfterValidator:
     """A check of a list of numbers: that there are so many."""
 
     def check(given: list) -> list:
         if len(given) != length:
-            raise wrong(f"{given!r}: expected {expected}")
+            raise wrong(f"{given!r}: expected {wanted}")
         return given
 
     return after(check)
@@ -104,7 +105,7 @@ Size = Annotated[
 """A side or a radius of something solid, in units."""
 
 Bounds = Annotated[list[Number], of_length(4, "[x low, x high, y low, y high]")]
-CircleCount = Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")]
+CircleCount = Annotated[int, whole(1, 10_000)]
 
 # Descriptions of keys shared by several kinds.
 REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
@@ -139,11 +140,9 @@ class World(Workspace):
     pace: Positive = Field(
         description="how far a robot drives in a step, in units, a number above 0"
     )
-    steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = (
-        Field(
-            description="the moment at which every drive in this world ends, "
-            "in steps, a whole number from 1 to 10000"
-        )
+    steps: Annotated[int, whole(1, 10_000)] = Field(
+        description="the moment at which every drive in this world ends, "
+        "in steps, a whole number from 1 to 10000"
     )
 
 
@@ -166,9 +165,7 @@ def kind_of(description: dict) -> ModuleType:
 
 @cache
 def kinds() -> dict[str, type[Workspace]]:
-    """Kind of workspace -> the keys of its descriptions; fixed ones first, then random ones, then
-    worlds.
-    """
+    """Kind of workspace -> the keys of its descriptions; fixed ones, random ones, then worlds."""
     names = [file.stem for file in Path(__file__).parent.glob("[!_]*.py")]
     found = {name: kind_of({"kind": name}).Options for name in names}
     return dict(
@@ -186,9 +183,7 @@ def file_keys(options: type[Workspace]) -> list[str]:
 
 
 def text(description: dict, key: str, folder: Path) -> str:
-    """The text of the file that a key of a description names. Raises ValueError, naming key and
-    file.
-    """
+    """The text of the file that a key of a description names. Raises ValueError with both names."""
     with naming(f"{key}: {description[key]}"):
         return read_text(folder / description[key])
 

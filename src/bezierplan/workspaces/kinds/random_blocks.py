@@ -1,12 +1,20 @@
-"""Maps with blocks of cells at random places."""
+"""Square maps with blocks of occupied cells at random positions, none of which touch."""
 
+from collections.abc import Iterator
+from functools import cache
 from typing import ClassVar, Literal
 
+import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import Count, Positive
-from bezierplan.workspaces import random_blocks
+from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import Workspace
+from bezierplan.workspaces.seeds import generator
+
+# Number of maps drawn before giving up, and number of blocks tried for one map.
+MOST_MAPS = 500
+MOST_BLOCKS = 4000
 
 
 class Options(Workspace):
@@ -29,4 +37,68 @@ class Options(Workspace):
     )
 
 
-candidates = random_blocks.maps
+def candidates(description: dict, problem: dict, name: str) -> Iterator[Grid]:
+    """Maps for a problem, one after another, drawn from names and numbers alone.
+
+    description: largest_block, the maximum side of a block in cells; clear_ends, how many cells in
+    every direction from start and target stay free, including their own; and unit. problem: side,
+    the width and height of a map in cells; start; target; layout, its number; and obstacles, the
+    number of occupied cells. name: that of study and workspace.
+
+    Width, height and place of a block are uniform. A block that touches another, even at a corner,
+    comes too close to an end, or would occupy too many cells is left out. Of `MOST_MAPS` draws,
+    those with the required number of occupied cells are maps.
+
+    Raises ValueError, naming the key, if start or target is not on the map.
+    """
+    side = problem["side"]
+    empty = Grid(np.zeros((side, side), dtype=bool), 1.0, description["unit"])
+    ends = np.zeros((side, side), dtype=bool)
+    for key in ("start", "target"):
+        cell = empty.cell_of(*problem[key])
+        if cell is None:
+            raise ValueError(
+                f"{key}: {problem[key]}: outside the map; expected x and y from 0 to {side}"
+            )
+        ends |= (
+            np.abs(np.indices(ends.shape) - np.reshape(cell, (2, 1, 1))).max(axis=0)
+            < description["clear_ends"]
+        )
+    numbers = *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]
+    rng = generator(name, side, *numbers)
+    for _ in range(MOST_MAPS):
+        occupied = _blocks(rng, ends, problem["obstacles"], min(description["largest_block"], side))
+        if occupied.sum() == problem["obstacles"]:
+            yield Grid(occupied, 1.0, description["unit"])
+
+
+def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: int) -> np.ndarray:
+    """Occupied cells (side, side), `wanted` of them, or fewer if the blocks run out. ends: bool
+    (side, side), cells to leave free.
+    """
+    side = len(ends)
+    occupied = np.zeros_like(ends)
+    count = 0
+    sizes = rng.integers(1, largest + 1, size=(MOST_BLOCKS, 2))
+    corners = rng.integers(0, side - sizes + 1)
+    # A set of cells is an integer with a bit for each cell of the map and of a frame around it, so
+    # that a block is tested in one operation.
+    stride = side + 2
+    taken = sum(
+        1 << ((row + 1) * stride + column + 1) for row, column in np.argwhere(ends).tolist()
+    )
+    for (height, width), (row, column) in zip(sizes.tolist(), corners.tolist()):
+        if count == wanted:
+            break
+        block = _rectangle(height, width, stride) << ((row + 1) * stride + column + 1)
+        if count + height * width <= wanted and not taken & block:
+            taken |= _rectangle(height + 2, width + 2, stride) << (row * stride + column)
+            occupied[row : row + height, column : column + width] = True
+            count += height * width
+    return occupied
+
+
+@cache
+def _rectangle(height: int, width: int, stride: int) -> int:
+    """The cells of a rectangle whose lower left cell is the first; `stride` cells make a row."""
+    return sum(((1 << width) - 1) << (row * stride) for row in range(height))

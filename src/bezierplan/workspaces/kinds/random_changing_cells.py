@@ -47,20 +47,8 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     moments = np.arange(
         description["every"], description["steps"], description["every"], dtype=float
     )
-    rng = generator(
-        "/".join(
-            map(
-                str,
-                [
-                    name,
-                    *problem["start"],
-                    *problem["target"],
-                    problem["obstacles"],
-                    problem["layout"],
-                ],
-            )
-        )
-    )
+    ends = *problem["start"], *problem["target"]
+    rng = generator(name, *ends, problem["obstacles"], problem["layout"])
     changeable = np.ones(first.occupied.shape, dtype=bool)
     changeable[start] = changeable[target] = False
     numbers = np.flatnonzero(changeable)

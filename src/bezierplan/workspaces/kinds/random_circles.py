@@ -1,13 +1,18 @@
-"""Layouts of circles at random places."""
+"""Layouts of circles at random places: a layout is drawn once, from its names alone, and is used by
+all methods and experiments.
+"""
 
+import math
 from typing import ClassVar
 
+import numpy as np
 from pydantic import Field
 
-from bezierplan.workspaces import random_circles
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Size, Workspace
 from bezierplan.workspaces.limits import check_bounds
+from bezierplan.workspaces.random_field import MOST_DRAWS
+from bezierplan.workspaces.seeds import generator
 
 
 class Options(Workspace):
@@ -27,6 +32,38 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
     x_low, x_high, y_low, y_high = map(float, description["bounds"])
     check_bounds((x_low, x_high, y_low, y_high))
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
-    return random_circles.first(
-        random_circles.layout(description, name, problem["layout"], ends), problem["obstacles"]
+    return first(layout(description, name, problem["layout"], ends), problem["obstacles"])
+
+
+def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
+    """One layout of a description with bounds, radius, circles (how many) and unit.
+
+    Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is redrawn
+    (tharwat2018, Section 5.6). name: that of study and workspace; number: that of the layout.
+    Circles may overlap each other. Raises ValueError if no free place is found.
+    """
+    rng = generator(name, number)
+    x_low, x_high, y_low, y_high = map(float, description["bounds"])
+    radius = float(description["radius"])
+    centres = []
+    for _ in range(description["circles"]):
+        for _ in range(MOST_DRAWS):
+            centre = rng.uniform((x_low, y_low), (x_high, y_high))
+            if all(math.dist(centre, end) > radius for end in ends):
+                break
+        else:
+            raise ValueError(
+                f"radius: {radius:g}: no circle leaves start and target free in {MOST_DRAWS} draws"
+            )
+        centres.append(centre)
+    return Circles(
+        (x_low, x_high, y_low, y_high),
+        np.array(centres),
+        np.full(len(centres), radius),
+        description["unit"],
     )
+
+
+def first(circles: Circles, count: int) -> Circles:
+    """The first circles of a layout: layouts with different numbers of circles are nested."""
+    return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)

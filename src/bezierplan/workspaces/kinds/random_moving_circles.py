@@ -32,7 +32,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     """
     walls = moving.walls_of(description["bounds"])
     ends = [*problem["start"], *problem["target"]]
-    rng = generator("/".join(map(str, [name, *ends, problem["layout"]])))
+    rng = generator(name, *ends, problem["layout"])
     radius, count = description["radius"], problem["obstacles"]
     centres, velocities = moving.drawn(
         rng, description, description["circles"], walls, np.reshape(ends, (2, 2)), radius

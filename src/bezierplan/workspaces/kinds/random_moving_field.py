@@ -30,13 +30,11 @@ class Options(RandomMoving):
 
 
 def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
-    """Circles on a field, which planners see as cells. Raises ValueError if no free place is
-    found.
-    """
+    """Circles on a field, which planners see as cells. Raises ValueError if no place is free."""
     side, count = problem["side"], problem["obstacles"]
     walls = moving.walls_of([0.0, side, 0.0, side])
     ends = [*problem["start"], *problem["target"]]
-    rng = generator("/".join(map(str, [name, side, *ends, count, problem["layout"]])))
+    rng = generator(name, side, *ends, count, problem["layout"])
     radius = description["radius"] * side
     centres, velocities = moving.drawn(
         rng, description, count, walls, np.reshape(ends, (2, 2)), radius
