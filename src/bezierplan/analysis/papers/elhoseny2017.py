@@ -6,6 +6,7 @@ Numbers of equations, sections, tables and figures are the paper's.
 
 import itertools
 import math
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ import pandas as pd
 import shapely
 
 from bezierplan.analysis import statistics
+from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.papers.validation import curve_through, is_free, verdicts
 from bezierplan.analysis.results import Results, path_of, select
@@ -180,67 +182,36 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     example, in Section 3.3 eta decreases linearly to 0 and then accepts more, and in Section 2.2.2
     any mutation leaves the subspace of a crossover.
     """
-    rows = []
-    printed = said(published)
+    parts = (_audit_lengths, _audit_times, _audit_example, _audit_text, _growth)
+    return [row for part in parts for row in part(published)]
+
+
+def _audit_lengths(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    least_rule = (
+        f"no path between opposite corners counts less than {DIAGONAL:g} cells for each of the side"
+    )
+    most_rule = "a path that never turns back counts at most 2 cells for each of the side"
     for table, side in _sides(published).items():
         cells = published[table]
-        for row in cells.itertuples():
-            rule = (
-                f"no path between opposite corners counts less than {DIAGONAL:g} cells for "
-                "each of the side"
-            )
-            rows.append(
-                _row(
-                    table,
-                    _place(row),
-                    rule,
-                    row.value,
-                    DIAGONAL * side,
-                    row.value >= DIAGONAL * side,
-                )
-            )
-            rule = "a path that never turns back counts at most 2 cells for each of the side"
-            rows.append(_row(table, _place(row), rule, row.value, 2 * side, row.value <= 2 * side))
+        for cell in cells.itertuples():
+            place = f"route={cell.route}, obstacles={cell.obstacles}, method={cell.method}"
+            yield compared(table, place, least_rule, cell.value, ">=", DIAGONAL * side)
+            yield compared(table, place, most_rule, cell.value, "<=", 2 * side)
         for (route, obstacles), column in cells.groupby(["route", "obstacles"]):
             lengths = column.set_index("method")["value"]
-            cell = f"route={route}, obstacles={obstacles}"
-            others = lengths.drop("prm").max()
+            place = f"route={route}, obstacles={obstacles}, method="
+            prm, mga, ga = lengths["prm"], lengths["mga"], lengths["ga"]
             rule = "the text has PRM the longest"
-            rows.append(
-                _row(
-                    table,
-                    f"{cell}, method=prm",
-                    rule,
-                    lengths["prm"],
-                    others,
-                    lengths["prm"] > others,
-                )
-            )
-            least = lengths.drop("mga").min()
+            yield compared(table, f"{place}prm", rule, prm, ">", lengths.drop("prm").max())
             rule = "the text has the proposed method the shortest"
-            rows.append(
-                _row(
-                    table,
-                    f"{cell}, method=mga",
-                    rule,
-                    lengths["mga"],
-                    least,
-                    lengths["mga"] < least,
-                )
-            )
+            yield compared(table, f"{place}mga", rule, mga, "<", lengths.drop("mga").min())
             if table == "table2":
                 rivals = lengths.drop(["mga", "ga"]).min()
                 rule = "the text has GA second"
-                rows.append(
-                    _row(
-                        table,
-                        f"{cell}, method=ga",
-                        rule,
-                        lengths["ga"],
-                        rivals,
-                        lengths["mga"] < lengths["ga"] < rivals,
-                    )
-                )
+                yield checked(table, f"{place}ga", rule, ga, rivals, bool(mga < ga < rivals))
+
+
+def _audit_times(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
     means = {
         name: published[name]
         .query("statistic == 'mean'")
@@ -248,102 +219,61 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         .sort_index()
         for name in ("table5", "table6")
     }
+    rule = "the text has the proposed method cheaper than all others in all cases"
     for table, times in means.items():
         for (method, obstacles), time in times.drop("mga").items():
-            ours = times["mga", obstacles]
-            rule = "the text has the proposed method cheaper than all others in all cases"
-            rows.append(
-                _row(
-                    table,
-                    f"method=mga, obstacles={obstacles}, beside {method}",
-                    rule,
-                    ours,
-                    time,
-                    ours < time,
-                )
+            place = f"method=mga, obstacles={obstacles}, beside {method}"
+            yield compared(table, place, rule, times["mga", obstacles], "<", time)
+    both = "Tables 5 and 6 print the same time of"
+    for obstacles in means["table5"]["mga"].index:
+        for rule, place, *methods in (
+            (f"{both} the proposed method", "method=mga", "mga", "mga"),
+            (f"{both} what both call GA", "method=GA", "mga_plain", "ga"),
+        ):
+            time, later = (
+                times[method, obstacles] for times, method in zip(means.values(), methods)
             )
-    for obstacles, time in means["table5"]["mga"].items():
-        later = means["table6"]["mga", obstacles]
-        rule = "Tables 5 and 6 print the same time of the proposed method"
-        rows.append(
-            _row("table5", f"method=mga, obstacles={obstacles}", rule, time, later, time == later)
-        )
-        time, later = means["table5"]["mga_plain", obstacles], means["table6"]["ga", obstacles]
-        rule = "Tables 5 and 6 print the same time of what both call GA"
-        rows.append(
-            _row("table5", f"method=GA, obstacles={obstacles}", rule, time, later, time == later)
-        )
-    genes = solutions(published)
+            yield compared("table5", f"{place}, obstacles={obstacles}", rule, time, "==", later)
+
+
+def _audit_example(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    printed, genes = said(published), solutions(published)
+    in_text = {name: int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")}
+    rule = "the text counts as it defines"
     for name, counted in counts(genes["S1"], genes["S2"]).items():
-        number = int(printed[f"{name} of S1 and S2"])
-        rows.append(
-            _row(
-                "table1",
-                f"S1, S2: {name}",
-                "the text counts as it defines",
-                number,
-                counted,
-                number == counted,
-            )
-        )
-    q = q_statistic(
-        *(int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01"))
-    )
-    of_text = printed["Q of S1 and S2"]
-    rows.append(
-        _row(
-            "table1",
-            "S1, S2: Q",
-            "Q of the counts in the text is the printed one",
-            of_text,
-            q,
-            q == of_text,
-        )
-    )
+        yield compared("table1", f"S1, S2: {name}", rule, in_text[name], "==", counted)
+    rule, q = "Q of the counts in the text is the printed one", q_statistic(*in_text.values())
+    yield compared("table1", "S1, S2: Q", rule, printed["Q of S1 and S2"], "==", q)
+
+
+def _audit_text(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    printed = said(published)
     eta, decay, iterations = printed["eta"], printed["decay of eta"], int(printed["iterations"])
     last = eta * decay**iterations
-    rows.append(
-        _row(
-            "text",
-            "3.3, 4.2.2",
-            f"eta decreases to 0 over the {iterations} iterations",
-            0.0,
-            round(last, 4),
-            last < 0.005,
-        )
-    )
-    half = eta * (1 - decay ** (iterations // 2))
+    rule = f"eta decreases to 0 over the {iterations} iterations"
+    yield checked("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)
+    half = eta * (1 - decay ** (iterations // 2)) / (eta - last)
     rule = "eta decreases linearly: half of the way in half of the iterations"
-    rows.append(
-        _row(
-            "text",
-            "3.3, 4.2.2",
-            rule,
-            0.5,
-            round(half / (eta - last), 4),
-            abs(half / (eta - last) - 0.5) < 0.005,
-        )
-    )
+    yield checked("text", "3.3, 4.2.2", rule, 0.5, round(half, 4), abs(half - 0.5) < 0.005)
     rule = (
         "3.3: as eta falls, more similar solutions are accepted, though theirs is a Q of at "
         "most eta: eta after an iteration"
     )
-    rows.append(_row("text", "3.3", rule, eta * decay, eta, eta * decay >= eta))
+    yield compared("text", "3.3", rule, eta * decay, ">=", eta)
     # A crossover keeps the digits that both parents have.
     digits, shared = int(printed["digits of A"]), int(printed["digits of A that B has too"])
     rule = (
         "2.2.2: a change of any digit of A leaves the subspace of its crossover with B: digits "
         "of which that is true"
     )
-    rows.append(_row("text", "2.2.2", rule, digits, shared, digits == shared))
+    yield compared("text", "2.2.2", rule, digits, "==", shared)
     # A table of drives would say how fast the obstacles are.
     drives = sum(not {"speed", "moment"}.isdisjoint(table) for table in published.values())
     rule = "the title speaks of a dynamic field: some table has obstacles that move"
-    rows.append(_row("text", "title", rule, drives, 1, drives >= 1))
-    return rows + _growth(published)
+    yield compared("text", "title", rule, drives, ">=", 1)
 
 
-def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
+def _growth(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
     """Rows of the audit: do the printed lengths of the proposed method grow with the obstacles as
     the counting rule has it?
 
@@ -364,7 +294,8 @@ def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
         f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how "
         "many of the printed can be such"
     )
-    rows = [_row("table2, table3", "method=mga", rule, whole, len(printed), whole == len(printed))]
+    place = "table2, table3", "method=mga"
+    yield compared(*place, rule, whole, "==", len(printed))
     # The radius is fitted to these lengths.
     freedom = len(blocked_cells) - 1
     chi_square, limit = (
@@ -375,33 +306,7 @@ def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
         f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} "
         "degrees of freedom) and its limit at 5 %"
     )
-    return [
-        *rows,
-        _row(
-            "table2, table3",
-            "method=mga",
-            rule,
-            round(chi_square, 1),
-            round(limit, 1),
-            chi_square <= limit,
-        ),
-    ]
-
-
-def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": printed,
-        "limit": limit,
-        "consistent": bool(consistent),
-    }
-
-
-def _place(row: tuple) -> str:
-    """The cell of Table 2 or 3 that holds a printed number."""
-    return f"route={row.route}, obstacles={row.obstacles}, method={row.method}"
+    yield checked(*place, rule, round(chi_square, 1), round(limit, 1), bool(chi_square <= limit))
 
 
 # --------------------------------------------------------------------------------------------------

@@ -2,12 +2,15 @@
 curvature, and its audit.
 """
 
+import itertools
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.measures import obstacle_clearance
 from bezierplan.analysis.results import Results, path_of, pick, select
@@ -247,84 +250,62 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     lengths and times are checked against the tables, that on the parameter of a curve and equation
     (11) by computing.
     """
-    tables = {name: published[name] for name in ("table1", "table2")}
+    parts = (_audit_lengths, _audit_sentences, _audit_text)
+    return [row for part in parts for row in part(published)]
+
+
+def _audit_lengths(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
     side = _side(published)
-    shortest = side * math.sqrt(2)
-    rows = []
-    for name, table in tables.items():
-        lengths = table[table["metric"] == "length"]
-        for row in lengths.itertuples():
-            rows.append(
-                _row(
-                    name,
-                    row,
-                    "no path is shorter than the straight line",
-                    shortest,
-                    row.value >= shortest,
-                )
-            )
-        for row in lengths[
-            lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")
-        ].itertuples():
-            straight, diagonal = nearest_lattice_length(row.value, side)
+    for name in ("table1", "table2"):
+        lengths = published[name][published[name]["metric"] == "length"]
+        places = [
+            f"method={cell.method}, metric=length, statistic={cell.statistic}"
+            for cell in lengths.itertuples()
+        ]
+        rule = "no path is shorter than the straight line"
+        for place, value in zip(places, lengths["value"]):
+            yield compared(name, place, rule, value, ">=", side * math.sqrt(2))
+        rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
+        on_cells = lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")
+        for place, value in itertools.compress(zip(places, lengths["value"]), on_cells):
+            straight, diagonal = nearest_lattice_length(value, side)
             nearest = straight + diagonal * math.sqrt(2)
-            rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
-            rows.append(
-                _row(name, row, rule, nearest, abs(row.value - nearest) <= LATTICE_TOLERANCE)
-            )
-    mean = _means(tables["table1"], "length")
-    for method in ("bca", "bca_q"):
-        for rival in LATTICE_METHODS:
-            rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
-            rows.append(
-                _said(
-                    "table1",
-                    f"method={method}, metric=length",
-                    rule,
-                    mean[method],
-                    mean[rival],
-                    mean[method] < mean[rival],
-                )
-            )
-    time = _means(tables["table2"], "cpu_s")
+            fits = abs(value - nearest) <= LATTICE_TOLERANCE
+            yield checked(name, place, rule, value, nearest, fits)
+
+
+def _audit_sentences(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    mean, time = _means(published["table1"], "length"), _means(published["table2"], "cpu_s")
+    for method, rival in itertools.product(("bca", "bca_q"), LATTICE_METHODS):
+        rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
+        place = f"method={method}, metric=length"
+        yield compared("table1", place, rule, mean[method], "<", mean[rival])
     for rival in ("aco", "ga", "aco_ga"):
         rule = (
             f"the text (4.2) has the time of bca slightly above that of {rival}, here: at most "
             f"{SLIGHTLY} times"
         )
         limit = SLIGHTLY * time[rival]
-        rows.append(
-            _said(
-                "table2", "method=bca, metric=cpu_s", rule, time["bca"], limit, time["bca"] <= limit
-            )
-        )
+        yield compared("table2", "method=bca, metric=cpu_s", rule, time["bca"], "<=", limit)
+
+
+def _audit_text(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    side = _side(published)
     parameters = published["parameters"].set_index(["workspace", "parameter"])["value"]
+    rule = "a share of the cells is a whole number of cells"
     for workspace in ("environment1", "environment2"):
-        cells = (
-            parameters[workspace, "obstacle_coverage"]
-            / 100
-            * parameters[workspace, "grid_size"] ** 2
-        )
-        rule = "a share of the cells is a whole number of cells"
-        rows.append(
-            _said(
-                "parameters",
-                f"workspace={workspace}",
-                rule,
-                cells,
-                round(cells),
-                abs(cells - round(cells)) < 1e-9,
-            )
-        )
+        share = parameters[workspace, "obstacle_coverage"] / 100
+        cells = share * parameters[workspace, "grid_size"] ** 2
+        whole = round(cells)
+        place = f"workspace={workspace}"
+        yield checked("parameters", place, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
     # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
     heights = side + np.arange(1, side * side + 1) // side + 0.5
     rule = (
         "equation (11) gives the heights of the cells' centres: cells whose height lies on the map"
     )
     inside = int((heights < side).sum())
-    rows.append(
-        _said("text", "3.2, equation (11)", rule, inside, side * side, inside == side * side)
-    )
+    yield compared("text", "3.2, equation (11)", rule, inside, "==", side * side)
     # One curve refutes a sentence about all: its points lie on a line, two of them at the start.
     text = published["text_values"].set_index("quantity")["value"]
     quarter = float(text["t of a quarter of the path"])
@@ -333,13 +314,13 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         f"a curve is a quarter of the way along at t = {quarter:g}: share of the way of the curve "
         "with control points at 0, 0 and 1"
     )
-    rows.append(_said("text", "2, equation (1)", rule, quarter, share, abs(share - quarter) < 1e-9))
+    place = "2, equation (1)"
+    yield checked("text", place, rule, quarter, share, abs(share - quarter) < 1e-9)
     listed = int((published["parameters"]["parameter"] == "control_points").sum())
     rule = (
         "Data Availability: all required parameters are listed, here: the number of control points"
     )
-    rows.append(_said("text", "Data Availability", rule, listed, 1, listed >= 1))
-    return rows
+    yield compared("text", "Data Availability", rule, listed, ">=", 1)
 
 
 def _side(published: dict[str, pd.DataFrame]) -> int:
@@ -353,25 +334,3 @@ def _means(table: pd.DataFrame, metric: str) -> dict[str, float]:
     """Printed means of a metric, by method."""
     means = table[(table["metric"] == metric) & (table["statistic"] == "mean")]
     return dict(zip(means["method"], means["value"]))
-
-
-def _row(item: str, row: tuple, rule: str, limit: float, consistent: bool) -> dict:
-    return _said(
-        item,
-        f"method={row.method}, metric={row.metric}, statistic={row.statistic}",
-        rule,
-        row.value,
-        limit,
-        consistent,
-    )
-
-
-def _said(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": printed,
-        "limit": limit,
-        "consistent": bool(consistent),
-    }

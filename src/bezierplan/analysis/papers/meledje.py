@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import shapely
 
+from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.results import Results, select
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic, planner_settings
@@ -319,9 +320,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 table[method, metric] for metric in ("optimal", "near_optimal", "infeasible")
             )
             rule = "the three counts add to the trials"
-            rows.append(
-                _row(name, f"method={method}", rule, total, trials[name], total == trials[name])
-            )
+            rows.append(compared(name, f"method={method}", rule, total, "==", trials[name]))
         for sentence in said:
             sign = SIGN[sentence.best]
             proposed, *theirs = (
@@ -330,7 +329,8 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             best = sign * max(sign * value for value in theirs)
             place = f"metric={sentence.quantity}"
             rule = f"the proposed mutation has the {sentence.words} (Section 4)"
-            rows.append(_row(name, place, rule, proposed, best, sign * (proposed - best) > 0))
+            relation = {1: ">", -1: "<"}[sign]
+            rows.append(compared(name, place, rule, proposed, relation, best))
     for sentence in said:
         if sentence.quantity in TESTED:
             rows += _fisher_rows(
@@ -345,17 +345,14 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 for one, other in pairs
             )
             rule = f"pairs of operators that rank by {words} as in Table 2 (Section 4): all"
-            rows.append(
-                _row(name, f"metric={metric}", rule, agree, len(pairs), agree == len(pairs))
-            )
+            rows.append(compared(name, f"metric={metric}", rule, agree, "==", len(pairs)))
     # A table of drives would say when the environment changes.
     drives = sum(not {"after", "moment"}.isdisjoint(table) for table in published.values())
     rule = (
         "the title speaks of dynamic environments: some table has drives during which the "
         "environment changes"
     )
-    rows.append(_row("text", "title", rule, drives, 1, drives >= 1))
-    return rows
+    return [*rows, compared("text", "title", rule, drives, ">=", 1)]
 
 
 def _fisher_rows(
@@ -379,11 +376,11 @@ def _fisher_rows(
     ]
     p = holm(np.array([stats.fisher_exact(square).pvalue for square in squares]))
     return [
-        _row(
+        checked(
             *(name, f"metric={metric}, proposed and {other}"),
             f"the proposed mutation has the {words} beyond chance: "
             "p of Fisher's test, corrected by Holm",
-            *(value, ALPHA, value < ALPHA and sign * (own - theirs) > 0),
+            *(value, ALPHA, bool(value < ALPHA and sign * (own - theirs) > 0)),
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())
     ]
@@ -393,14 +390,3 @@ def _printed(table: pd.Series, method: str, metric: str) -> float:
     if metric == "found":
         return table[method, "optimal"] + table[method, "near_optimal"]
     return table[method, metric]
-
-
-def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": float(printed),
-        "limit": float(limit),
-        "consistent": bool(consistent),
-    }

@@ -9,6 +9,7 @@ import pandas as pd
 import shapely
 
 from bezierplan.analysis import identified
+from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.results import Results
 from bezierplan.planners.parts.genetic import complement_bit, swap_tails
 from bezierplan.workspaces.grid import Grid
@@ -46,18 +47,13 @@ def genes_in_range(
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     """Whether every minimal generation of Table I lies within the generations of Section IV."""
     table = published["table1"]
-    rows = table[table["metric"] == "generation_1pct"]
-    said = published["text_values"].set_index("quantity")["value"]
+    most = published["text_values"].set_index("quantity")["value"]["generations"]
+    rule = "a minimal generation is at most the number of generations"
     return [
-        {
-            "item": "table1",
-            "place": f"problem={row.problem}, method={row.method}",
-            "rule": "a minimal generation is at most the number of generations",
-            "printed": row.value,
-            "limit": said["generations"],
-            "consistent": row.value <= said["generations"],
-        }
-        for row in rows.itertuples()
+        compared(
+            "table1", f"problem={cell.problem}, method={cell.method}", rule, cell.value, "<=", most
+        )
+        for cell in table[table["metric"] == "generation_1pct"].itertuples()
     ]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves, shortest_paths
@@ -596,75 +597,33 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     tables, and against each other.
     """
     tables = {name: published[name] for name in RANKED}
-    rows = []
     straight = float(_said(published, "straight_line_length")[0])
-    for name, table in tables.items():
-        for row in _cells(table, "objective").itertuples():
-            rows.append(
-                _row(
-                    name,
-                    _place(row),
-                    "no path is shorter than the straight line",
-                    row.value,
-                    straight,
-                    row.value >= straight,
-                )
-            )
+    rule = "no path is shorter than the straight line"
+    rows = [
+        compared(name, _place(cell), rule, cell.value, ">=", straight)
+        for name, table in tables.items()
+        for cell in _cells(table, "objective").itertuples()
+    ]
     before = pd.concat([tables["table3"], tables["table4"]])
+    rule = "Table 5 has the number of Table 3 or 4"
     for metric in ("collisions_c", "objective"):
         first = _by_method(before, metric)
-        for row in _cells(tables["table5"], metric).itertuples():
-            if row.method in first:
-                rule = "Table 5 has the number of Table 3 or 4"
-                rows.append(
-                    _row(
-                        "table5",
-                        _place(row),
-                        rule,
-                        row.value,
-                        first[row.method],
-                        row.value == first[row.method],
-                    )
-                )
+        rows += [
+            compared("table5", _place(cell), rule, cell.value, "==", first[cell.method])
+            for cell in _cells(tables["table5"], metric).itertuples()
+            if cell.method in first
+        ]
     best = _by_method(
         pd.concat(list(tables.values())[:3]).drop_duplicates(["method", "metric"]), "objective"
     )
-    for place, better, worse in published["said"].itertuples(index=False):
+    for section, better, worse in published["said"].itertuples(index=False):
         table = "table5" if worse == "pso" else "table4" if better.startswith("cpso2") else "table3"
-        rule = f"the text ({place}) has {better} better than {worse}"
-        rows.append(
-            _row(
-                table,
-                f"method={better}, metric=objective",
-                rule,
-                best[better],
-                best[worse],
-                best[better] < best[worse],
-            )
-        )
+        rule = f"the text ({section}) has {better} better than {worse}"
+        place = f"method={better}, metric=objective"
+        rows.append(compared(table, place, rule, best[better], "<", best[worse]))
     first, second = _said(published, "population_of_second_experiment")
-    rows.append(
-        _row(
-            "text",
-            "5.5",
-            "one number for the second population of Section 5.5",
-            first,
-            second,
-            first == second,
-        )
-    )
-    return rows
-
-
-def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": printed,
-        "limit": limit,
-        "consistent": bool(consistent),
-    }
+    rule = "one number for the second population of Section 5.5"
+    return [*rows, compared("text", "5.5", rule, first, "==", second)]
 
 
 def _cells(table: pd.DataFrame, metric: str) -> pd.DataFrame:
