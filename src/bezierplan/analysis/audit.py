@@ -21,7 +21,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from bezierplan.analysis import identified, possible
-from bezierplan.analysis.audit_rows import COLUMNS, checked
+from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked
 from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.possible import Printed
@@ -33,7 +33,6 @@ from bezierplan.running import problems
 # any single path.
 _AT_LEAST_A_LENGTH = ("length", "objective")
 _SPREADS = ("std", "iqr", "range")
-_PRINTED = ("metric", "statistic", "n", "unit", "value")
 
 # From the lowest to the highest.
 _IN_ORDER = ("min", "quartile1", "median", "quartile3", "max")
@@ -90,7 +89,7 @@ def _problem(place: dict, bounds: pd.DataFrame) -> str | None:
 
 def _keys(table: pd.DataFrame) -> list[str]:
     """The columns of a table of published numbers that tell its rows apart."""
-    return [column for column in table if column not in (*_PRINTED, "printed")]
+    return [column for column in table if column not in NOT_KEYS]
 
 
 def _place(row: pd.Series, keys: list[str], *more: str) -> str:
@@ -164,14 +163,13 @@ def cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[Cell]
         yield Cell(item, place, metric, dict(zip(rows["statistic"], rows["printed"])), n, exact)
 
 
-def of_cells(cell: Cell) -> Iterator[dict]:
+def of_cells(cell: Cell) -> list[dict]:
     """What the statistics of one cell can be, by themselves and beside each other."""
     numbers = {name: possible.printed(text) for name, text in cell.texts.items()}
-    yield from _in_range(cell, numbers)
-    yield from _of_steps(cell, numbers)
-    yield from _in_order(cell, numbers)
+    parts = [_in_range, _of_steps, _in_order]
     if "std" in numbers and cell.n and cell.n > 1:
-        yield from _of_spread(cell, numbers)
+        parts.append(_of_spread)
+    return [row for part in parts for row in part(cell, numbers)]
 
 
 def _in_range(cell: Cell, numbers: dict[str, Printed]) -> Iterator[dict]:

@@ -4,6 +4,9 @@ import operator
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
 
+NOT_KEYS = ("metric", "statistic", "n", "unit", "value", "printed")
+"""Columns of a table of published numbers that do not tell its rows apart."""
+
 _RELATIONS = {
     "<": operator.lt,
     "<=": operator.le,
