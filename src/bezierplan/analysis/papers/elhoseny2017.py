@@ -17,6 +17,7 @@ import shapely
 from bezierplan.analysis import statistics
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.papers.validation import curve_through, is_free, verdicts
 from bezierplan.analysis.results import Results, path_of, select
 from bezierplan.geometry.cell_length import DIAGONAL, samples
@@ -495,43 +496,26 @@ def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
         ("mutation", parents[:1], mutated),
     ):
         for chromosome, (x, y) in at.items():
-            role = (
-                "accent" if chromosome in origins else "muted" if chromosome in children else "none"
+            role, label = (
+                ("accent", "parent")
+                if chromosome in origins
+                else ("muted", "possible child")
+                if chromosome in children
+                else ("none", None)
             )
-            label = {"accent": "parent", "muted": "possible child", "none": None}[role]
-            box = {
-                "mark": "cell",
-                "group": chromosome,
-                "role": role,
-                "x": x,
-                "y": y,
-                "width": 0.92,
-                "height": 0.92,
-                "label": label,
-            }
-            marks.append(box | {"operator": operator})
-        words = {"mark": "text", "role": "note", "operator": operator}
-        marks += [
-            words | {"x": x, "y": y, "text": " ".join(chromosome)}
-            for chromosome, (x, y) in at.items()
-        ]
-    x, y = at[first]
+            size = {"width": 0.92, "height": 0.92}
+            named = {"group": chromosome, "label": label, "operator": operator}
+            marks.append(mark("cell", role, x, y, **size, **named))
+        marks += [text(*at[name], " ".join(name), operator=operator) for name in at]
+    middle = np.array(at[first])
     for child in sorted(mutated):
-        towards = np.subtract(at[child], (x, y))
-        arrow = {"mark": "arrow", "role": "second", "group": f"to {child}", "operator": "mutation"}
-        tail, head = ((x, y) + share * towards for share in (0.3, 0.68))
-        marks += [arrow | {"x": tail[0], "y": tail[1]}, arrow | {"x": head[0], "y": head[1]}]
+        arrow = [middle + share * (at[child] - middle) for share in (0.3, 0.68)]
+        marks += along("arrow", "second", arrow, group=f"to {child}", operator="mutation")
     frame = np.add(
         [[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[first][1])
     )
-    border = {
-        "mark": "line",
-        "role": "first",
-        "group": "subspace",
-        "label": "subspace 00 of the parents",
-        "operator": "crossover",
-    }
-    return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
+    named = {"group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
+    return pd.DataFrame([*marks, *along("line", "first", frame, **named)])
 
 
 def chromosome(*, least_distance: float) -> pd.DataFrame:
@@ -560,37 +544,31 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         path = curve_through(points, start, target) if len(points) == number else None
     curve = shapely.LineString(grid.in_units(np.column_stack(samples(path, grid))))
     marks = []
-    words = {"mark": "text", "role": "note"}
     gene_width, top = 0.44, 1.4
     for gene, (x, y) in enumerate(itertools.product(range(side + 1), repeat=2)):
         value = -1 if grid.occupied[y, x] else int((x, y) in points)
         role = {-1: "obstacle", 1: "accent", 0: "none"}[value]
         label = {-1: "obstacle, -1", 1: "control point, 1", 0: None}[value]
-        box = {
-            "mark": "cell",
-            "group": f"gene {gene}",
-            "role": role,
-            "label": label,
-            "gene": gene,
-            "value": value,
-        }
-        marks.append(box | {"x": x, "y": y + top, "width": 1.0, "height": 1.0})
+        named = {"group": f"gene {gene}", "label": label, "gene": gene, "value": value}
         middle = side / 2 + gene_width * (gene - 12)
-        marks.append(box | {"x": middle, "y": 0.0, "width": gene_width, "height": gene_width})
-        marks.append(words | {"x": middle, "y": 0.0, "text": str(value)})
+        marks += [
+            mark("cell", role, x, y + top, width=1.0, height=1.0, **named),
+            mark("cell", role, middle, 0.0, width=gene_width, height=gene_width, **named),
+            text(middle, 0.0, value),
+        ]
         corners = [
             (x + aside, y + above) for aside, above in itertools.product((0.28, -0.28), (0.3, -0.3))
         ]
         a, b = max(corners, key=lambda corner: round(curve.distance(shapely.Point(corner)), 6))
-        marks.append(words | {"x": a, "y": b + top, "text": str(gene)})
+        marks.append(text(a, b + top, gene))
         if y == 0 or gene == (side + 1) ** 2 - 1:
-            marks.append(words | {"x": middle, "y": -0.45, "text": str(gene)})
-    line = {"mark": "line", "role": "second", "group": "curve", "label": "Bézier curve"}
-    marks += [line | {"x": a, "y": b + top} for a, b in curve.coords]
-    for role, (a, b) in (("start", start), ("target", target)):
-        marks.append(
-            {"mark": "dots", "role": role, "group": role, "label": role, "x": a, "y": b + top}
-        )
+            marks.append(text(middle, -0.45, gene))
+    places = [(a, b + top) for a, b in curve.coords]
+    marks += along("line", "second", places, group="curve", label="Bézier curve")
+    marks += [
+        mark("dots", role, a, b + top, group=role, label=role)
+        for role, (a, b) in (("start", start), ("target", target))
+    ]
     return pd.DataFrame(marks)
 
 
@@ -631,61 +609,28 @@ def validation(
             path, grid
         ):
             break
-    angles = np.linspace(0, 2 * math.pi, 61)
     marks = [
-        {
-            "mark": "circle",
-            "role": "obstacle",
-            "group": "obstacles",
-            "label": "obstacle",
-            "x": x,
-            "y": y,
-            "radius": reach,
-        }
+        mark("circle", "obstacle", x, y, group="obstacles", label="obstacle", radius=reach)
         for (x, y), reach in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
     ]
+    angles = np.linspace(0, 2 * math.pi, 61)
+    circle = least_distance * np.column_stack([np.cos(angles), np.sin(angles)])
+    label = f"distance r = {least_distance:g}"
+    for candidate, (point, word) in enumerate(judged, 1):
+        if word == "accepted":
+            ring = (np.array(point) + circle).tolist()
+            marks += along("line", "muted", ring, group=f"ring {candidate}", label=label)
+    curve = grid.in_units(np.column_stack(samples(path, grid)))
+    marks += along("line", "third", curve, group="curve", label="Bézier curve")
     looks = {
         "accepted": ("first", "control point"),
         "obstacle": ("accent", "on an obstacle"),
         "too near": ("second", "too near to another"),
     }
-    for candidate, (point, word) in enumerate(judged, 1):
-        if word == "accepted":
-            ring = {
-                "mark": "line",
-                "role": "muted",
-                "group": f"ring {candidate}",
-                "label": f"distance r = {least_distance:g}",
-            }
-            circle = np.array(point) + least_distance * np.column_stack(
-                [np.cos(angles), np.sin(angles)]
-            )
-            marks += [ring | {"x": x, "y": y} for x, y in circle.tolist()]
-    x, y = grid.in_units(np.column_stack(samples(path, grid))).T
-    marks += [
-        {"mark": "line", "role": "third", "group": "curve", "label": "Bézier curve", "x": a, "y": b}
-        for a, b in zip(x, y)
-    ]
-    for candidate, (point, word) in enumerate(judged, 1):
+    for candidate, ((x, y), word) in enumerate(judged, 1):
         role, label = looks[word]
-        dot = {
-            "mark": "dots",
-            "role": role,
-            "group": word,
-            "label": label,
-            "candidate": candidate,
-            "verdict": word,
-        }
-        marks.append(dot | {"x": point[0], "y": point[1]})
-        marks.append(
-            {
-                "mark": "text",
-                "role": "note",
-                "x": point[0] - 0.8,
-                "y": point[1] + 0.7,
-                "text": str(candidate),
-            }
-        )
-    for role, (x, y) in zip(("start", "target"), ends, strict=True):
-        marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": x, "y": y})
+        named = {"group": word, "label": label, "candidate": candidate, "verdict": word}
+        marks += [mark("dots", role, x, y, **named), text(x - 0.8, y + 0.7, candidate)]
+    for role, place in zip(("start", "target"), ends, strict=True):
+        marks.append(mark("dots", role, *place, group=role, label=role))
     return pd.DataFrame(marks)

@@ -13,6 +13,7 @@ import pandas as pd
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.measures import obstacle_clearance
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.results import Results, path_of, pick, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts.genetic import swap_tails
@@ -45,20 +46,21 @@ def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
     """
     zigzag = np.array(points, dtype=float)
     steps = curves.sample_matrix("bezier", len(zigzag), 201) @ zigzag
-    corners = _line(zigzag, "second", "path with corners")
-    curve = _line(steps, "first", "Bézier curve")
-    inner = _dots(zigzag[1:-1], "third", f"corners P1 to P{len(zigzag) - 2}")
-    ends = pd.concat(
-        [_dots(zigzag[:1], "start", "start S"), _dots(zigzag[-1:], "target", "target T")]
+    corners = _labelled("line", "second", zigzag, "path with corners")
+    curve = _labelled("line", "first", steps, "Bézier curve")
+    dots = [
+        *_labelled("dots", "third", zigzag[1:-1], f"corners P1 to P{len(zigzag) - 2}"),
+        *_labelled("dots", "start", zigzag[:1], "start S"),
+        *_labelled("dots", "target", zigzag[-1:], "target T"),
+    ]
+    parts = {"corners": corners, "curve": curve, "both": corners + curve}
+    return pd.DataFrame(
+        [each | {"drawn": name} for name, lines in parts.items() for each in lines + dots]
     )
-    parts = {
-        "corners": [corners, inner, ends],
-        "curve": [curve, inner, ends],
-        "both": [corners, curve, inner, ends],
-    }
-    return pd.concat(
-        [pd.concat(marks).assign(drawn=name) for name, marks in parts.items()], ignore_index=True
-    )
+
+
+def _labelled(kind: str, role: str, points: np.ndarray, label: str) -> list[dict]:
+    return along(kind, role, points, group=label, label=label)
 
 
 def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
@@ -71,62 +73,19 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
     chromosomes = np.array(parents)
     children = chromosomes.copy()
     swap_tails(*children, bits * cut, bits)
-    frames = []
+    marks = []
     for drawn, rows in (("before", chromosomes), ("after", children)):
+        shown = {"drawn": drawn}
         for height, row in zip((1.3, 0.0), rows):
             # A gene keeps the colour of its original chromosome.
-            for position, gene in enumerate(row):
-                role = "accent" if gene == chromosomes[0, position] else "muted"
-                box = {
-                    "mark": "cell",
-                    "role": role,
-                    "x": position,
-                    "y": height,
-                    "width": 0.96,
-                    "height": 0.8,
-                }
-                frames.append(
-                    pd.DataFrame(
-                        [
-                            box,
-                            {
-                                "mark": "text",
-                                "role": "note",
-                                "x": position,
-                                "y": height,
-                                "text": str(gene + 1),
-                            },
-                        ]
-                    ).assign(drawn=drawn)
-                )
-        line = _line(
-            np.array([(cut - 0.5, -0.7), (cut - 0.5, 2.0)]),
-            "second",
-            f"cut between genes {cut} and {cut + 1}",
-        )
-        frames.append(line.assign(drawn=drawn))
-    return pd.concat(frames, ignore_index=True)
-
-
-def _line(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
-    return _marks("line", points, role, label)
-
-
-def _dots(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
-    return _marks("dots", points, role, label)
-
-
-def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame:
-    return pd.DataFrame(
-        {
-            "mark": mark,
-            "group": label,
-            "role": role,
-            "x": points[:, 0],
-            "y": points[:, 1],
-            "label": label,
-        }
-    )
+            for x, gene in enumerate(row):
+                role = "accent" if gene == chromosomes[0, x] else "muted"
+                marks.append(mark("cell", role, x, height, width=0.96, height=0.8, **shown))
+                marks.append(text(x, height, gene + 1, **shown))
+        label = f"cut between genes {cut} and {cut + 1}"
+        line = [(cut - 0.5, -0.7), (cut - 0.5, 2.0)]
+        marks += along("line", "second", line, group=label, label=label, **shown)
+    return pd.DataFrame(marks)
 
 
 def drawn_farther(

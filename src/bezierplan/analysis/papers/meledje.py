@@ -13,6 +13,7 @@ import pandas as pd
 import shapely
 
 from bezierplan.analysis.audit_rows import checked, compared
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.results import Results, select
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic, planner_settings
@@ -49,33 +50,23 @@ def chromosome(*, genes: list[int], side: int) -> pd.DataFrame:
     side cells (part `path`).
     """
     row = _genes(genes, 0, ["accent", *["muted"] * (len(genes) - 2), "accent"])
-    names = [
-        {"mark": "text", "role": "note", "x": x, "y": -0.9, "text": word}
-        for x, word in ((0, "start"), (3, "passage"), (6, "target"))
-    ]
+    row += [text(x, -0.9, word) for x, word in ((0, "start"), (3, "passage"), (6, "target"))]
     places = [_place(number, side) for number in genes]
     way = shapely.LineString(places)
+    cells = {number: _place(number, side) for number in range(1, side * side + 1)}
+    path = [_cell("free", *place) for place in cells.values()]
     # Cells that the path crosses between its nodes show no number, because the path would make it
     # illegible.
-    cells = {number: _place(number, side) for number in range(1, side * side + 1)}
-    boxes = [{"mark": "cell", "role": "free", **_box(*place)} for place in cells.values()]
-    apart = {
-        number: place
+    path += [
+        text(*place, number)
         for number, place in cells.items()
         if shapely.Point(place).distance(way) > BESIDE
-    }
-    others = [
-        {"mark": "text", "role": "note", **_words(number, *place)}
-        for number, place in apart.items()
     ]
-    nodes = [
-        mark
-        for number, place in zip(genes, places, strict=True)
-        for mark in _gene(number, *place, "accent")
-    ]
-    path = [*boxes, *others, *_path(places, "accent", "path"), *nodes]
-    return pd.concat(
-        [pd.DataFrame([*row, *names]).assign(part="genes"), pd.DataFrame(path).assign(part="path")]
+    path += along("line", "accent", places, group="path", label="path")
+    for number, place in zip(genes, places, strict=True):
+        path += [_cell("accent", *place), text(*place, number)]
+    return pd.DataFrame(
+        [each | {"part": "genes"} for each in row] + [each | {"part": "path"} for each in path]
     )
 
 
@@ -98,18 +89,9 @@ def crossover(*, parents: list[list[int]], cut: int) -> pd.DataFrame:
         ]
         looks[1] += ["accent"] * (len(second) - len(looks[1]))
         marks = [*_genes(first, 1.5, looks[0]), *_genes(second, 0, looks[1])]
-        line = [
-            {
-                "mark": "line",
-                "role": "second",
-                "group": "cut",
-                "x": cut - 0.5,
-                "y": y,
-                "label": "cut",
-            }
-            for y in (-0.8, 2.3)
-        ]
-        frames.append(pd.DataFrame([*marks, *line]).assign(part=part))
+        line = [(cut - 0.5, -0.8), (cut - 0.5, 2.3)]
+        marks += along("line", "second", line, group="cut", label="cut")
+        frames.append(pd.DataFrame(marks).assign(part=part))
     return pd.concat(frames)
 
 
@@ -193,34 +175,27 @@ def _shown(
 
 def _mutation(
     grid: Grid, operator: str, before: np.ndarray, after: np.ndarray, k: int
-) -> Iterator[dict]:
+) -> list[dict]:
     """Marks of a path before and after the change of node k."""
     first, second = (centres(grid, path).tolist() for path in (before, after))
-    yield from _path(first, "third", "before")
-    yield from _path(second, "accent", "after")
+    marks = along("line", "third", first, group="before", label="before")
+    marks += along("line", "accent", second, group="after", label="after")
     if operator != "random":
-        column, row = before[k] % grid.occupied.shape[1], before[k] // grid.occupied.shape[1]
+        row, column = divmod(before[k], grid.occupied.shape[1])
         for up, across in itertools.product((-1, 0, 1), repeat=2):
             cell = grid.occupied.shape[1] * (row + up) + column + across
             if (up, across) != (0, 0) and not grid.occupied.flat[cell]:
-                x, y = grid.centre(int(cell))
-                yield {
-                    "mark": "dots",
-                    "role": "muted",
-                    "x": x,
-                    "y": y,
-                    "group": "tried",
-                    "label": "cells tried",
-                }
-    for x, y in [*first[1:k], *first[k + 1 : -1]]:
-        yield {"mark": "dots", "role": "third", "x": x, "y": y, "group": "others", "label": "node"}
-    for role, label, (x, y) in (
+                place = grid.centre(int(cell))
+                marks.append(mark("dots", "muted", *place, group="tried", label="cells tried"))
+    marks += along("dots", "third", first[1:k] + first[k + 1 : -1], group="others", label="node")
+    for role, label, place in (
         ("first", "node that changes", first[k]),
         ("accent", "node in its place", second[k]),
         ("start", "start", first[0]),
         ("target", "target", first[-1]),
     ):
-        yield {"mark": "dots", "role": role, "x": x, "y": y, "group": role, "label": label}
+        marks.append(mark("dots", role, *place, group=role, label=label))
+    return marks
 
 
 def _place(number: int, side: int) -> tuple[float, float]:
@@ -228,29 +203,17 @@ def _place(number: int, side: int) -> tuple[float, float]:
     return (number - 1) % side + 1.0, (number - 1) // side + 1.0
 
 
-def _genes(numbers: Sequence[int], y: float, roles: Sequence[str]) -> Iterator[dict]:
+def _genes(numbers: Sequence[int], y: float, roles: Sequence[str]) -> list[dict]:
     """Marks of a chromosome, as a row of boxes."""
-    for x, (number, role) in enumerate(zip(numbers, roles, strict=True)):
-        yield from _gene(number, x, y, role)
+    return [
+        each
+        for x, (number, role) in enumerate(zip(numbers, roles, strict=True))
+        for each in (_cell(role, x, y), text(x, y, number))
+    ]
 
 
-def _gene(number: int, x: float, y: float, role: str) -> Iterator[dict]:
-    yield {"mark": "cell", "role": role, **_box(x, y)}
-    yield {"mark": "text", "role": "note", **_words(number, x, y)}
-
-
-def _box(x: float, y: float) -> dict:
-    return {"x": x, "y": y, "width": 1.0, "height": 1.0}
-
-
-def _words(number: int, x: float, y: float) -> dict:
-    return {"x": x, "y": y, "text": str(number)}
-
-
-def _path(places: Sequence[tuple[float, float]], role: str, label: str) -> Iterator[dict]:
-    """Marks of a line through places and of its nodes."""
-    for x, y in places:
-        yield {"mark": "line", "role": role, "group": label, "x": x, "y": y, "label": label}
+def _cell(role: str, x: float, y: float) -> dict:
+    return mark("cell", role, x, y, width=1.0, height=1.0)
 
 
 def less_work_for_a_path(

@@ -10,6 +10,7 @@ import shapely
 
 from bezierplan.analysis import identified
 from bezierplan.analysis.audit_rows import compared
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.results import Results
 from bezierplan.planners.parts.genetic import complement_bit, swap_tails
 from bezierplan.workspaces.grid import Grid
@@ -88,28 +89,24 @@ def identified_paths(
     identification = identified.in_problem(
         problem, float(printed["value"].iloc[0]), decimals, edges
     )
-    rows = []
+    marks = []
     for number, path in reversed(list(enumerate(identification.paths))):
         role = ("accent", "first", "third")[min(number, 2)]
         name = f"{' '.join(map(str, path))}: length {identification.length * workspace.cell:.6f}"
-        points = [{"x": x, "y": y} for x, y in map(workspace.centre, path)]
-        rows += [
-            {"mark": "line", "role": role, "group": f"path {number}", "label": name} | point
-            for point in points
-        ]
+        places = map(workspace.centre, path)
+        marks += along("line", role, places, group=f"path {number}", label=name)
     lines = shapely.MultiLineString(
         [[workspace.centre(cell) for cell in path] for path in identification.paths]
     )
-    rows += [
-        {"mark": "text", "role": "note", "text": str(cell)}
-        | dict(zip("xy", _beside(workspace.centre(cell), lines, 0.85 * workspace.cell)))
+    away = 0.85 * workspace.cell
+    marks += [
+        text(*_beside(workspace.centre(cell), lines, away), cell)
         for path in identification.paths[:1]
         for cell in path[1:-1]
     ]
     for role, cell in (("start", start), ("target", target)):
-        x, y = workspace.centre(cell)
-        rows.append({"mark": "dots", "role": role, "label": role, "x": x, "y": y})
-    return pd.DataFrame(rows)
+        marks.append(mark("dots", role, *workspace.centre(cell), label=role))
+    return pd.DataFrame(marks)
 
 
 def _beside(

@@ -13,6 +13,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps
@@ -83,8 +84,8 @@ def chaotic_sequences(
 
 def ends(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
     """Figure 5: marks of start and target, for any circles."""
-    dots = [("dots", role, role, *place) for role, place in (("start", start), ("target", target))]
-    return pd.DataFrame(dots, columns=["mark", "role", "label", "x", "y"])
+    ends = {"start": start, "target": target}
+    return pd.DataFrame([mark("dots", role, *at, label=role) for role, at in ends.items()])
 
 
 def movement(
@@ -97,74 +98,34 @@ def movement(
     swarm. inertia, c1, c2: as in eq. 8. Further columns: part (of the velocity, its name) and value
     (its signed length).
     """
-    rows = []
+    marks = []
     for number, (x, v, p, r1, r2) in enumerate(particles):
         line = -5.0 * number  # the height at which the particle moves
-        parts = {
-            "w v": inertia * v,
-            "C1 r1 (p - x)": c1 * r1 * (p - x),
-            "C2 r2 (G - x)": c2 * r2 * (best - x),
-        }
-        moved = x + sum(parts.values())
-        names = zip(
-            ("inertia", "cognition", "social part"),
-            ("third", "first", "second"),
-            parts.items(),
-            strict=True,
+        parts = (
+            ("inertia", "third", "w v", inertia * v),
+            ("cognition", "first", "C1 r1 (p - x)", c1 * r1 * (p - x)),
+            ("social part", "second", "C2 r2 (G - x)", c2 * r2 * (best - x)),
         )
+        moved = x + sum(part for *_, part in parts)
         aside = math.copysign(1.0, best - x)  # words are placed beyond the heads
-        rows.append(
-            {"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line}
-        )
-        rows.append(
-            {"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line}
-        )
+        marks += along("line", "muted", [(-1.0, line), (15.0, line)], group=f"line {number}")
         tail = x
-        for height, (name, role, (formula, part)) in enumerate(names, start=1):
-            arrow = {
-                "mark": "arrow",
-                "role": role,
-                "group": f"{name} {number}",
-                "y": line + 0.9 * height,
-                "part": name,
-                "value": part,
-            }
-            rows += [arrow | {"x": tail}, arrow | {"x": tail + part}]
+        for height, (name, role, formula, part) in enumerate(parts, start=1):
+            y = line + 0.9 * height
+            named = {"group": f"{name} {number}", "part": name, "value": part}
+            marks += along("arrow", role, [(tail, y), (tail + part, y)], **named)
             tail += part
-            words = {
-                "mark": "text",
-                "role": "note",
-                "y": line + 0.9 * height,
-                "text": f"{name} {formula}",
-            }
-            rows.append(words | {"x": moved + aside * 4.3})
-        for role, position, words in (
-            ("first", x, "x"),
-            ("third", p, "p"),
-            ("start", moved, "new x"),
-            ("target", best, "G"),
+            marks.append(text(moved + aside * 4.3, y, f"{name} {formula}"))
+        for role, position, words, label in (
+            ("first", x, "x", "position"),
+            ("third", p, "p", "best position"),
+            ("start", moved, "new x", "next position"),
+            ("target", best, "G", "best position of the swarm"),
         ):
-            label = {
-                "first": "position",
-                "third": "best position",
-                "start": "next position",
-                "target": "best position of the swarm",
-            }[role]
-            rows.append(
-                {
-                    "mark": "dots",
-                    "role": role,
-                    "group": f"{words} {number}",
-                    "label": label,
-                    "x": position,
-                    "y": line,
-                }
-            )
+            marks.append(mark("dots", role, position, line, group=f"{words} {number}", label=label))
             if words != "new x":
-                rows.append(
-                    {"mark": "text", "role": "note", "x": position, "y": line - 0.75, "text": words}
-                )
-    return pd.DataFrame(rows)
+                marks.append(text(position, line - 0.75, words))
+    return pd.DataFrame(marks)
 
 
 def flow_chart() -> pd.DataFrame:
@@ -180,7 +141,7 @@ def flow_chart() -> pd.DataFrame:
         ("accent", "last iteration, or G not better for ten?"),
         ("none", "next number ζ of the map (eqs. 9 to 16)"),
     ]
-    boxes = [(middle, -step * i, width, role, text) for i, (role, text) in enumerate(steps)]
+    boxes = [(middle, -step * i, width, role, words) for i, (role, words) in enumerate(steps)]
     boxes += [
         (left, -step * 6, 115.0, "accent", "CPSO-I: ζ for r1 (eq. 17)"),
         (right, -step * 6, 115.0, "accent", "CPSO-II: ζ for r2 (eq. 18)"),
@@ -196,25 +157,13 @@ def flow_chart() -> pd.DataFrame:
         [(-width / 2, -step * 7), (edge, -step * 7), (edge, -step), (-width / 2, -step)],
         [(width / 2, -step * 4), (-edge, -step * 4), (-edge, -step * 8), (width / 2, -step * 8)],
     ]
-    rows = [
-        {"mark": "cell", "role": role, "x": x, "y": y, "width": wide, "height": height}
-        for x, y, wide, role, _ in boxes
-    ]
-    rows += [
-        {"mark": "text", "role": "note", "x": x, "y": y, "text": text} for x, y, _, _, text in boxes
-    ]
+    marks = [mark("cell", role, x, y, width=wide, height=height) for x, y, wide, role, _ in boxes]
+    marks += [text(x, y, words) for x, y, _, _, words in boxes]
     for number, way in enumerate(ways):
-        line, arrow = (
-            {"mark": "line", "role": "note", "group": number},
-            {"mark": "arrow", "role": "note", "group": number},
-        )
-        rows += [line | {"x": x, "y": y} for x, y in way[:-1]] if len(way) > 2 else []
-        rows += [arrow | {"x": x, "y": y} for x, y in way[-2:]]
-    rows += [
-        {"mark": "text", "role": "note", "x": -edge - 14, "y": -step * 4 + 7, "text": "yes"},
-        {"mark": "text", "role": "note", "x": middle + 12, "y": -step * 4.5, "text": "no"},
-    ]
-    return pd.DataFrame(rows)
+        marks += along("line", "note", way[:-1], group=number) if len(way) > 2 else []
+        marks += along("arrow", "note", way[-2:], group=number)
+    marks += [text(-edge - 14, -step * 4 + 7, "yes"), text(middle + 12, -step * 4.5, "no")]
+    return pd.DataFrame(marks)
 
 
 def gauss_above(
