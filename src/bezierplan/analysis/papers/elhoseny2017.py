@@ -19,7 +19,7 @@ from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.papers.validation import curve_through, is_free, verdicts
-from bezierplan.analysis.results import Results, path_of, select
+from bezierplan.analysis.results import path_of, select
 from bezierplan.geometry.cell_length import DIAGONAL, samples
 from bezierplan.geometry.region import region
 from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
@@ -28,10 +28,11 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 
-def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
+def said(published: "Published") -> dict[str, float]:
     """Values in the text, by quantity; a fraction stands for its value."""
     return {
         row.quantity: float(Fraction(str(row.value)))
@@ -39,7 +40,7 @@ def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
     }
 
 
-def solutions(published: dict[str, pd.DataFrame]) -> dict[str, np.ndarray]:
+def solutions(published: "Published") -> dict[str, np.ndarray]:
     """Table 1: the genes (10,) of each solution."""
     return {
         name: rows.sort_values("gene")["value"].to_numpy()
@@ -55,7 +56,7 @@ def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
     }
 
 
-def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def q_table(published: "Published") -> pd.DataFrame:
     """Table 1 and derived quantities: genes of the solutions, counts and Q (equation 10) of their
     pairs, and the mean Q.
     """
@@ -78,9 +79,7 @@ def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return table.astype(dict.fromkeys(whole, "Int64")).round({"Q": 4})
 
 
-def q_example(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, None, int]:
+def q_example(check: "Check", results: "Experiments", published: "Published") -> "Judged":
     """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest
     difference from a printed value.
     """
@@ -96,9 +95,7 @@ def q_example(
     return "+" if holds else "-", most, None, len(q_values)
 
 
-def printed_over_bound(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, None, int]:
+def printed_over_bound(check: "Check", results: "Experiments", published: "Published") -> "Judged":
     """Claim C23: whether no printed length of a competing method is larger than such fields
     explain.
 
@@ -120,15 +117,15 @@ def printed_over_bound(
 
 
 def fitness_leads(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
+    check: "Check",
+    results: "Experiments",
+    published: "Published",
     *,
     population: int,
     offspring: int,
     genes: int,
     words: list[int],
-) -> tuple[str, float, tuple[float, float], int]:
+) -> "Judged":
     """Claim C21: whether fitness takes more work than diversity, counted because seconds differ
     from machine to machine. Raises Untestable where this depends on how the genes are counted.
 
@@ -173,7 +170,7 @@ def fitness_leads(
     return marks[0], float(table[:, 0].mean()), ends[0], len(table)
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Printed numbers that contradict the text, other tables or the rule for counting lengths.
 
     A straight diagonal counts 1.5 cells per cell of the side, the minimum for a path between
@@ -187,7 +184,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     return [row for part in parts for row in part(published)]
 
 
-def _audit_lengths(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _audit_lengths(published: "Published") -> Iterator[dict]:
     least_rule = (
         f"no path between opposite corners counts less than {DIAGONAL:g} cells for each of the side"
     )
@@ -212,7 +209,7 @@ def _audit_lengths(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
                 yield checked(table, f"{place}ga", rule, ga, rivals, bool(mga < ga < rivals))
 
 
-def _audit_times(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _audit_times(published: "Published") -> Iterator[dict]:
     means = {
         name: published[name]
         .query("statistic == 'mean'")
@@ -237,7 +234,7 @@ def _audit_times(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
             yield compared("table5", f"{place}, obstacles={obstacles}", rule, time, "==", later)
 
 
-def _audit_example(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _audit_example(published: "Published") -> Iterator[dict]:
     printed, genes = said(published), solutions(published)
     in_text = {name: int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")}
     rule = "the text counts as it defines"
@@ -247,7 +244,7 @@ def _audit_example(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
     yield compared("table1", "S1, S2: Q", rule, printed["Q of S1 and S2"], "==", q)
 
 
-def _audit_text(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _audit_text(published: "Published") -> Iterator[dict]:
     printed = said(published)
     eta, decay, iterations = printed["eta"], printed["decay of eta"], int(printed["iterations"])
     last = eta * decay**iterations
@@ -274,7 +271,7 @@ def _audit_text(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
     yield compared("text", "title", rule, drives, ">=", 1)
 
 
-def _growth(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _growth(published: "Published") -> Iterator[dict]:
     """Rows of the audit: do the printed lengths of the proposed method grow with the obstacles as
     the counting rule has it?
 
@@ -349,7 +346,7 @@ def memory(
     return pd.DataFrame(rows)
 
 
-def _sides(published: dict[str, pd.DataFrame]) -> dict[str, int]:
+def _sides(published: "Published") -> dict[str, int]:
     """The side of the fields of a table of lengths, in cells."""
     printed = said(published)
     return {table: int(printed[f"side in {table}"]) for table in ("table2", "table3")}
@@ -367,7 +364,7 @@ def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np
     return side * (2 - (2 - DIAGONAL) * free)
 
 
-def _printed_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def _printed_lengths(published: "Published") -> pd.DataFrame:
     """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value,
     in cells.
     """
@@ -385,7 +382,7 @@ def _errors(printed: pd.DataFrame, side: int, radius: float) -> tuple[float, flo
     return error, error / own["value"].mean()
 
 
-def radius_fit(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
+def radius_fit(published: "Published", *, radii: list[float]) -> pd.DataFrame:
     """The printed lengths of the proposed method, those expected for several obstacle radii (shares
     of the side), and the errors of the latter.
 
@@ -430,7 +427,7 @@ def radius_fit(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.
     return pd.DataFrame(rows)[columns]
 
 
-def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
+def radius_lengths(published: "Published", *, radii: list[float]) -> pd.DataFrame:
     """Printed and expected lengths against the number of obstacles; columns: side, lengths (which),
     obstacles, cells4 (in cells).
     """
@@ -452,7 +449,7 @@ def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) ->
     return pd.concat([printed, *expected], ignore_index=True)
 
 
-def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def radius_errors(published: "Published") -> pd.DataFrame:
     """The error of the expected lengths against the radius; columns: radius (a share of the side),
     side, relative_error.
     """

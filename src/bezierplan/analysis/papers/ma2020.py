@@ -14,12 +14,13 @@ from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.measures import obstacle_clearance
 from bezierplan.analysis.papers.marks import along, mark, text
-from bezierplan.analysis.results import Results, path_of, pick, select
+from bezierplan.analysis.results import path_of, pick, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts.genetic import swap_tails
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # Methods that plan on cells.
 LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
@@ -89,13 +90,8 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
 
 
 def drawn_farther(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    method: str,
-    other: str,
-) -> tuple[str, float, None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, method: str, other: str
+) -> "Judged":
     """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles
     than that drawn of another, on every map.
 
@@ -131,7 +127,7 @@ def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
     return min(found)[1:]
 
 
-def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def lattice_lengths(published: "Published") -> pd.DataFrame:
     """Printed shortest and longest lengths next to the nearest length of an 8-connected path.
 
     Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length,
@@ -178,8 +174,8 @@ def chance_of_lattice(low: float, high: float, tolerance: float, side: int) -> f
 
 
 def continuous_curvature(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published"
+) -> "Judged":
     """Claim C20: whether every feasible path is one polynomial piece with non-zero speed
     everywhere, so that its curvature is continuous.
 
@@ -200,7 +196,7 @@ def _least_speed(pieces: np.ndarray) -> float:
     return float(speed.min() / speed.max())
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Printed numbers that are impossible, or contradict others.
 
     If the four lattice methods plan on cells, each of their shortest and longest paths has the
@@ -213,7 +209,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     return [row for part in parts for row in part(published)]
 
 
-def _audit_lengths(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _audit_lengths(published: "Published") -> Iterator[dict]:
     side = _side(published)
     for name in ("table1", "table2"):
         lengths = published[name][published[name]["metric"] == "length"]
@@ -233,7 +229,7 @@ def _audit_lengths(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
             yield checked(name, place, rule, value, nearest, fits)
 
 
-def _audit_sentences(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _audit_sentences(published: "Published") -> Iterator[dict]:
     mean, time = _means(published["table1"], "length"), _means(published["table2"], "cpu_s")
     for method, rival in itertools.product(("bca", "bca_q"), LATTICE_METHODS):
         rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
@@ -248,7 +244,7 @@ def _audit_sentences(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
         yield compared("table2", "method=bca, metric=cpu_s", rule, time["bca"], "<=", limit)
 
 
-def _audit_text(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
+def _audit_text(published: "Published") -> Iterator[dict]:
     side = _side(published)
     parameters = published["parameters"].set_index(["workspace", "parameter"])["value"]
     rule = "a share of the cells is a whole number of cells"
@@ -282,7 +278,7 @@ def _audit_text(published: dict[str, pd.DataFrame]) -> Iterator[dict]:
     yield compared("text", "Data Availability", rule, listed, ">=", 1)
 
 
-def _side(published: dict[str, pd.DataFrame]) -> int:
+def _side(published: "Published") -> int:
     """Cells of both maps along x and along y, as printed: those from start to target."""
     parameters = published["parameters"]
     (side,) = parameters.loc[parameters["parameter"] == "grid_size", "value"].unique()

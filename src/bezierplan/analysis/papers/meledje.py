@@ -14,7 +14,7 @@ import shapely
 
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.papers.marks import along, mark, text
-from bezierplan.analysis.results import Results, select
+from bezierplan.analysis.results import select
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic, planner_settings
 from bezierplan.planners.parts.node_mutation import (
@@ -29,7 +29,8 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # Of a cell: any nearer to the path there is no room for a number.
 BESIDE = 0.45
@@ -217,13 +218,8 @@ def _cell(role: str, x: float, y: float) -> dict:
 
 
 def less_work_for_a_path(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    group: str,
-    other: str,
-) -> tuple[str, float, tuple[float, float], int]:
+    check: "Check", results: "Experiments", published: "Published", *, group: str, other: str
+) -> "Judged":
     """Claim C7: whether one kind of first population takes less work than another until a run ends
     feasible, in every environment.
 
@@ -259,7 +255,7 @@ def _work(runs: pd.DataFrame) -> tuple[float, float, float]:
     return least, typical, most
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Numbers in Tables 2 to 5 that contradict others.
 
     The three counts of a row add up to the trials. What Section 4 says about the proposed mutation

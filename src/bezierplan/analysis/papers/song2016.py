@@ -11,25 +11,20 @@ import shapely
 from bezierplan.analysis import identified
 from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.papers.marks import along, mark, text
-from bezierplan.analysis.results import Results
 from bezierplan.planners.parts.genetic import complement_bit, swap_tails
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 TRIALS = 10_000
 
 
 def genes_in_range(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    bits: int,
-    genes: int,
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, bits: int, genes: int
+) -> "Judged":
     """Claim C8: genes outside 0 .. 2^bits - 1 after a crossover at every kind of cut and a mutation
     at any bit, in random chromosomes.
     """
@@ -45,7 +40,7 @@ def genes_in_range(
     return "-" if outside else "+", float(outside), None, TRIALS
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Whether every minimal generation of Table I lies within the generations of Section IV."""
     table = published["table1"]
     most = published["text_values"].set_index("quantity")["value"]["generations"]
@@ -60,7 +55,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
 
 def identified_paths(
     workspace: Grid,
-    published: dict[str, pd.DataFrame],
+    published: "Published",
     *,
     start: int,
     target: int,

@@ -21,7 +21,8 @@ from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # The three control points (x, y), in units, of the best known single Bézier curves, by workspace:
 # the results of 300 long runs, improved by sequential quadratic programming. Their lengths are
@@ -167,12 +168,8 @@ def flow_chart() -> pd.DataFrame:
 
 
 def gauss_above(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    limit: float,
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, limit: float
+) -> "Judged":
     """Claim C39: the share of values above a limit in long sequences of the Gauss map, without
     their first values.
 
@@ -191,9 +188,9 @@ def gauss_above(
 
 
 def sensitive_to_start(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
+    check: "Check",
+    results: "Experiments",
+    published: "Published",
     *,
     apart: float,
     iterations: int,
@@ -202,7 +199,7 @@ def sensitive_to_start(
     sine_a: float,
     piecewise_p: float,
     sinusoidal_a: float,
-) -> tuple[str, float, tuple[float, float], int]:
+) -> "Judged":
     """Claim C46: whether every map of the paper is sensitive to its first value.
 
     The effect is the least Lyapunov exponent of a map: the mean logarithm by which a difference
@@ -237,9 +234,7 @@ def _exponent(
     return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
 
 
-def optimum_grows(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float], int]:
+def optimum_grows(check: "Check", results: "Experiments", published: "Published") -> "Judged":
     """Claim C48: whether the exact shortest path of a layout grows from the fewest to the most
     obstacles, in the mean over layouts.
 
@@ -254,8 +249,8 @@ def optimum_grows(
 
 
 def bowl_with_local_minima(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published"
+) -> "Judged":
     """Claim C16: whether the fitness over one control point is a bowl with several local minima.
 
     The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the
@@ -452,8 +447,8 @@ def valleys(values: np.ndarray) -> np.ndarray:
 
 
 def several_homotopy_classes(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published"
+) -> "Judged":
     """Claim C17: the number of classes in which runs converge; two paths of one class pass every
     circle on the same side.
 
@@ -471,12 +466,8 @@ def several_homotopy_classes(
 
 
 def least_above(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    limit: int,
-) -> tuple[str, float, None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, limit: int
+) -> "Judged":
     """Claim C3: whether the least mean value belongs to more particles than a limit.
 
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal
@@ -493,13 +484,13 @@ def least_above(
 
 
 def fewer_outliers(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
+    check: "Check",
+    results: "Experiments",
+    published: "Published",
     *,
     runs_drawn: int,
     margin: float,
-) -> tuple[str, float, tuple[float, float], int]:
+) -> "Judged":
     """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less
     often than for the other maps.
 
@@ -538,7 +529,7 @@ def _surely(share: float) -> str:
     return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Printed numbers that are impossible, or contradict others.
 
     No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. Statements in
@@ -592,7 +583,7 @@ def _by_method(table: pd.DataFrame, metric: str) -> dict[str, float]:
     return dict(zip(cells["method"], cells["value"]))
 
 
-def _said(published: dict[str, pd.DataFrame], quantity: str) -> list[float]:
+def _said(published: "Published", quantity: str) -> list[float]:
     """The values that the text gives for a quantity, in order of appearance."""
     text = published["text_values"]
     return text.loc[text["quantity"] == quantity, "value"].to_list()

@@ -27,7 +27,14 @@ from bezierplan.schema.model import (
 )
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from bezierplan.analysis.claims.claim import Claim
+    from bezierplan.analysis.results import Results
+
+    Experiments = dict[str, Results]
+    Published = dict[str, pd.DataFrame]
+    Judged = tuple[str, float, tuple[float, float] | None, int]
 
 
 class Options(Check):
