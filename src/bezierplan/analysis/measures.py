@@ -310,16 +310,19 @@ def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
 
 def homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
     """The homotopy class of each run's path."""
+    return [
+        np.nan
+        if path is None
+        else homotopy_class(_samples(path, CLASS_SAMPLES), problems[problem].workspace)
+        for path, problem in zip(_paths(runs), runs["problem"])
+    ]
+
+
+def _samples(path: Path, count: int) -> np.ndarray:
+    """Points (count, 2) along a path."""
     from bezierplan.geometry import curves
 
-    classes = []
-    for path, problem in zip(_paths(runs), runs["problem"]):
-        if path is None:
-            classes.append(np.nan)
-            continue
-        points = curves.sample_matrix(path.curve, len(path.points), CLASS_SAMPLES) @ path.points
-        classes.append(homotopy_class(points, problems[problem].workspace))
-    return classes
+    return curves.sample_matrix(path.curve, len(path.points), count) @ path.points
 
 
 def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
@@ -336,32 +339,30 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
     return np.where(np.isnan(best), np.nan, runs["feasible"] & (homotopy(runs, problems) == best))
 
 
+def _curvature(path: Path) -> np.ndarray:
+    """Curvature of `CURVATURE_SAMPLES` samples, NaN where the speed is zero."""
+    from bezierplan.geometry import curves
+
+    return curves.curvature(path, CURVATURE_SAMPLES)[0]
+
+
 def max_curvature(path: Path) -> float:
     """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as 0 where
     the speed is zero.
     """
-    from bezierplan.geometry import curves
-
-    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
-    return float(np.nan_to_num(np.abs(kappa)).max())
+    return float(np.nan_to_num(np.abs(_curvature(path))).max())
 
 
 def signed_curvature(path: Path) -> float:
     """Largest curvature of `CURVATURE_SAMPLES` samples with its sign (song2016, eq. 5: left turns
     are positive), in 1/unit; it counts as 0 where the speed is zero.
     """
-    from bezierplan.geometry import curves
-
-    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
-    return float(np.nan_to_num(kappa).max())
+    return float(np.nan_to_num(_curvature(path)).max())
 
 
 def zero_speed_points(path: Path) -> int:
     """Number of `CURVATURE_SAMPLES` samples at which the speed is zero."""
-    from bezierplan.geometry import curves
-
-    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
-    return int(np.isnan(kappa).sum())
+    return int(np.isnan(_curvature(path)).sum())
 
 
 def curvature_jump(path: Path) -> float:
@@ -399,13 +400,8 @@ def _headings(steps: np.ndarray) -> np.ndarray:
 
 def _path_headings(path: Path) -> np.ndarray:
     """Changes of heading along a path; a curve is taken as chords between samples."""
-    from bezierplan.geometry import curves
-
-    if path.curve == "polyline":
-        return _headings(_steps(path.points))
-    return _headings(
-        _steps(curves.sample_matrix(path.curve, len(path.points), HEADING_SAMPLES) @ path.points)
-    )
+    is_polyline = path.curve == "polyline"
+    return _headings(_steps(path.points if is_polyline else _samples(path, HEADING_SAMPLES)))
 
 
 def heading_max(path: Path) -> float:
@@ -427,7 +423,7 @@ def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
     points = path.points
     if path.curve != "polyline":
         count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
-        points = curves.sample_matrix(path.curve, len(path.points), count) @ path.points
+        points = _samples(path, count)
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     parts = max(2, round(at[-1] / BENDING_PART))
     wanted = np.linspace(0.0, at[-1], parts + 1)
@@ -495,7 +491,7 @@ def length_over_polygon(path: Path) -> float:
     """Length of a path over that of its control polygon; 1 if the polygon has no length."""
     from bezierplan.geometry import curves
 
-    polygon = np.hypot(*np.diff(path.points, axis=0).T).sum()
+    polygon = polygon_length(path)
     return curves.length(path) / polygon if polygon else 1.0
 
 
@@ -575,11 +571,7 @@ def occupied_points(path: Path, grid: Grid) -> int:
 
 def fine_bad(path: Path, grid: Grid) -> int:
     """Number of `FINE_SAMPLES` samples in occupied cells."""
-    from bezierplan.geometry import curves
-
-    return _in_occupied_cells(
-        curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid
-    )
+    return _in_occupied_cells(_samples(path, FINE_SAMPLES), grid)
 
 
 def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
