@@ -48,11 +48,6 @@ ROUNDED = 0.01
 _OUTLIER_REACH = 1.5
 
 
-def failed(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a run has no path that the certified checker accepts."""
-    return ~runs["feasible"].astype(bool)
-
-
 def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Whether (n,) the planner's own test gives this result and the checker the opposite."""
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
@@ -79,7 +74,7 @@ def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
 
 
-def _reference(runs: pd.DataFrame) -> pd.Series:
+def reference(runs: pd.DataFrame) -> pd.Series:
     """The length of the best known path of each run's problem. Raises ValueError if it is shorter
     than the exact shortest path.
     """
@@ -93,19 +88,7 @@ def _reference(runs: pd.DataFrame) -> pd.Series:
     return runs["reference"]
 
 
-def gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Length over that of the best known path of the same kind, minus 1 (n,); NaN where none is
-    known.
-    """
-    return runs["length"] / _reference(runs) - 1
-
-
-def excess_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Length minus that of the best known path of the same kind (n,); NaN where none is known."""
-    return runs["length"] - _reference(runs)
-
-
-def _held_history(runs: pd.DataFrame) -> np.ndarray:
+def held_history(runs: pd.DataFrame) -> np.ndarray:
     """Best objective so far by generation: (runs, maximum generations + 1). Runs that stopped early
     hold their last value.
     """
@@ -115,18 +98,13 @@ def _held_history(runs: pd.DataFrame) -> np.ndarray:
     return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
 
 
-def lowest_objective(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Lowest objective (n,) of any generation, even if the planner's result comes from another."""
-    return _held_history(runs)[:, -1]
-
-
 def first_generation_within(
     share: float, runs: pd.DataFrame, problems: dict[str, Problem]
 ) -> np.ndarray:
     """First generation (n,) whose best objective so far is at most 1 + share times the final
     one.
     """
-    held = _held_history(runs)
+    held = held_history(runs)
     return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
 
 
@@ -136,7 +114,7 @@ def first_generation_improved_by(
     """First generation (n,) by which a share of the improvement from generation 0 to the last is
     made; 0 if there is none.
     """
-    held = _held_history(runs)
+    held = held_history(runs)
     return (held <= held[:, :1] - share * (held[:, :1] - held[:, -1:])).argmax(axis=1)
 
 
@@ -144,73 +122,21 @@ def improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Prob
     """Share (n,) of the improvement from generation 0 to the last that is achieved by the given
     generation.
     """
-    held = _held_history(runs)
+    held = held_history(runs)
     total = held[:, 0] - held[:, -1]
     made = held[:, 0] - held[:, min(generation, held.shape[1] - 1)]
     return np.divide(made, total, out=np.full(len(held), np.nan), where=total > 0)
 
 
-def history_mean(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Mean (n,) of the best objective so far over all generations."""
-    return _held_history(runs).mean(axis=1)
-
-
-def deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of the length from the median of its method and
-    condition.
-    """
-    return _from_median(runs, "length")
-
-
-def work_deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of the number of evaluations from the median of its method
-    and condition.
-    """
-    return _from_median(runs, "evaluations")
-
-
-def _from_median(runs: pd.DataFrame, column: str) -> pd.Series:
+def deviation(column: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Absolute relative deviation (n,) of a column from the median of its method and condition."""
     median = runs.groupby(["experiment", "condition", "method"])[column].transform("median")
     return (runs[column] / median - 1).abs()
 
 
-def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Length over the exact shortest length of the problem, minus 1 (n,)."""
-    return runs["length"] / runs["bound"] - 1
-
-
-def collided(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive collides at any time."""
-    return runs["collision_at"].notna()
-
-
-def avoidable_waiting(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive first collides while the robot stands, and could have escaped when it
-    could know.
-    """
-    return runs["avoidable"] & runs["hit_waiting"]
-
-
-def unforeseen(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive collides and the robot could not know of it before."""
-    return collided(runs, problems) & runs["known_at"].isna()
-
-
-def warning(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Steps (n,) from when the robot could know of its first collision until then."""
-    return runs["collision_at"] - runs["known_at"]
-
-
-def gap_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Time of arrival over the earliest one of any drive of the experiment and of the search that
-    knows the future, minus 1 (n,).
-    """
-    return runs["arrival"] / runs["best_arrival"] - 1
-
-
-def gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Time of arrival over that before which no robot arrives, minus 1 (n,)."""
-    return runs["arrival"] / runs["least_arrival"] - 1
+def over(column: str, bound: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """A column over one that bounds it from below, minus 1 (n,)."""
+    return runs[column] / runs[bound] - 1
 
 
 def finished_by_all(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:

@@ -164,6 +164,9 @@ def _of_path(
 _CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
 _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 
+_GAP_ARRIVAL = partial(measures.over, "arrival", "best_arrival")
+_GAP_LEAST_ARRIVAL = partial(measures.over, "arrival", "least_arrival")
+
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "final value of the planner's objective", False),
     "length": Metric("u", "exact arc length", True, least="bound"),
@@ -179,7 +182,10 @@ METRICS: dict[str, Metric] = {
     ),
     "claimed_feasible": _count("the planner's own test of the path"),
     "feasible": _count("the certified checker's test of the path"),
-    "failed": _count("without a path that the certified checker accepts", measures.failed),
+    "failed": _count(
+        "without a path that the certified checker accepts",
+        lambda runs, _: ~runs["feasible"].astype(bool),
+    ),
     "falsely_claimed": _count(
         "free by the planner's own test, colliding by the checker's",
         partial(measures.disagrees, True),
@@ -231,7 +237,11 @@ METRICS: dict[str, Metric] = {
     ),
     "cpu_s": Metric("s", "CPU seconds of the run alone", False, least=0.0),
     "gap": Metric(
-        "-", "length / exact shortest length of the problem - 1", True, measures.gap, least=0.0
+        "-",
+        "length / exact shortest length of the problem - 1",
+        True,
+        partial(measures.over, "length", "bound"),
+        least=0.0,
     ),
     "gap_best": Metric(
         "-",
@@ -278,7 +288,10 @@ METRICS: dict[str, Metric] = {
         step=1.0,
     ),
     "objective_best": Metric(
-        "u", "lowest objective of any generation", False, measures.lowest_objective
+        "u",
+        "lowest objective of any generation",
+        False,
+        lambda runs, _: measures.held_history(runs)[:, -1],
     ),
     "optimum": Metric("u", "least objective of all feasible paths of the planner's kind", False),
     "optimal": _count("whether the final path is feasible and optimal, by the planner's own test"),
@@ -366,14 +379,14 @@ METRICS: dict[str, Metric] = {
         "-",
         "length / length of the best known path of the same kind - 1",
         True,
-        measures.gap_reference,
+        lambda runs, _: runs["length"] / measures.reference(runs) - 1,
         needs=("reference",),
     ),
     "excess_reference": Metric(
         "u",
         "length - length of the best known path of the same kind",
         True,
-        measures.excess_reference,
+        lambda runs, _: runs["length"] - measures.reference(runs),
         needs=("reference",),
     ),
     "cells4": Metric(
@@ -444,20 +457,23 @@ METRICS: dict[str, Metric] = {
         on=("grid",),
     ),
     "history_mean": Metric(
-        "u", "mean over the generations of the best objective so far", False, measures.history_mean
+        "u",
+        "mean over the generations of the best objective so far",
+        False,
+        lambda runs, _: measures.held_history(runs).mean(axis=1),
     ),
     "deviation": Metric(
         "-",
         "absolute deviation of the length from the median of its condition and method, relative",
         True,
-        measures.deviation,
+        partial(measures.deviation, "length"),
     ),
     "work_deviation": Metric(
         "-",
         "absolute deviation of the evaluations from the "
         "median of their condition and method, relative",
         False,
-        measures.work_deviation,
+        partial(measures.deviation, "evaluations"),
     ),
     "distinct_chromosomes": Metric(
         "-", "different chromosomes in the population, mean over the generations", False
@@ -509,26 +525,29 @@ METRICS: dict[str, Metric] = {
     "replans": _count("plans after the first", least=0.0),
     "waits": Metric("steps", "how long the robot waits", False, least=0.0),
     "collision_steps": _count("steps in which the robot is in an obstacle", least=0.0),
-    "collided": _count("whether the robot is in an obstacle at any time", measures.collided),
+    "collided": _count(
+        "whether the robot is in an obstacle at any time",
+        lambda runs, _: runs["collision_at"].notna(),
+    ),
     "hit_waiting": _count("whether the robot waits when it first collides"),
     "avoidable": _count(
         "whether the robot could have escaped its first collision when it could know of it"
     ),
     "avoidable_waiting": _count(
         "whether it waits at a first collision that it could have escaped",
-        measures.avoidable_waiting,
+        lambda runs, _: runs["avoidable"] & runs["hit_waiting"],
         needs=("avoidable", "hit_waiting"),
     ),
     "unforeseen": _count(
         "whether the robot collides and could not know of it before",
-        measures.unforeseen,
+        lambda runs, _: runs["collision_at"].notna() & runs["known_at"].isna(),
         needs=("known_at",),
     ),
     "warning": Metric(
         "steps",
         "from when the robot could know of its first collision until then",
         False,
-        measures.warning,
+        lambda runs, _: runs["collision_at"] - runs["known_at"],
         least=0.0,
         needs=("known_at",),
     ),
@@ -542,14 +561,14 @@ METRICS: dict[str, Metric] = {
         "-",
         "arrival / earliest arrival of all drives and of the clairvoyant search - 1",
         True,
-        measures.gap_arrival,
+        _GAP_ARRIVAL,
         needs=("arrival",),
     ),
     "gap_least_arrival": Metric(
         "-",
         "arrival / lower bound on the arrival - 1",
         True,
-        measures.gap_least_arrival,
+        _GAP_LEAST_ARRIVAL,
         least=0.0,
         needs=("arrival",),
     ),
@@ -557,7 +576,7 @@ METRICS: dict[str, Metric] = {
         "-",
         "gap_arrival where all methods of the table arrive",
         False,
-        partial(measures.paired, measures.gap_arrival),
+        partial(measures.paired, _GAP_ARRIVAL),
         among_rows=True,
         needs=("arrival",),
     ),
@@ -565,7 +584,7 @@ METRICS: dict[str, Metric] = {
         "-",
         "gap_least_arrival where all methods of the table arrive",
         False,
-        partial(measures.paired, measures.gap_least_arrival),
+        partial(measures.paired, _GAP_LEAST_ARRIVAL),
         among_rows=True,
         least=0.0,
         needs=("arrival",),
