@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 
 
 class Options(Comparing):
-    """Keys of a check."""
-
     secondary: Literal[True] = Field(None, description=SECONDARY)
     paired: Flag = Field(None, description=PAIRED)
     groups: listed(Group, least=2) = Field(

@@ -48,8 +48,6 @@ if TYPE_CHECKING:
 
 
 class Options(Comparing):
-    """Keys of a check."""
-
     against: ClassVar[bool] = True
 
     secondary: Literal[True] = Field(None, description=SECONDARY)

@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 
 
 class Options(Check):
-    """Keys of a check."""
-
     name: Function = Field(
         description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`"
     )

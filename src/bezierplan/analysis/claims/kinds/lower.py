@@ -78,8 +78,6 @@ EFFECT = BETWEEN_GROUPS
 
 
 class Options(Comparing):
-    """Keys of a check."""
-
     against: ClassVar[bool] = True
 
     secondary: Literal[True] = Field(None, description=SECONDARY)

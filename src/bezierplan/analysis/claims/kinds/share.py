@@ -63,8 +63,6 @@ class Event(Model):
 
 
 class Options(OfRuns):
-    """Keys of a check."""
-
     secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     event: Event = Field(

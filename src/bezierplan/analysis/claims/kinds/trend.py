@@ -44,8 +44,6 @@ if TYPE_CHECKING:
 
 
 class Options(OfRuns):
-    """Keys of a check."""
-
     cells_key: ClassVar[str | None] = "x"
 
     paired: Flag = Field(None, description=PAIRED)
