@@ -201,6 +201,17 @@ class TablePanel(Panel):
         return select(sources.table(self), self.where).copy()
 
 
+class MayPrint:
+    """A panel that draws published numbers if its key `printed` names a table of them. It does not
+    declare the key: each kind describes its own.
+    """
+
+    @property
+    def published_drawn(self) -> bool:
+        """Whether published numbers are drawn."""
+        return self.printed is not None
+
+
 class Pick(Model):
     """One run."""
 
@@ -258,6 +269,19 @@ def exactly_one(panel: Model, *keys: str) -> None:
     given = [key for key in keys if key in panel.model_fields_set]
     if len(given) != 1:
         raise wrong(f"{' and '.join(given) or 'neither'}: expected either {' or '.join(keys)}")
+
+
+def only(runs: pd.DataFrame, column: str) -> Any:
+    """The one value of a column of the runs that a panel shows. Raises ValueError if there are
+    others.
+    """
+    values = list(runs[column].unique())
+    if len(values) != 1:
+        raise ValueError(
+            f"the panel needs runs of exactly one {column}, not of {len(values)} {values}; see its "
+            "`where`"
+        )
+    return values[0]
 
 
 def kind_module(name: str) -> ModuleType:

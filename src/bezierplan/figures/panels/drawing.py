@@ -58,8 +58,6 @@ _DOTS = {
 
 
 class Options(TablePanel):
-    """Keys of a panel."""
-
     x_label: Line = Field(None, description="what the panel runs along, with its unit")
     y_label: Line = Field(None, description="what the panel's height shows, with its unit")
 

@@ -14,9 +14,19 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, View, exactly_one
+from bezierplan.figures.panels import (
+    PICK,
+    MayPrint,
+    Note,
+    Pick,
+    RunsPanel,
+    Sources,
+    View,
+    exactly_one,
+    only,
+)
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.figures.panels.lines import axis_label, published
+from bezierplan.figures.panels.lines import axis_label, counts, published
 from bezierplan.geometry import curves
 from bezierplan.schema.checked import closest
 from bezierplan.schema.model import (
@@ -65,13 +75,7 @@ _NEAR_END = 0.25
 # Scale factor of marks in a narrow panel.
 NARROW_MARK = 0.6
 
-_CONTROL_POINT = {
-    "color": style.BLUE,
-    "marker": "o",
-    "markersize": 4.5,
-    "markerfacecolor": style.FREE,
-    "zorder": 5,
-}
+_CONTROL_POINT = style.mark("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
 
 # In the order of the legend.
 _LOOK = {
@@ -82,17 +86,14 @@ _LOOK = {
         "linestyle": (0, (4, 2)),
         "label": "control points and polygon",
     },
-    "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
-    "nodes": {**_CONTROL_POINT, "linestyle": "", "label": "nodes"},
-    "occupied": {
-        **_CONTROL_POINT,
-        "linestyle": "",
-        "markersize": 7,
-        "markerfacecolor": style.AMBER,
-        "marker": "D",
-        "label": "control point in an occupied cell",
-        "zorder": 5.5,
-    },
+    "points": {**_CONTROL_POINT, "label": "control points"},
+    "nodes": {**_CONTROL_POINT, "label": "nodes"},
+    "occupied": style.mark(
+        *("D", 7, style.BLUE),
+        markerfacecolor=style.AMBER,
+        label="control point in an occupied cell",
+        zorder=5.5,
+    ),
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "optimum": {
@@ -102,14 +103,7 @@ _LOOK = {
         "label": "shortest between cell centres",
         "zorder": 3.5,
     },
-    "collision": {
-        "color": style.BLACK,
-        "linestyle": "",
-        "marker": "X",
-        "markersize": 8,
-        "label": "first collision",
-        "zorder": 6,
-    },
+    "collision": style.mark("X", 8, style.BLACK, label="first collision", zorder=6),
     "start": workspaces.START,
     "target": workspaces.TARGET,
 }
@@ -144,21 +138,13 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     from bezierplan.analysis.results import pick as pick_run
 
     runs = results.runs
-    for column in ("problem", "method"):
-        found = list(runs[column].unique())
-        if len(found) != 1:
-            raise ValueError(
-                f"a panel that shows one run needs runs of exactly one {column}, not of "
-                f"{len(found)} {found}; see its `where`"
-            )
+    names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
     having = (
         slice(None)
         if pick.having is None
         else metrics.values(runs, pick.having, results.problems) > 0
     )
     run = pick_run(runs[having], pick.plain("having"))
-    names = {"problem": runs["problem"].iloc[0], "method": runs["method"].iloc[0]}
-    names |= {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
     if run is None:
         return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
     return run, names | {
@@ -202,7 +188,7 @@ class Explicit(Model):
     )
 
 
-class Options(RunsPanel):
+class Options(MayPrint, RunsPanel):
     """Keys of a panel: of picked runs, or of an explicit path."""
 
     to_scale: ClassVar[bool] = True
@@ -260,11 +246,6 @@ class Options(RunsPanel):
         min_length=4,
         max_length=4,
     )
-
-    @property
-    def published_drawn(self) -> bool:
-        """Whether published numbers are drawn."""
-        return self.printed is not None
 
     def source(self, sources: Sources) -> Results | None:
         """Runs; nothing for an explicit path."""
@@ -441,10 +422,7 @@ def _clearance(results: Results, run: pd.Series | None) -> float:
 
 def _shortest_printed(results: Results, name: str) -> float:
     """The shortest length in a published table for the runs; NaN without one."""
-    table = results.published[results.published["table"] == name]
-    return next(
-        iter(published(results._replace(published=table), results.runs, "length", "min")), np.nan
-    )
+    return next(iter(published(results, results.runs, "length", "min", name)), np.nan)
 
 
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> np.ndarray:
@@ -568,20 +546,11 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
     for value, look, width in zip(values, style.lines(values, scene.looks), widths):
         rows = frame[frame[hue] == value]
-        draw_parts(
-            axes,
-            rows[rows["part"] == "collision"],
-            narrow=scene.narrow,
-            clip=options.view is not None,
-        )
-        path = rows[rows["part"] == "path"]
+        collision, path = (rows[rows["part"] == part] for part in ("collision", "path"))
+        draw_parts(axes, collision, narrow=scene.narrow, clip=options.view is not None)
         name = style.printed(value, hue, scene.labels)
-        axes.plot(
-            path["x"],
-            path["y"],
-            zorder=3,
-            **look | {"marker": "", "label": name, "linewidth": width},
-        )
+        line = look | {"marker": "", "label": name, "linewidth": width}
+        axes.plot(path["x"], path["y"], zorder=3, **line)
         clauses.append(
             f"{name} {_decimal(rows['measure'].iloc[0])}" if len(path) else f"{name} no path"
         )

@@ -39,8 +39,6 @@ _AXES = {
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     cost: Literal["length", "evaluations", "cpu_s"] = Field(
         description="what is compared: length (of the median run), or the expected evaluations or "
         "cpu_s to a path within a "
@@ -98,7 +96,6 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     end = max(frame["ratio"].max(), 1.01) ** _ROOM
     methods = style.in_order(frame["method"], options.where)
     for number, (method, look) in enumerate(zip(methods, style.lines(methods, scene.looks))):

@@ -17,7 +17,7 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells
 from bezierplan.workspaces.polygons import Polygons
-from bezierplan.workspaces.problem import Workspace
+from bezierplan.workspaces.problem import Problem, Workspace
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,22 +44,8 @@ _OUTLINE = {
     "zorder": 3,
 }
 
-START = {
-    "color": style.BLACK,
-    "linestyle": "",
-    "marker": "s",
-    "markersize": 7,
-    "label": "start",
-    "zorder": 4.5,
-}
-TARGET = {
-    "color": style.BLACK,
-    "linestyle": "",
-    "marker": "*",
-    "markersize": 12,
-    "label": "target",
-    "zorder": 4.5,
-}
+START = style.mark("s", 7, style.BLACK, label="start", zorder=4.5)
+TARGET = style.mark("*", 12, style.BLACK, label="target", zorder=4.5)
 
 # A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes
 # suffice.
@@ -79,8 +65,6 @@ _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
 class Options(Panel):
-    """Keys of a panel."""
-
     to_scale: ClassVar[bool] = True
 
     workspace: Described = Field(description="the name of a workspace")
@@ -138,6 +122,14 @@ def parts(workspace: Workspace) -> pd.DataFrame:
     return _table(workspace.bounds, _shapes(workspace))
 
 
+def ends(problem: Problem) -> pd.DataFrame:
+    """Start and target of a problem: rows with part, x and y."""
+    import pandas as pd
+
+    places = [("start", *problem.start), ("target", *problem.target)]
+    return pd.DataFrame(places, columns=["part", "x", "y"])
+
+
 def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
     return _discs(workspace) if isinstance(workspace, Circles) else _rings(workspace)
 
@@ -191,15 +183,7 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
     import pandas as pd
 
     rings = [
-        pd.DataFrame(
-            {
-                "part": "ring",
-                "x": points[:, 0],
-                "y": points[:, 1],
-                "obstacle": obstacle,
-                "ring": ring,
-            }
-        )
+        pd.DataFrame(points, columns=["x", "y"]).assign(part="ring", obstacle=obstacle, ring=ring)
         for obstacle, outline in enumerate(workspace.obstacles)
         for ring, points in enumerate(outline)
     ]
