@@ -328,15 +328,10 @@ def memory(
         for each in sides
     ]
     fields = [(each, count, random_field.from_circles(circles)) for each, count, circles in empty]
+    gravel = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
     for count in obstacles:
-        described = {
-            "side": side,
-            "start": [0, 0],
-            "target": [side, side],
-            "obstacles": count,
-            "layout": 0,
-        }
-        gravel = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
+        described = {"side": side, "start": [0, 0], "target": [side, side]}
+        described |= {"obstacles": count, "layout": 0}
         fields.append((side, count, random_field.field(gravel, described, "elhoseny2017/gravel")))
     rows = []
     for length, count, grid in fields:
@@ -396,35 +391,25 @@ def radius_fit(published: "Published", *, radii: list[float]) -> pd.DataFrame:
     rows = []
     for (side, route), own in printed.groupby(["side", "route"]):
         lengths = own.set_index("obstacles")["value"]
-        rows.append(
-            {
-                "lengths": f"printed, {route}",
-                "side": side,
-                **{f"{n} obstacles": lengths[n] for n in numbers},
-            }
-        )
+        printed_lengths = {f"{n} obstacles": lengths[n] for n in numbers}
+        rows.append({"lengths": f"printed, {route}", "side": side, **printed_lengths})
     for name, radius in [("expected", radius) for radius in radii] + [("least error", best)]:
         for side in _sides(published).values():
             cells, share = _errors(printed, side, radius)
-            expected = {
-                f"{n} obstacles": round(expected_length(side, radius, n), 1) for n in numbers
-            }
-            error = {
-                "mean error (cell)": round(cells, 2),
-                "mean error / mean length": round(share, 4),
-            }
             rows.append(
-                {"lengths": name, "radius / side": radius, "side": side, **expected, **error}
+                {
+                    "lengths": name,
+                    "radius / side": radius,
+                    "side": side,
+                    **{
+                        f"{n} obstacles": round(expected_length(side, radius, n), 1)
+                        for n in numbers
+                    },
+                    "mean error (cell)": round(cells, 2),
+                    "mean error / mean length": round(share, 4),
+                }
             )
-    columns = [
-        "lengths",
-        "radius / side",
-        "side",
-        *(f"{n} obstacles" for n in numbers),
-        "mean error (cell)",
-        "mean error / mean length",
-    ]
-    return pd.DataFrame(rows)[columns]
+    return pd.DataFrame(rows)[list(rows[-1])]
 
 
 def radius_lengths(published: "Published", *, radii: list[float]) -> pd.DataFrame:
@@ -435,13 +420,8 @@ def radius_lengths(published: "Published", *, radii: list[float]) -> pd.DataFram
     printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
     counts = np.arange(printed["obstacles"].min(), printed["obstacles"].max() + 1)
     expected = [
-        pd.DataFrame(
-            {
-                "side": side,
-                "lengths": f"R = {radius:g} N",
-                "obstacles": counts,
-                "cells4": expected_length(side, radius, counts),
-            }
+        pd.DataFrame({"obstacles": counts, "cells4": expected_length(side, radius, counts)}).assign(
+            side=side, lengths=f"R = {radius:g} N"
         )
         for side in _sides(published).values()
         for radius in radii
@@ -454,17 +434,12 @@ def radius_errors(published: "Published") -> pd.DataFrame:
     side, relative_error.
     """
     printed = _printed_lengths(published)
-    return pd.DataFrame(
-        [
-            {
-                "radius": thousandths / 1000,
-                "side": side,
-                "relative_error": _errors(printed, side, thousandths / 1000)[1],
-            }
-            for side in _sides(published).values()
-            for thousandths in range(5, 81)
-        ]
-    )
+    rows = [
+        (thousandths / 1000, side, _errors(printed, side, thousandths / 1000)[1])
+        for side in _sides(published).values()
+        for thousandths in range(5, 81)
+    ]
+    return pd.DataFrame(rows, columns=["radius", "side", "relative_error"])
 
 
 # --------------------------------------------------------------------------------------------------
@@ -591,13 +566,8 @@ def validation(
     ends = tuple(start), tuple(target)
     workspace = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
     for number in itertools.count():
-        described = {
-            "side": side,
-            "start": ends[0],
-            "target": ends[1],
-            "obstacles": obstacles,
-            "layout": number,
-        }
+        described = {"side": side, "start": ends[0], "target": ends[1]}
+        described |= {"obstacles": obstacles, "layout": number}
         grid = random_field.field(workspace, described, "elhoseny2017/figure4")
         drawn = np.random.default_rng(number).integers(0, side + 1, (points, 2))
         judged = verdicts(drawn, grid, least_distance)

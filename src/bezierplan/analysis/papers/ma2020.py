@@ -120,11 +120,11 @@ def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
     The half diagonals from start and to target count as one diagonal move. The number of straight
     moves is even, and with s straight and d diagonal moves, s + 2 d is at least twice the side.
     """
-    found = []
-    for diagonal in range(1, int(length / math.sqrt(2)) + 2):
-        for straight in range(max(0, 2 * side - 2 * diagonal), int(length) + 2, 2):
-            found.append((abs(straight + diagonal * math.sqrt(2) - length), straight, diagonal))
-    return min(found)[1:]
+    return min(
+        (abs(straight + diagonal * math.sqrt(2) - length), straight, diagonal)
+        for diagonal in range(1, int(length / math.sqrt(2)) + 2)
+        for straight in range(max(0, 2 * side - 2 * diagonal), int(length) + 2, 2)
+    )[1:]
 
 
 def lattice_lengths(published: "Published") -> pd.DataFrame:

@@ -420,14 +420,13 @@ def local_minima(values: np.ndarray) -> np.ndarray:
     """Which values of a grid (n, m) are below all eight neighbours, never those at its edge: (n,
     m).
     """
-    inner = values[1:-1, 1:-1]
-    rows, columns = inner.shape
-    lower = np.ones(inner.shape, dtype=bool)
-    for i in range(3):
-        for j in range(3):
-            if (i, j) != (1, 1):
-                lower &= inner < values[i : i + rows, j : j + columns]
-    return np.pad(lower, 1)
+    from scipy import ndimage
+
+    around = np.ones((3, 3), dtype=bool)
+    around[1, 1] = False
+    return values < ndimage.minimum_filter(
+        values.astype(float), footprint=around, mode="constant", cval=-np.inf
+    )
 
 
 def valleys(values: np.ndarray) -> np.ndarray:
