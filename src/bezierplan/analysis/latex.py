@@ -76,11 +76,7 @@ def environment(captioned: Captioned) -> str:
     sides = "".join("r" if _is_number(table[column]) else "l" for column in table)
     cells = map(_row, table.itertuples(index=False))
     rows = ["\\toprule", *_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]
-    body = [
-        f"\\begin{{tabular}}{{{sides}}}",
-        *(f"  {row}" for row in rows),
-        "\\end{tabular}",
-    ]
+    body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in rows), "\\end{tabular}"]
     if len(table.columns) > _MOST_COLUMNS:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
     head = [

@@ -149,6 +149,11 @@ def _count(
     return Metric("-", meaning, False, compute, step=1.0, **more)
 
 
+def _generation(meaning: str, compute: Callable[..., np.ndarray]) -> Metric:
+    """The number of a generation of every run."""
+    return Metric("generation", meaning, False, compute, least=0.0, step=1.0)
+
+
 def _of_path(
     unit: str,
     meaning: str,
@@ -249,29 +254,17 @@ METRICS: dict[str, Metric] = {
         True,
         measures.gap_best,
     ),
-    "generation_improved": Metric(
-        "generation",
+    "generation_improved": _generation(
         "last generation that improved the objective",
-        False,
         partial(measures.first_generation_within, 0.0),
-        least=0.0,
-        step=1.0,
     ),
-    "generation_1pct": Metric(
-        "generation",
+    "generation_1pct": _generation(
         "first generation within 1 % of the run's final objective",
-        False,
         partial(measures.first_generation_within, 0.01),
-        least=0.0,
-        step=1.0,
     ),
-    "generation_5pct": Metric(
-        "generation",
+    "generation_5pct": _generation(
         "first generation within 5 % of the run's final objective",
-        False,
         partial(measures.first_generation_within, 0.05),
-        least=0.0,
-        step=1.0,
     ),
     "improvement_30": Metric(
         "-",
@@ -279,13 +272,9 @@ METRICS: dict[str, Metric] = {
         False,
         partial(measures.improvement_by, 30),
     ),
-    "generation_90pct_improved": Metric(
-        "generation",
+    "generation_90pct_improved": _generation(
         "first generation by which nine tenths of the run's improvement of the objective are made",
-        False,
         partial(measures.first_generation_improved_by, 0.9),
-        least=0.0,
-        step=1.0,
     ),
     "objective_best": Metric(
         "u",

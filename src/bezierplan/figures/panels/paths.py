@@ -112,13 +112,11 @@ _LOOK = {
 # Cells that differ from those of another problem.
 _CHANGED = {
     "appeared": {
-        "facecolor": "none",
         "edgecolor": style.AMBER,
         "hatch": "////",
         "label": "occupied since the change",
     },
     "vanished": {
-        "facecolor": "none",
         "edgecolor": style.BLUE,
         "linestyle": (0, (2, 1)),
         "hatch": "....",
@@ -139,12 +137,9 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
 
     runs = results.runs
     names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
-    having = (
-        slice(None)
-        if pick.having is None
-        else metrics.values(runs, pick.having, results.problems) > 0
-    )
-    run = pick_run(runs[having], pick.plain("having"))
+    if pick.having is not None:
+        runs = runs[metrics.values(runs, pick.having, results.problems) > 0]
+    run = pick_run(runs, pick.plain("having"))
     if run is None:
         return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
     return run, names | {
@@ -313,18 +308,16 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             pick=options.pick.plain(),
             control="none",
         )
-        frames = [
-            data(results._replace(runs=runs), alone).assign(**{options.hue: value})
-            for value, runs in groups
-        ]
-        numbers = (
-            metrics.values(results.runs, options.measure, results.problems)
-            .groupby(results.runs["id"])
-            .first()
+        frame = pd.concat(
+            [
+                data(results._replace(runs=runs), alone).assign(**{options.hue: value})
+                for value, runs in groups
+            ],
+            ignore_index=True,
         )
-        return pd.concat(frames, ignore_index=True).assign(
-            measure=lambda frame: frame["run"].map(numbers)
-        )
+        numbers = metrics.values(results.runs, options.measure, results.problems)
+        by_run = numbers.groupby(results.runs["id"]).first()
+        return frame.assign(measure=frame["run"].map(by_run))
     run, names = picked(results, options.pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
@@ -333,7 +326,8 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     if options.bare:
         return table(drawn).assign(problem=problem.name)
     if options.printed is not None and results.published is not None:
-        names["printed"] = _shortest_printed(results, options.printed)
+        printed = published(results, results.runs, "length", "min", options.printed)
+        names["printed"] = next(iter(printed), np.nan)
     if options.band is not None:
         if not isinstance(problem.workspace, Grid):
             raise ValueError(f"band: {problem.name}: not a grid, and has no occupied cells")
@@ -420,11 +414,6 @@ def _clearance(results: Results, run: pd.Series | None) -> float:
     )
 
 
-def _shortest_printed(results: Results, name: str) -> float:
-    """The shortest length in a published table for the runs; NaN without one."""
-    return next(iter(published(results, results.runs, "length", "min", name)), np.nan)
-
-
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> np.ndarray:
     """Those of points (n, 2), in units, that lie in occupied cells: (k, 2)."""
     cells = [grid.cell_of(*point) for point in points]
@@ -466,9 +455,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
-        note = (
-            Note() if options.explicit is not None or options.bare else _note(frame, workspace.unit)
-        )
+        of_run = options.explicit is None and not options.bare
+        note = _note(frame, workspace.unit) if of_run else Note()
         draw_parts(axes, frame, narrow=scene.narrow, clip=options.view is not None)
     lines = frame.loc[frame["part"].isin(["path", "bound", "optimum"]), ["x", "y"]]
     for part, letter in zip(("start", "target"), options.letters or ()):
@@ -489,10 +477,9 @@ def _draw_band(axes: Axes, grid: Grid, width: float) -> None:
     rows, columns = np.nonzero(grid.occupied)
     x, y = grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows
     cells = shapely.union_all(shapely.box(x, y, x + grid.cell, y + grid.cell))
+    look = {"facecolor": style.LIGHT_BLUE, "edgecolor": "none", "zorder": 0.6}
     for part in shapely.get_parts(shapely.difference(shapely.buffer(cells, width), cells)):
-        axes.add_patch(
-            patch_from_polygon(part, facecolor=style.LIGHT_BLUE, edgecolor="none", zorder=0.6)
-        )
+        axes.add_patch(patch_from_polygon(part, **look))
 
 
 def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
@@ -507,9 +494,8 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
             for centre in centres
         ]
         if cells:
-            axes.add_collection(
-                PatchCollection(cells, zorder=1, linewidth=0.9, **look), autolim=False
-            )
+            shapes = PatchCollection(cells, facecolor="none", zorder=1, linewidth=0.9, **look)
+            axes.add_collection(shapes, autolim=False)
 
 
 def _write_letter(axes: Axes, point: np.ndarray, letter: str, lines: np.ndarray) -> None:
@@ -576,13 +562,10 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> 
         if part == "path" and "optimum" in parts:
             look = look | {"linewidth": _WIDE_PATH}
         points = frame.loc[frame["part"] == part, ["x", "y"]]
+        if narrow and "markersize" in look:
+            look = look | {"markersize": NARROW_MARK * look["markersize"]}
         if not points.empty:
-            size = (
-                {"markersize": NARROW_MARK * look["markersize"]}
-                if narrow and "markersize" in look
-                else {}
-            )
-            axes.plot(points["x"], points["y"], clip_on=clip, **(look | size))
+            axes.plot(points["x"], points["y"], clip_on=clip, **look)
 
 
 def _note(frame: pd.DataFrame, unit: str) -> Note:

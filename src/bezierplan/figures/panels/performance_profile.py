@@ -51,10 +51,8 @@ class Options(RunsPanel):
     @model_validator(mode="after")
     def _check_within(self) -> Options:
         if (self.cost == "length") == ("within" in self.model_fields_set):
-            is_length = self.cost == "length"
-            why = (
-                "is for evaluations and cpu_s alone" if is_length else f"cost {self.cost} needs it"
-            )
+            alone = self.cost == "length"
+            why = "is for evaluations and cpu_s alone" if alone else f"cost {self.cost} needs it"
             raise wrong(f"within: {why}")
         return self
 
@@ -122,15 +120,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         frame.loc[(frame["method"] == method) & (frame["ratio"] == 1), "share"].max()
         for method in methods
     ]
-    at_one = seen.extremes(
-        "share of problems on which it is the best", dict(zip(names, np.nan_to_num(best)))
+    of_best = dict(zip(names, np.nan_to_num(best)))
+    at_one = seen.extremes("share of problems on which it is the best", of_best)
+    told = (
+        f"{words}; solved by the median run of any method"
+        if options.cost == "length"
+        else f"to within {100 * options.within:g} % of the exact shortest path; {words}, solved by "
+        "any method"
     )
-    if options.cost == "length":
-        return Note(
-            "", f"{words}; solved by the median run of any method: {counts['solved']:g}", at_one
-        )
-    target = f"to within {100 * options.within:g} % of the exact shortest path"
-    return Note("", f"{target}; {words}, solved by any method: {counts['solved']:g}", at_one)
+    return Note("", f"{told}: {counts['solved']:g}", at_one)
 
 
 def _name_ratios(axes: Axes, end: float) -> None:

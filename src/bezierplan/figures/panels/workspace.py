@@ -229,12 +229,9 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
     cells = frame[frame["part"].isin(_CELLS)]
-    if (
-        "height" not in frame
-        and len(cells)
-        and np.ptp(corners["x"]) * np.ptp(corners["y"])
-        > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
-    ):
+    area = np.ptp(corners["x"]) * np.ptp(corners["y"])
+    are_many = len(cells) and area > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
+    if are_many and "height" not in frame:
         _draw_image(axes, cells, corners)
     else:
         for part, look in _CELLS.items():
@@ -255,10 +252,8 @@ def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
     corners = (
         cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
     )
-    axes.add_collection(
-        PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look),
-        autolim=False,
-    )
+    shapes = PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look)
+    axes.add_collection(shapes, autolim=False)
 
 
 def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
@@ -268,23 +263,17 @@ def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
 
     side = cells["size"].iloc[0]
     (left, right), (bottom, top) = corners["x"], corners["y"]
-    image = np.full(
-        (round((top - bottom) / side), round((right - left) / side), 3),
-        to_rgb(_CELLS["free"]["facecolor"]),
-    )
+    shape = round((top - bottom) / side), round((right - left) / side), 3
+    image = np.full(shape, to_rgb(_CELLS["free"]["facecolor"]))
     for part in ("occupied", "surplus"):
         own = cells[cells["part"] == part]
-        image[
-            ((own["y"] - bottom) // side).astype(int), ((own["x"] - left) // side).astype(int)
-        ] = to_rgb(_CELLS[part]["facecolor"])
+        row, column = ((own["y"] - bottom) // side), ((own["x"] - left) // side)
+        image[row.astype(int), column.astype(int)] = to_rgb(_CELLS[part]["facecolor"])
         if len(own):
-            # For the legend.
-            axes.add_collection(
-                PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part]), autolim=False
-            )
-    axes.imshow(
-        image, extent=(left, right, bottom, top), origin="lower", aspect="equal", zorder=0.5
-    )
+            legend = PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part])
+            axes.add_collection(legend, autolim=False)
+    extent = left, right, bottom, top
+    axes.imshow(image, extent=extent, origin="lower", aspect="equal", zorder=0.5)
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
