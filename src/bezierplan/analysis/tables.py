@@ -93,7 +93,8 @@ def cells(
             of_entry = positions[asked[value][positions]]
             # A run without a value counts nowhere.
             chosen = of_entry[~np.isnan(taken[value][of_entry])]
-            numbers, least, groups = taken[value][chosen], leasts[value], None
+            numbers = taken[value][chosen]
+            least, groups = leasts[value], None
             if units is not None:
                 own = units[chosen]
                 # Tuples, because pandas would expand lists of arrays.
