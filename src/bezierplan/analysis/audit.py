@@ -154,13 +154,13 @@ def cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[Cell]
     """The places of a table, each with all statistics of one metric."""
     keys = _keys(table)
     for _, rows in table.groupby([*keys, "metric"], dropna=False, sort=False):
-        place, metric = _place(rows.iloc[0], keys, "metric"), rows["metric"].iloc[0]
+        location, metric = _place(rows.iloc[0], keys, "metric"), rows["metric"].iloc[0]
         numbers = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(numbers.min()) if len(numbers) else None
         exact = (
             not METRICS[metric].feasible_only and metric not in selected and numbers.nunique() == 1
         )
-        yield Cell(item, place, metric, dict(zip(rows["statistic"], rows["printed"])), n, exact)
+        yield Cell(item, location, metric, dict(zip(rows["statistic"], rows["printed"])), n, exact)
 
 
 def of_cells(cell: Cell) -> list[dict]:
@@ -331,21 +331,21 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
         numbers = [possible.printed(text) for text in texts]
         added, total = sum(each.value for each in numbers), possible.rank_sum(count)
         told = f"{' + '.join(texts)} = {_text(added)}; {count} x {count + 1} / 2 = {total}"
-        place = _place(group.iloc[0], within, "metric") + ", all rows"
+        location = _place(group.iloc[0], within, "metric") + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
         fits = possible.are_ranks(numbers)
-        yield checked(item, place, rule, float(added), total, fits, told)
+        yield checked(item, location, rule, float(added), total, fits, told)
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
         for (_, row), number in zip(group.iterrows(), numbers):
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
             told = f"1 <= {row['printed']} <= {count}"
             of_row = _place(row, keys, "metric")
             yield checked(item, of_row, rule, row["value"], limit, fits, told)
-        yield from _against_means(item, place, group, objectives, keys)
+        yield from _against_means(item, location, group, objectives, keys)
 
 
 def _against_means(
-    item: str, place: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]
+    item: str, location: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]
 ) -> Iterator[dict]:
     """Pairs of rows whose mean ranks are in another order than their means."""
     both = ranks.merge(means, on=keys, suffixes=("", "_mean"))
@@ -366,7 +366,7 @@ def _against_means(
             "be, but seldom is"
         )
         told = "; ".join([f"{len(apart)} of {pairs} pairs", *apart])
-        yield checked(item, place, rule, len(apart), 0, None if apart else True, told)
+        yield checked(item, location, rule, len(apart), 0, None if apart else True, told)
 
 
 def _are_in_order(first: str, second: str) -> bool:

@@ -18,7 +18,7 @@ _RELATIONS = {
 
 def checked(
     item: str,
-    place: str,
+    location: str,
     rule: str,
     printed: float,
     limit: float,
@@ -28,10 +28,12 @@ def checked(
     """A row of an audit, with `COLUMNS` but for the study. consistent: None if the rule cannot
     tell.
     """
-    values = (item, place, rule, printed, float(limit), consistent, arithmetic)
+    values = (item, location, rule, printed, float(limit), consistent, arithmetic)
     return dict(zip(COLUMNS[1:], values, strict=True))
 
 
-def compared(item: str, place: str, rule: str, printed: float, relation: str, limit: float) -> dict:
+def compared(
+    item: str, location: str, rule: str, printed: float, relation: str, limit: float
+) -> dict:
     """The row of a number that should be <, <=, ==, >= or > than its limit."""
-    return checked(item, place, rule, printed, limit, bool(_RELATIONS[relation](printed, limit)))
+    return checked(item, location, rule, printed, limit, bool(_RELATIONS[relation](printed, limit)))

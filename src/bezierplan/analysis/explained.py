@@ -178,7 +178,7 @@ def explained_table(
     }
     parts = []
     for tried in of_parts:
-        own = [
+        settings_made = [
             {choice: each.interpretation[choice] for choice in each.interpretation.keys() - shared}
             for each in tried
         ]
@@ -189,7 +189,7 @@ def explained_table(
                 [each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0
             ),
             "tried": len(tried),
-            "settings": len(set(map(name_of, own))),
+            "settings": len(set(map(name_of, settings_made))),
             "missed_by": np.where(np.isinf(least), np.nan, least),
             "nearest": [name_of(tried[place].interpretation) for place in nearest],
         }

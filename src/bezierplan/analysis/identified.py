@@ -182,21 +182,21 @@ def of_table(
             if path is None:
                 continue
             tried.append(path)
-            place = ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"])
+            location = ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"])
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
-            yield checked(item, place, rule, row["value"], limit, fits, in_words(path))
+            yield checked(item, location, rule, row["value"], limit, fits, in_words(path))
         if tried:
             matched = sum(bool(path.paths) for path in tried)
             chance = at_least(matched, [path.chance for path in tried])
             told = (
                 f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
             )
-            place = ", ".join(
+            location = ", ".join(
                 f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
                 for key, wanted in entry.where.items()
             )
             rule, fits = f"{entry.because}: all numbers together", matched == len(tried) or None
-            yield checked(item, place, rule, matched, len(tried), fits, told)
+            yield checked(item, location, rule, matched, len(tried), fits, told)
 
 
 def at_least(count: int, chances: list[float]) -> float:

@@ -192,21 +192,21 @@ def _audit_lengths(published: "Published") -> Iterator[dict]:
     for table, side in _sides(published).items():
         cells = published[table]
         for cell in cells.itertuples():
-            place = f"route={cell.route}, obstacles={cell.obstacles}, method={cell.method}"
-            yield compared(table, place, least_rule, cell.value, ">=", DIAGONAL * side)
-            yield compared(table, place, most_rule, cell.value, "<=", 2 * side)
+            location = f"route={cell.route}, obstacles={cell.obstacles}, method={cell.method}"
+            yield compared(table, location, least_rule, cell.value, ">=", DIAGONAL * side)
+            yield compared(table, location, most_rule, cell.value, "<=", 2 * side)
         for (route, obstacles), column in cells.groupby(["route", "obstacles"]):
             lengths = column.set_index("method")["value"]
-            place = f"route={route}, obstacles={obstacles}, method="
+            location = f"route={route}, obstacles={obstacles}, method="
             prm, mga, ga = lengths["prm"], lengths["mga"], lengths["ga"]
             rule = "the text has PRM the longest"
-            yield compared(table, f"{place}prm", rule, prm, ">", lengths.drop("prm").max())
+            yield compared(table, f"{location}prm", rule, prm, ">", lengths.drop("prm").max())
             rule = "the text has the proposed method the shortest"
-            yield compared(table, f"{place}mga", rule, mga, "<", lengths.drop("mga").min())
+            yield compared(table, f"{location}mga", rule, mga, "<", lengths.drop("mga").min())
             if table == "table2":
                 rivals = lengths.drop(["mga", "ga"]).min()
                 rule = "the text has GA second"
-                yield checked(table, f"{place}ga", rule, ga, rivals, bool(mga < ga < rivals))
+                yield checked(table, f"{location}ga", rule, ga, rivals, bool(mga < ga < rivals))
 
 
 def _audit_times(published: "Published") -> Iterator[dict]:
@@ -220,18 +220,18 @@ def _audit_times(published: "Published") -> Iterator[dict]:
     rule = "the text has the proposed method cheaper than all others in all cases"
     for table, times in means.items():
         for (method, obstacles), time in times.drop("mga").items():
-            place = f"method=mga, obstacles={obstacles}, beside {method}"
-            yield compared(table, place, rule, times["mga", obstacles], "<", time)
+            location = f"method=mga, obstacles={obstacles}, beside {method}"
+            yield compared(table, location, rule, times["mga", obstacles], "<", time)
     both = "Tables 5 and 6 print the same time of"
     for obstacles in means["table5"]["mga"].index:
-        for rule, place, *methods in (
+        for rule, location, *methods in (
             (f"{both} the proposed method", "method=mga", "mga", "mga"),
             (f"{both} what both call GA", "method=GA", "mga_plain", "ga"),
         ):
             time, later = (
                 times[method, obstacles] for times, method in zip(means.values(), methods)
             )
-            yield compared("table5", f"{place}, obstacles={obstacles}", rule, time, "==", later)
+            yield compared("table5", f"{location}, obstacles={obstacles}", rule, time, "==", later)
 
 
 def _audit_example(published: "Published") -> Iterator[dict]:
@@ -292,8 +292,8 @@ def _growth(published: "Published") -> Iterator[dict]:
         f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how "
         "many of the printed can be such"
     )
-    place = "table2, table3", "method=mga"
-    yield compared(*place, rule, whole, "==", len(printed))
+    location = "table2, table3", "method=mga"
+    yield compared(*location, rule, whole, "==", len(printed))
     # The radius is fitted to these lengths.
     freedom = len(blocked_cells) - 1
     chi_square, limit = (
@@ -304,7 +304,7 @@ def _growth(published: "Published") -> Iterator[dict]:
         f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} "
         "degrees of freedom) and its limit at 5 %"
     )
-    yield checked(*place, rule, round(chi_square, 1), round(limit, 1), bool(chi_square <= limit))
+    yield checked(*location, rule, round(chi_square, 1), round(limit, 1), bool(chi_square <= limit))
 
 
 # --------------------------------------------------------------------------------------------------

@@ -218,15 +218,15 @@ def _audit_lengths(published: "Published") -> Iterator[dict]:
             for cell in lengths.itertuples()
         ]
         rule = "no path is shorter than the straight line"
-        for place, value in zip(places, lengths["value"]):
-            yield compared(name, place, rule, value, ">=", side * math.sqrt(2))
+        for location, value in zip(places, lengths["value"]):
+            yield compared(name, location, rule, value, ">=", side * math.sqrt(2))
         rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
         on_cells = lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")
-        for place, value in itertools.compress(zip(places, lengths["value"]), on_cells):
+        for location, value in itertools.compress(zip(places, lengths["value"]), on_cells):
             straight, diagonal = nearest_lattice_length(value, side)
             nearest = straight + diagonal * math.sqrt(2)
             fits = abs(value - nearest) <= LATTICE_TOLERANCE
-            yield checked(name, place, rule, value, nearest, fits)
+            yield checked(name, location, rule, value, nearest, fits)
 
 
 def _audit_sentences(published: "Published") -> Iterator[dict]:
@@ -252,8 +252,8 @@ def _audit_text(published: "Published") -> Iterator[dict]:
         share = parameters[workspace, "obstacle_coverage"] / 100
         cells = share * parameters[workspace, "grid_size"] ** 2
         whole = round(cells)
-        place = f"workspace={workspace}"
-        yield checked("parameters", place, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
+        location = f"workspace={workspace}"
+        yield checked("parameters", location, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
     # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
     heights = side + np.arange(1, side * side + 1) // side + 0.5
     rule = (
@@ -269,8 +269,8 @@ def _audit_text(published: "Published") -> Iterator[dict]:
         f"a curve is a quarter of the way along at t = {quarter:g}: share of the way of the curve "
         "with control points at 0, 0 and 1"
     )
-    place = "2, equation (1)"
-    yield checked("text", place, rule, quarter, share, abs(share - quarter) < 1e-9)
+    location = "2, equation (1)"
+    yield checked("text", location, rule, quarter, share, abs(share - quarter) < 1e-9)
     listed = int((published["parameters"]["parameter"] == "control_points").sum())
     rule = (
         "Data Availability: all required parameters are listed, here: the number of control points"

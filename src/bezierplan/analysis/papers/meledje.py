@@ -186,16 +186,16 @@ def _mutation(
         for up, across in itertools.product((-1, 0, 1), repeat=2):
             cell = grid.occupied.shape[1] * (row + up) + column + across
             if (up, across) != (0, 0) and not grid.occupied.flat[cell]:
-                place = grid.centre(int(cell))
-                marks.append(mark("dots", "muted", *place, group="tried", label="cells tried"))
+                centre = grid.centre(int(cell))
+                marks.append(mark("dots", "muted", *centre, group="tried", label="cells tried"))
     marks += along("dots", "third", first[1:k] + first[k + 1 : -1], group="others", label="node")
-    for role, label, place in (
+    for role, label, centre in (
         ("first", "node that changes", first[k]),
         ("accent", "node in its place", second[k]),
         ("start", "start", first[0]),
         ("target", "target", first[-1]),
     ):
-        marks.append(mark("dots", role, *place, group=role, label=label))
+        marks.append(mark("dots", role, *centre, group=role, label=label))
     return marks
 
 

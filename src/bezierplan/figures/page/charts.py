@@ -266,7 +266,7 @@ def _ratios(page: content.Page) -> Written | None:
         for part in (0, 1)
     )
     axis = {"values": ticks, "title": "ours / published", "format": "~g"}
-    one = {
+    equal = {
         "data": {"values": [{"one": 1}]},
         "mark": {"type": "rule", "color": _SOFT},
         # It crosses the whole chart: none of the channels of the others.
@@ -284,7 +284,7 @@ def _ratios(page: content.Page) -> Written | None:
         "data": {"values": rows},
         "height": _ROW * len({row["table"] for row in rows}),
         "encoding": {"y": y, "yOffset": above, "color": colour, "tooltip": {"field": "address"}},
-        "layer": [one, ranges, points],
+        "layer": [equal, ranges, points],
     }
     counted = sum(
         number.counted

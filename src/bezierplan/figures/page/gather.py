@@ -169,12 +169,12 @@ def _table(
     numbers: pd.DataFrame | None,
     labels: dict[str, str],
 ) -> content.Table:
-    place, spec = address(study, name), job.spec
+    table_address, spec = address(study, name), job.spec
     is_compared = isinstance(spec, Pivot) and spec.published
     file = f"{study}/tables/{name}{'.comparison' if is_compared else ''}.csv"
     table = read(folder / file)
     shown: dict[str, Any] = (
-        {"numbers": _numbers(place, table, spec, numbers, labels)}
+        {"numbers": _numbers(table_address, table, spec, numbers, labels)}
         if is_compared
         else {
             "columns": [str(column) for column in table],
@@ -182,7 +182,7 @@ def _table(
         }
     )
     return content.Table(
-        address=place, name=name, title=job.title, caption=job.caption, csv=file, **shown
+        address=table_address, name=name, title=job.title, caption=job.caption, csv=file, **shown
     )
 
 

@@ -150,8 +150,10 @@ def _of_groups(results: Results, hue: str, statistic: str, generations: int) -> 
 
     runs = results.runs.sort_values("id")
     frames = []
-    for value, own in runs.groupby(hue):
-        histories = np.array([_lengthened(history, generations) for history in own["history"]])
+    for value, group_runs in runs.groupby(hue):
+        histories = np.array(
+            [_lengthened(history, generations) for history in group_runs["history"]]
+        )
         low, high = _intervals(histories, statistic, f"convergence/{hue}={value}")
         columns = {
             "generation": range(generations),
@@ -159,7 +161,7 @@ def _of_groups(results: Results, hue: str, statistic: str, generations: int) -> 
             "low95": low,
             "high95": high,
         }
-        frames.append(pd.DataFrame(constants(runs) | {hue: value} | counts(own) | columns))
+        frames.append(pd.DataFrame(constants(runs) | {hue: value} | counts(group_runs) | columns))
     bound = runs["bound"].iloc[0] if runs["bound"].nunique() == 1 else np.nan
     return pd.concat(frames, ignore_index=True).assign(bound=bound)
 
