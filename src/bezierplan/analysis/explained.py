@@ -305,10 +305,9 @@ def section(
         "it lies in the central 95 % of these. An interpretation whose runs vary widely excludes "
         "nothing, so each count is given with the one expected by chance, if printed numbers of "
         "one kind are permuted within their table. Numbers of a quantity that the paper does not "
-        "define have no vote. "
-        "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` "
-        "for each printed "
-        "number, `<study>_leave_one_table_out.csv` for each table.",
+        "define have no vote. `<study>_interpretations.csv` has a row for each interpretation, "
+        "`<study>_explained.csv` for each printed number, `<study>_leave_one_table_out.csv` for "
+        "each table.",
     ]
     for study, own in interpretations.groupby("study", sort=False):
         others = (table[table["study"] == study] for table in (explained, leave_one_table_out))
@@ -377,8 +376,7 @@ def _most_likely(best: pd.Series, default: pd.Series, tried: int) -> str:
     if best["interpretation"] == DEFAULT:
         return (
             "The printed numbers are most likely from the experiment of the default "
-            f"interpretation: none of {tried} interpretations is "
-            "more likely. It has "
+            f"interpretation: none of {tried} interpretations is more likely. It has "
             f"{_counted(default)}."
         )
     level = (
@@ -393,9 +391,8 @@ def _most_likely(best: pd.Series, default: pd.Series, tried: int) -> str:
     )
     return (
         f"Of {tried} interpretations, the printed numbers are most likely from an experiment in "
-        "which these choices differ from ours: "
-        f"{best['in_words']} ({best['interpretation']}); {against}. It has "
-        f"{_counted(best)}{level}; the default has {_counted(default)}."
+        f"which these choices differ from ours: {best['in_words']} ({best['interpretation']}); "
+        f"{against}. It has {_counted(best)}{level}; the default has {_counted(default)}."
     )
 
 
@@ -439,10 +436,9 @@ def _beside_a_line(leave_one_table_out: pd.DataFrame) -> str:
         else "so the interpretation describes them better than such a line"
     )
     return (
-        f"A straight line in the column {along}, which predicts each number from the others of "
-        "its row, has a log-likelihood "
-        f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely "
-        f"interpretation: {verdict}."
+        f"A straight line in the column {along}, which predicts each number from the others of its "
+        f"row, has a log-likelihood {abs(difference):.1f} {'above' if difference < 0 else 'below'} "
+        f"that of the most likely interpretation: {verdict}."
     )
 
 

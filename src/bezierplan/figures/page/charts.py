@@ -296,9 +296,8 @@ def _ratios(page: content.Page) -> Written | None:
     zero = " (a ratio with 0 has no place)" if of else ""
     text = (
         f"Dots: {len(rows)}{of} published numbers, ours divided by the published one, on a "
-        f"logarithmic axis{zero}, one row per table; lines: the "
-        "range (95 %) that an experiment of the paper's size would print. A line that does not "
-        "reach 1 is a number that disagrees."
+        f"logarithmic axis{zero}, one row per table; lines: the range (95 %) that an experiment of "
+        "the paper's size would print. A line that does not reach 1 is a number that disagrees."
     )
     return "Ours over published, every number", text, spec
 

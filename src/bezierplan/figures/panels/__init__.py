@@ -73,8 +73,7 @@ class Note(NamedTuple):
 
 EACH = (
     "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, "
-    "with its own keys and those beside "
-    "`each`; `where` may be given in both"
+    "with its own keys and those beside `each`; `where` may be given in both"
 )
 
 
@@ -243,8 +242,7 @@ class Pick(Model):
 
 PICK = (
     "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
-    "with having: metric, only of those that "
-    "have more than 0 of it"
+    "with having: metric, only of those that have more than 0 of it"
 )
 
 

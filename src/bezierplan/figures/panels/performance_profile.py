@@ -41,8 +41,7 @@ _AXES = {
 class Options(RunsPanel):
     cost: Literal["length", "evaluations", "cpu_s"] = Field(
         description="what is compared: length (of the median run), or the expected evaluations or "
-        "cpu_s to a path within a "
-        "share of the exact bound"
+        "cpu_s to a path within a share of the exact bound"
     )
     within: Positive = Field(
         None, description="with evaluations and cpu_s, that share, a number above 0, such as 0.05"
