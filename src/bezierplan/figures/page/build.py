@@ -75,7 +75,6 @@ def html(page: content.Page, folder: Path) -> str:
         "heading": addresses.heading,
         "settings": settings,
         "json_text": _json_text,
-        "printed_key": printed_key,
     }
     drawn = charts.charts(page)
     environment.globals |= {

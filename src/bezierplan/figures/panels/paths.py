@@ -88,12 +88,8 @@ _LOOK = {
     },
     "points": {**_CONTROL_POINT, "label": "control points"},
     "nodes": {**_CONTROL_POINT, "label": "nodes"},
-    "occupied": style.mark(
-        *("D", 7, style.BLUE),
-        markerfacecolor=style.AMBER,
-        label="control point in an occupied cell",
-        zorder=5.5,
-    ),
+    "occupied": style.mark("D", 7, style.BLUE, markerfacecolor=style.AMBER, zorder=5.5)
+    | {"label": "control point in an occupied cell"},
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "optimum": {
