@@ -14,13 +14,14 @@ digits. `analysis.possible` has the closed forms.
 import importlib
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
 import pandas as pd
 
 from bezierplan.analysis import identified, possible
+from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked
 from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.possible import Printed
@@ -28,13 +29,10 @@ from bezierplan.analysis.results import published_table
 from bezierplan.analysis.table_kinds import Layout, Monotone
 from bezierplan.running import problems
 
-COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
-
 # Metrics that are path lengths or never less, and their statistics that need not be the value of
 # any single path.
 _AT_LEAST_A_LENGTH = ("length", "objective")
 _SPREADS = ("std", "iqr", "range")
-_PRINTED = ("metric", "statistic", "n", "unit", "value")
 
 # From the lowest to the highest.
 _IN_ORDER = ("min", "quartile1", "median", "quartile3", "max")
@@ -58,7 +56,7 @@ def below_bound(
     that of the primary interpretation, or the only one of the experiment. Numbers that cover
     several problems are left out.
     """
-    rows = []
+    rows, rule = [], "a path is no shorter than the shortest path"
     for name, table in tables.items():
         keys = _keys(table)
         for _, row in table[
@@ -69,16 +67,9 @@ def below_bound(
             )
             if math.isnan(bound):
                 continue
-            rows.append(
-                {
-                    "item": name,
-                    "place": _place(row, keys, "metric", "statistic"),
-                    "rule": "a path is no shorter than the shortest path",
-                    "printed": row["value"],
-                    "limit": bound,
-                    "consistent": row["value"] + _half_a_digit(row["printed"]) >= bound,
-                }
-            )
+            place = _place(row, keys, "metric", "statistic")
+            fits = row["value"] + _half_a_digit(row["printed"]) >= bound
+            rows.append(checked(name, place, rule, row["value"], bound, fits))
     return rows
 
 
@@ -98,7 +89,7 @@ def _problem(place: dict, bounds: pd.DataFrame) -> str | None:
 
 def _keys(table: pd.DataFrame) -> list[str]:
     """The columns of a table of published numbers that tell its rows apart."""
-    return [column for column in table if column not in (*_PRINTED, "printed")]
+    return [column for column in table if column not in NOT_KEYS]
 
 
 def _place(row: pd.Series, keys: list[str], *more: str) -> str:
@@ -128,31 +119,17 @@ class Cell(NamedTuple):
     n: int | None
     exact: bool
 
+    @property
+    def inexact(self) -> str:
+        """Why numbers of some of the runs cannot be checked."""
+        return f"only some of the {self.n} runs count, and how many is not printed"
+
     def row(
         self, statistic: str, rule: str, limit: float, consistent: bool | None, arithmetic: str
     ) -> dict:
         """A row of the audit about one of its numbers."""
         place, value = f"{self.place}, statistic={statistic}", float(self.texts[statistic])
-        return _row(self.item, place, rule, value, limit, consistent, arithmetic)
-
-
-def _row(
-    item: str,
-    location: str,
-    rule: str,
-    printed: float,
-    limit: float,
-    consistent: bool | None,
-    arithmetic: str,
-) -> dict:
-    described = {
-        "item": item,
-        "place": location,
-        "rule": rule,
-        "printed": printed,
-        "limit": float(limit),
-    }
-    return described | {"consistent": consistent, "arithmetic": arithmetic}
+        return checked(self.item, place, rule, value, limit, consistent, arithmetic)
 
 
 def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, Layout]) -> list[dict]:
@@ -170,125 +147,89 @@ def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, Layout]) ->
         rows += of_ranks(name, table, layouts[name].columns)
         for rule in layouts[name].monotone:
             rows += of_orders(name, table, rule)
-    return rows + of_digits(tables)
+    return [*rows, *of_digits(tables)]
 
 
-def cells(item: str, table: pd.DataFrame, selected: list[str]) -> list[Cell]:
+def cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[Cell]:
     """The places of a table, each with all statistics of one metric."""
-    keys, cells_read = _keys(table), []
+    keys = _keys(table)
     for _, rows in table.groupby([*keys, "metric"], dropna=False, sort=False):
-        first, metric = rows.iloc[0], rows["metric"].iloc[0]
+        location, metric = _place(rows.iloc[0], keys, "metric"), rows["metric"].iloc[0]
         numbers = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(numbers.min()) if len(numbers) else None
         exact = (
             not METRICS[metric].feasible_only and metric not in selected and numbers.nunique() == 1
         )
-        cells_read.append(
-            Cell(
-                item,
-                _place(first, keys, "metric"),
-                metric,
-                dict(zip(rows["statistic"], rows["printed"])),
-                n,
-                exact,
-            )
-        )
-    return cells_read
+        yield Cell(item, location, metric, dict(zip(rows["statistic"], rows["printed"])), n, exact)
 
 
 def of_cells(cell: Cell) -> list[dict]:
     """What the statistics of one cell can be, by themselves and beside each other."""
     numbers = {name: possible.printed(text) for name, text in cell.texts.items()}
-    rows = _in_range(cell, numbers) + _of_steps(cell, numbers) + _in_order(cell, numbers)
-    return rows + (_of_spread(cell, numbers) if "std" in numbers and cell.n and cell.n > 1 else [])
+    parts = [_in_range, _of_steps, _in_order]
+    if "std" in numbers and cell.n and cell.n > 1:
+        parts.append(_of_spread)
+    return [row for part in parts for row in part(cell, numbers)]
 
 
-def _in_range(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
+def _in_range(cell: Cell, numbers: dict[str, Printed]) -> Iterator[dict]:
     """No mean or quantile lies beyond what a single run can have, for metrics that have two
     ends.
     """
     metric = METRICS[cell.metric]
     if isinstance(metric.least, str) or math.isinf(metric.most) or math.isinf(metric.least):
-        return []
+        return
     rule = f"a run has from {metric.least:g} to {metric.most:g} {metric.meaning}"
-    rows = []
     for name, number in numbers.items():
         if name in ("mean", *_IN_ORDER):
             beyond = number.high < metric.least or number.low > metric.most
             limit = metric.least if number.high < metric.least else metric.most
             arithmetic = f"{metric.least:g} <= {cell.texts[name]} <= {metric.most:g}"
-            rows.append(cell.row(name, rule, limit, not beyond, arithmetic))
-    return rows
+            yield cell.row(name, rule, limit, not beyond, arithmetic)
 
 
-def _of_steps(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
+def _of_steps(cell: Cell, numbers: dict[str, Printed]) -> Iterator[dict]:
     """Counts and extremes of whole numbers are whole numbers, and their means and standard
     deviations those of whole numbers.
     """
     if METRICS[cell.metric].step is None:
-        return []
-    step, rows = Fraction(METRICS[cell.metric].step), []
+        return
+    step = Fraction(METRICS[cell.metric].step)
     values = "whole numbers" if step == 1 else f"multiples of {_text(step)}"
+    rule = f"an extreme of {values} is one of them"
     for name in ("min", "max"):
         if name in numbers:
             nearest = round(numbers[name].value / step) * step
             fits = numbers[name].low <= nearest <= numbers[name].high
-            rows.append(
-                cell.row(
-                    name,
-                    f"an extreme of {values} is one of them",
-                    nearest,
-                    fits,
-                    f"nearest: {_text(nearest)}",
-                )
-            )
+            yield cell.row(name, rule, nearest, fits, f"nearest: {_text(nearest)}")
     if "count" in numbers and cell.n:
         value = numbers["count"].value
         fits = value.denominator == 1 and 0 <= value <= cell.n
-        rows.append(
-            cell.row(
-                "count",
-                f"a count of {cell.n} runs is a whole number up to {cell.n}",
-                cell.n,
-                fits,
-                f"0 <= {_text(value)} <= {cell.n}",
-            )
-        )
+        rule = f"a count of {cell.n} runs is a whole number up to {cell.n}"
+        yield cell.row("count", rule, cell.n, fits, f"0 <= {_text(value)} <= {cell.n}")
     for name in ("mean", "share"):
         if name in numbers and cell.n:
-            rows.append(_grim(cell, name, numbers[name], step, values))
+            yield _grim(cell, name, numbers[name], step, values)
     if {"mean", "std"} <= set(numbers) and cell.n and cell.n > 1:
-        rows.append(_grimmer(cell, numbers["mean"], numbers["std"], step, values))
-    return rows
+        yield _grimmer(cell, numbers["mean"], numbers["std"], step, values)
 
 
 def _grim(cell: Cell, name: str, mean: Printed, step: Fraction, values: str) -> dict:
     rule = f"GRIM: a mean of {cell.n} {values} is a sum of them over {cell.n}"
     nearest = possible.nearest_mean(mean, cell.n, step)
-    text = cell.texts[name]
     if not cell.exact:
-        return cell.row(
-            name,
-            rule,
-            nearest,
-            None,
-            f"only some of the {cell.n} runs count, and how many is not printed",
-        )
+        return cell.row(name, rule, nearest, None, cell.inexact)
     if not possible.grim_decides(mean, cell.n, step):
         apart = (
             f"means of {cell.n} lie {_text(step / cell.n)} apart, printed numbers "
             f"{_text(2 * mean.half)}: every one is possible"
         )
         return cell.row(name, rule, nearest, None, apart)
-    possible_sums = possible.sums(mean, cell.n, step)
-    nearby = f"nearest possible: {_text(nearest * cell.n)} / {cell.n} = {float(nearest):.6g}"
-    return cell.row(
-        name,
-        rule,
-        nearest,
-        len(possible_sums) > 0,
-        f"{text} x {cell.n} = {_text(mean.value * cell.n)}; {nearby}",
+    told = (
+        f"{cell.texts[name]} x {cell.n} = {_text(mean.value * cell.n)}; nearest possible: "
+        f"{_text(nearest * cell.n)} / {cell.n} = {float(nearest):.6g}"
     )
+    return cell.row(name, rule, nearest, len(possible.sums(mean, cell.n, step)) > 0, told)
 
 
 def _grimmer(cell: Cell, mean: Printed, std: Printed, step: Fraction, values: str) -> dict:
@@ -296,13 +237,7 @@ def _grimmer(cell: Cell, mean: Printed, std: Printed, step: Fraction, values: st
         f"GRIMMER: {cell.n} {values} with the printed mean can have the printed standard deviation"
     )
     if not cell.exact:
-        return cell.row(
-            "std",
-            rule,
-            math.nan,
-            None,
-            f"only some of the {cell.n} runs count, and how many is not printed",
-        )
+        return cell.row("std", rule, math.nan, None, cell.inexact)
     sums = possible.grimmer(mean, std, cell.n, step)
     if sums is None:
         squares = [
@@ -322,32 +257,19 @@ def _grimmer(cell: Cell, mean: Printed, std: Printed, step: Fraction, values: st
     )
     if step != 1:
         told = f"in steps of {_text(step)}: {told}"
-    decides = possible.grimmer_decides(mean, std, cell.n, step)
-    return cell.row(
-        "std",
-        rule,
-        exact,
-        True if decides else None,
-        told if decides else f"{told}; no number could fail here",
-    )
+    if possible.grimmer_decides(mean, std, cell.n, step):
+        return cell.row("std", rule, exact, True, told)
+    return cell.row("std", rule, exact, None, f"{told}; no number could fail here")
 
 
-def _in_order(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
+def _in_order(cell: Cell, numbers: dict[str, Printed]) -> Iterator[dict]:
     """Quantiles in their order, and the mean where n values with these ends can have it."""
-    rows = []
     for low, high in itertools.pairwise(name for name in _IN_ORDER if name in numbers):
         fits = possible.in_order(numbers[low], numbers[high])
-        rows.append(
-            cell.row(
-                low,
-                f"{low} <= {high}",
-                numbers[high].value,
-                fits,
-                f"{cell.texts[low]} <= {cell.texts[high]}",
-            )
-        )
+        told = f"{cell.texts[low]} <= {cell.texts[high]}"
+        yield cell.row(low, f"{low} <= {high}", numbers[high].value, fits, told)
     if not {"min", "max", "mean"} <= set(numbers) or not cell.n or cell.n < 2:
-        return rows
+        return
     low, high = possible.mean_limits(numbers["min"], numbers["max"], cell.n)
     fits = low <= numbers["mean"].high and numbers["mean"].low <= high
     limit = low if numbers["mean"].high < low else high
@@ -355,23 +277,15 @@ def _in_order(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
         f"a mean of {cell.n} values lies between (max + {cell.n - 1} min) / {cell.n} and (min "
         f"+ {cell.n - 1} max) / {cell.n}"
     )
-    return [
-        *rows,
-        cell.row(
-            "mean",
-            rule,
-            limit,
-            fits,
-            f"{float(low):.6g} <= {cell.texts['mean']} <= {float(high):.6g}",
-        ),
-    ]
+    told = f"{float(low):.6g} <= {cell.texts['mean']} <= {float(high):.6g}"
+    yield cell.row("mean", rule, limit, fits, told)
 
 
-def _of_spread(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
+def _of_spread(cell: Cell, numbers: dict[str, Printed]) -> Iterator[dict]:
     """A standard deviation against the range, and against the mean and the ends of what is
     possible.
     """
-    rows, metric, std = [], METRICS[cell.metric], numbers["std"]
+    metric, std, text = METRICS[cell.metric], numbers["std"], cell.texts["std"]
     if {"min", "max"} <= set(numbers):
         low, _ = possible.std_of_range(numbers["min"], numbers["max"], cell.n)
         # Fewer values can have a larger one.
@@ -381,41 +295,25 @@ def _of_spread(cell: Cell, numbers: dict[str, Printed]) -> list[dict]:
             "a standard deviation lies between (max - min) / sqrt(2 (n - 1)) and (max - min) / "
             "2 x sqrt(n / (n - 1))"
         )
-        told = f"n = {cell.n}: {low:.6g} <= {cell.texts['std']} <= {high:.6g}"
-        rows.append(
-            cell.row(
-                "std",
-                rule,
-                low if std.high < low else high,
-                low <= std.high and std.low <= high,
-                told,
-            )
-        )
+        limit, fits = low if std.high < low else high, low <= std.high and std.low <= high
+        told = f"n = {cell.n}: {low:.6g} <= {text} <= {high:.6g}"
+        yield cell.row("std", rule, limit, fits, told)
     least = numbers["min"].low if "min" in numbers else _finite(metric.least)
     most = numbers["max"].high if "max" in numbers else _finite(metric.most)
     if "mean" in numbers and least is not None:
-        limit = possible.std_of_mean(numbers["mean"], cell.n, least, most if cell.exact else None)
-        ends = f"none below {_text(least)}" + (
-            f" or above {_text(most)}" if most is not None and cell.exact else ""
-        )
+        most = most if cell.exact else None
+        limit = possible.std_of_mean(numbers["mean"], cell.n, least, most)
+        ends = f"none below {_text(least)}" + ("" if most is None else f" or above {_text(most)}")
         rule = f"the largest standard deviation of values with this mean, {ends}"
-        rows.append(
-            cell.row(
-                "std",
-                rule,
-                limit,
-                float(std.low) <= limit,
-                f"n = {cell.n}: {cell.texts['std']} <= {limit:.6g}",
-            )
-        )
-    return rows
+        told = f"n = {cell.n}: {text} <= {limit:.6g}"
+        yield cell.row("std", rule, limit, float(std.low) <= limit, told)
 
 
 def _finite(end: float | str) -> Fraction | None:
     return None if isinstance(end, str) or math.isinf(end) else Fraction(end)
 
 
-def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> list[dict]:
+def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dict]:
     """Mean ranks of k rows lie between 1 and k and add to k (k + 1) / 2; their order beside that of
     the mean objectives.
 
@@ -423,140 +321,88 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> list[dict]:
     matter. An order that differs is no contradiction: a mean says how far runs lie apart, a rank
     does not.
     """
-    keys, rows = _keys(table), []
-    ranks = table[(table["metric"] == "rank") & (table["statistic"] == "mean")]
+    keys, means = _keys(table), table[table["statistic"] == "mean"]
+    ranks, objectives = (means[means["metric"] == name] for name in ("rank", "objective"))
     within = [column for column in columns if column in keys]
     for _, group in ranks.groupby(within, sort=False) if within else [((), ranks)]:
         count, texts = len(group), group["printed"].to_list()
         if count < 2:
             continue
         numbers = [possible.printed(text) for text in texts]
-        total = possible.rank_sum(count)
-        added = (
-            f"{' + '.join(texts)} = {_text(sum(each.value for each in numbers))}; {count} x "
-            f"{count + 1} / 2 = {total}"
-        )
-        cell = _place(group.iloc[0], within, "metric") + ", all rows"
+        added, total = sum(each.value for each in numbers), possible.rank_sum(count)
+        told = f"{' + '.join(texts)} = {_text(added)}; {count} x {count + 1} / 2 = {total}"
+        location = _place(group.iloc[0], within, "metric") + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        rows.append(
-            _row(
-                item,
-                cell,
-                rule,
-                float(sum(each.value for each in numbers)),
-                total,
-                possible.are_ranks(numbers),
-                added,
-            )
-        )
+        fits = possible.are_ranks(numbers)
+        yield checked(item, location, rule, float(added), total, fits, told)
+        rule = f"a mean rank of {count} rows lies between 1 and {count}"
         for (_, row), number in zip(group.iterrows(), numbers):
-            fits = number.high >= 1 and number.low <= count
+            limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
             told = f"1 <= {row['printed']} <= {count}"
-            rule = f"a mean rank of {count} rows lies between 1 and {count}"
-            rows.append(
-                _row(
-                    item,
-                    _place(row, keys, "metric"),
-                    rule,
-                    row["value"],
-                    1 if number.high < 1 else count,
-                    fits,
-                    told,
-                )
-            )
-        rows += _against_means(
-            item,
-            cell,
-            group,
-            table[(table["metric"] == "objective") & (table["statistic"] == "mean")],
-            keys,
-        )
-    return rows
+            of_row = _place(row, keys, "metric")
+            yield checked(item, of_row, rule, row["value"], limit, fits, told)
+        yield from _against_means(item, location, group, objectives, keys)
 
 
 def _against_means(
-    item: str, cell: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]
-) -> list[dict]:
+    item: str, location: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]
+) -> Iterator[dict]:
     """Pairs of rows whose mean ranks are in another order than their means."""
     both = ranks.merge(means, on=keys, suffixes=("", "_mean"))
     pairs, apart = 0, []
     for (_, one), (_, other) in itertools.combinations(both.iterrows(), 2):
         lower, upper = sorted((one, other), key=lambda row: row["value_mean"])
-        first, second = (possible.printed(row["printed_mean"]) for row in (lower, upper))
-        if possible.in_order(second, first):
+        if _are_in_order(upper["printed_mean"], lower["printed_mean"]):
             continue
         pairs += 1
-        if not possible.in_order(
-            possible.printed(lower["printed"]), possible.printed(upper["printed"])
-        ):
+        if not _are_in_order(lower["printed"], upper["printed"]):
             apart.append(
                 f"{lower['printed_mean']} < {upper['printed_mean']} but {lower['printed']} > "
                 f"{upper['printed']}"
             )
-    if not pairs:
-        return []
-    rule = (
-        "pairs of rows whose mean ranks and mean objectives are in different orders, which can "
-        "be, but seldom is"
-    )
-    return [
-        _row(
-            item,
-            cell,
-            rule,
-            len(apart),
-            0,
-            None if apart else True,
-            f"{len(apart)} of {pairs} pairs" + "".join(f"; {each}" for each in apart),
+    if pairs:
+        rule = (
+            "pairs of rows whose mean ranks and mean objectives are in different orders, which can "
+            "be, but seldom is"
         )
-    ]
+        told = "; ".join([f"{len(apart)} of {pairs} pairs", *apart])
+        yield checked(item, location, rule, len(apart), 0, None if apart else True, told)
 
 
-def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> list[dict]:
+def _are_in_order(first: str, second: str) -> bool:
+    """Whether the number behind one text can be at most that behind another."""
+    return possible.in_order(possible.printed(first), possible.printed(second))
+
+
+def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
     """Numbers that must rise or fall along a column: each beside the one before it."""
     own = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
     keys = _keys(table)
-    others, rows = [key for key in keys if key != rule.along], []
-    sign = {"up": "<=", "down": ">="}[rule.direction]
+    others = [key for key in keys if key != rule.along]
+    words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     for _, group in own.groupby(others, dropna=False, sort=False) if others else [((), own)]:
         ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
-            first, second = possible.printed(before["printed"]), possible.printed(row["printed"])
-            fits = (
-                possible.in_order(first, second)
-                if rule.direction == "up"
-                else possible.in_order(second, first)
-            )
-            words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
-            told = f"{before['printed']} {sign} {row['printed']}"
-            rows.append(
-                _row(
-                    item,
-                    _place(row, keys, "metric", "statistic"),
-                    words,
-                    row["value"],
-                    before["value"],
-                    fits,
-                    told,
-                )
-            )
-    return rows
+            first, second = before["printed"], row["printed"]
+            if rule.direction == "up":
+                fits, told = _are_in_order(first, second), f"{first} <= {second}"
+            else:
+                fits, told = _are_in_order(second, first), f"{first} >= {second}"
+            place = _place(row, keys, "metric", "statistic")
+            yield checked(item, place, words, row["value"], before["value"], fits, told)
 
 
-def of_digits(tables: dict[str, pd.DataFrame]) -> list[dict]:
+def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     """Last digits of all numbers of a metric: an exact test of equal chances, where there are
     enough numbers that spread widely.
 
     A number that several tables repeat counts once, and numbers of 1 to n runs, such as counts, are
     left out.
     """
-    together = (
-        pd.concat([table.assign(item=name) for name, table in tables.items()], ignore_index=True)
-        if tables
-        else pd.DataFrame()
-    )
-    rows = []
-    for metric, every in together.groupby("metric", sort=False) if len(together) else []:
+    if not tables:
+        return
+    together = pd.concat([table.assign(item=name) for name, table in tables.items()])
+    for metric, every in together.groupby("metric", sort=False):
         printed_rows = every[~every["statistic"].isin(["count", "share"])]
         printed_rows = printed_rows.drop_duplicates(
             [column for column in printed_rows if column not in ("item", "n")]
@@ -565,9 +411,9 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> list[dict]:
         if len(texts) < LEAST_NUMBERS:
             continue
         digit = 2 * min(possible.printed(text).half for text in texts)
-        digits = possible.last_digits(texts)
         if printed_rows["value"].std() < _LEAST_SPREAD * digit:
             continue
+        digits = possible.last_digits(texts)
         counts = [digits.count(each) for each in range(10)]
         p = possible.digits_p(counts)
         rule = "last digits are equally likely: exact test of the sum of squared counts"
@@ -575,19 +421,11 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> list[dict]:
             f"0 to 9: {' '.join(map(str, counts))}; p = {p:.3g}, inconsistent below "
             f"{DIGITS_LEVEL:g}"
         )
-        items = ", ".join(printed_rows["item"].unique())
-        rows.append(
-            _row(
-                items,
-                f"metric={metric}, {len(texts)} numbers",
-                rule,
-                max(counts),
-                len(texts) / 10,
-                p >= DIGITS_LEVEL,
-                told,
-            )
+        items, place = (
+            ", ".join(printed_rows["item"].unique()),
+            f"metric={metric}, {len(texts)} numbers",
         )
-    return rows
+        yield checked(items, place, rule, max(counts), len(texts) / 10, p >= DIGITS_LEVEL, told)
 
 
 def _text(number: Fraction) -> str:

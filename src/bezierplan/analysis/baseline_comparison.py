@@ -141,10 +141,9 @@ def sentence(rows: pd.DataFrame) -> str:
     """What follows from the rows of one study."""
     count = len(rows)
     parts = [
-        f"{_counted(count, 'method')}: "
-        f"feasible in {span(100 * rows['feasible'])} % of the runs (baseline: "
-        f"{number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} times the "
-        "baseline's CPU time."
+        f"{_counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs "
+        f"(baseline: {number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} "
+        "times the baseline's CPU time."
     ]
     if rows["length"].notna().any():
         cornered, less = np.isinf(rows["curvature"]).sum(), (rows["curvature"] < 1 - EQUAL).sum()

@@ -89,28 +89,11 @@ alone.
 """
 
 _COLUMNS = [
-    *(
-        "metric",
-        "statistic",
-        "unit",
-        "n_published",
-        "value_published",
-        "n_ours",
-        "n_asked",
-        "value_ours",
-    ),
-    "value_ours_scaled",
+    *("metric", "statistic", "unit", "n_published", "value_published"),
+    *("n_ours", "n_asked", "value_ours", "value_ours_scaled"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *(
-        "low95_predicted",
-        "high95_predicted",
-        "quantile_published",
-        "in_range",
-        "can_fail",
-        "power",
-        "verdict",
-        "why",
-    ),
+    *("low95_predicted", "high95_predicted", "quantile_published"),
+    *("in_range", "can_fail", "power", "verdict", "why"),
     *("identified", "possible", "share_claimed", "share_feasible", "bound", "gap", "primary"),
 ]
 
@@ -175,14 +158,12 @@ def compare(
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[both["impossible"].eq(True), "possible"] = False
-    identities = pd.Series(
+    table["identified"] = pd.Series(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
     )
-    table["identified"], table["verdict"] = (
-        identities,
-        table["verdict"].astype(object).mask(identities.notna(), "identified"),
-    )
+    found = table["identified"].notna()
+    table["verdict"] = table["verdict"].astype(object).mask(found, "identified")
     undefined = _undefined(both, spec) & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
     table["why"] = table["why"].astype(object).mask(undefined, UNDEFINED)
@@ -212,18 +193,10 @@ def _identified(
         return None
     for entry in entries:
         if entry.counts and identified.applies(entry, row):
-            identification = identified.in_problem(
-                problems[row["problem"]],
-                row["value_published"],
-                int(row["decimals"]),
-                entry.edges,
-            )
-            if (
-                identification
-                and identification.paths
-                and identification.chance < identified.UNLIKELY
-            ):
-                return identified.in_words(identification)
+            value, decimals = row["value_published"], int(row["decimals"])
+            found = identified.in_problem(problems[row["problem"]], value, decimals, entry.edges)
+            if found and found.paths and found.chance < identified.UNLIKELY:
+                return identified.in_words(found)
     return None
 
 
@@ -320,13 +293,8 @@ def _rivals(
     """
     if "method" not in key_columns or pd.isna(row["value_published"]):
         return np.empty(0)
-    same_place = np.logical_and.reduce(
-        [
-            printed[key] == row[key]
-            for key in ("metric", "statistic", *key_columns)
-            if key != "method"
-        ]
-    )
+    keys = [key for key in ("metric", "statistic", *key_columns) if key != "method"]
+    same_place = np.logical_and.reduce([printed[key] == row[key] for key in keys])
     # A variant's own name is in no published row; its number is that of its published method.
     own = printed["method"] == row.get("printed_method", row["method"])
     return printed["value"][same_place & ~own].astype(float)
@@ -358,22 +326,17 @@ def _described(
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
+    rng, decimals = generator(f"{row_name}/prediction"), row["decimals"]
     placed = statistics.prediction(
-        statistic,
-        numbers,
-        published,
-        size,
-        row["decimals"],
-        generator(f"{row_name}/prediction"),
-        single,
-        groups,
+        statistic, numbers, published, size, decimals, rng, single, groups
     )
     # Seconds of another machine are shown, not judged.
     in_range = None if row["unit"] == "s" else placed.in_range
+    ours, predicted = statistics.statistic(statistic, numbers), (placed.low, placed.high)
     return {
         "n_ours": len(numbers),
         "n_asked": int(row["asked"]),
-        "value_ours": statistics.statistic(statistic, numbers),
+        "value_ours": ours,
         "value_ours_scaled": statistics.scaled(statistic, numbers, int(row["asked"]), size),
         "best": statistics.statistic("min", numbers),
         **{
@@ -386,14 +349,7 @@ def _described(
         "high95_predicted": placed.high,
         "quantile_published": placed.quantile,
         "in_range": in_range,
-        **_judged(
-            row,
-            in_range,
-            statistics.statistic(statistic, numbers),
-            (placed.low, placed.high),
-            size,
-            rivals,
-        ),
+        **_judged(row, in_range, ours, predicted, size, rivals),
     }
 
 

@@ -134,21 +134,21 @@ def interpretations_table(
     for evaluated in itertools.chain(*ordered):
         numbers = evaluated.numbers
         by_table = numbers.groupby("table")["in_range"].sum()
+        name = name_of(evaluated.interpretation)
         rows.append(
             {
                 "study": study,
-                "interpretation": name_of(evaluated.interpretation),
+                "interpretation": name,
                 "in_words": in_words(evaluated.interpretation, choices),
-            }
-            | {"confirmed": name_of(evaluated.interpretation) in again}
-            | {choice.id: evaluated.interpretation.get(choice.id, "") for choice in choices}
-            | {
+                "confirmed": name in again,
+                **{choice.id: evaluated.interpretation.get(choice.id, "") for choice in choices},
                 "in_range": int(numbers["in_range"].sum()),
                 "numbers": len(numbers),
                 "by_chance": by_chance(numbers),
+                "impossible": evaluated.impossible,
+                "score": evaluated.score,
+                **{f"in_range_{table}": int(count) for table, count in by_table.items()},
             }
-            | {"impossible": evaluated.impossible, "score": evaluated.score}
-            | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
     rows[0]["tried"] = tried
     by_name = {row["interpretation"]: row for row in rows}
@@ -187,33 +187,25 @@ def explained_table(
         "default": default.numbers["in_range"].to_numpy(),
         "best": best.numbers["in_range"].to_numpy(),
     }
-    told: dict[str, list] = {
-        "interpretations": [],
-        "tried": [],
-        "settings": [],
-        "missed_by": [],
-        "nearest": [],
-    }
+    parts = []
     for tried in of_parts:
-        inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
-        settings_tried = {
-            name_of(
-                {
-                    choice: value
-                    for choice, value in each.interpretation.items()
-                    if choice not in shared
-                }
-            )
+        settings_made = [
+            {choice: each.interpretation[choice] for choice in each.interpretation.keys() - shared}
             for each in tried
-        }
+        ]
         missed = np.array([_missed(each.numbers) for each in tried])
-        nearest = missed.argmin(axis=0)
-        told["interpretations"] += inside.tolist()
-        told["tried"] += [len(tried)] * len(inside)
-        told["settings"] += [len(settings_tried)] * len(inside)
-        least = missed.min(axis=0)
-        told["missed_by"] += np.where(np.isinf(least), np.nan, least).tolist()
-        told["nearest"] += [name_of(tried[place].interpretation) for place in nearest]
+        least, nearest = missed.min(axis=0), missed.argmin(axis=0)
+        columns = {
+            "interpretations": np.sum(
+                [each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0
+            ),
+            "tried": len(tried),
+            "settings": len(set(map(name_of, settings_made))),
+            "missed_by": np.where(np.isinf(least), np.nan, least),
+            "nearest": [name_of(tried[place].interpretation) for place in nearest],
+        }
+        parts.append(pd.DataFrame(columns))
+    told = pd.concat(parts).set_index(described.index)
     table = described.assign(study=study, **explained_by, **told)[
         ["study", *described.columns, *explained_by, *told]
     ]
@@ -225,13 +217,8 @@ def _missed(numbers: pd.DataFrame) -> np.ndarray:
     infinite where nothing would be.
     """
     value = numbers["value_published"].to_numpy(dtype=float)
-    missed = np.maximum.reduce(
-        [
-            numbers["low"].to_numpy() - value,
-            value - numbers["high"].to_numpy(),
-            np.zeros(len(value)),
-        ]
-    )
+    below, above = numbers["low"].to_numpy() - value, value - numbers["high"].to_numpy()
+    missed = np.maximum(np.maximum(below, above), 0.0)
     return np.where(np.isnan(missed), np.inf, missed)
 
 
@@ -250,22 +237,21 @@ def leave_one_table_out_table(
         others = [(each.rank[0], each.score - each.likelihoods[table]) for each in confirmed]
         chosen = max(range(len(confirmed)), key=lambda n: others[n])
         numbers = int((confirmed[0].numbers["table"] == table).sum())
-        row = {
-            "study": study,
-            "table": table,
-            "interpretation": name_of(confirmed[chosen].interpretation),
-            "chosen": counts[chosen],
-        }
-        scores = {
-            "score_best": best.likelihoods[table],
-            "score_default": confirmed[0].likelihoods[table],
-        }
         along, score = lines.get(table, ("", math.nan))
         rows.append(
-            row
-            | {"default": counts[0], "most": max(counts), "numbers": numbers}
-            | scores
-            | {"score_line": score, "line_along": along}
+            {
+                "study": study,
+                "table": table,
+                "interpretation": name_of(confirmed[chosen].interpretation),
+                "chosen": counts[chosen],
+                "default": counts[0],
+                "most": max(counts),
+                "numbers": numbers,
+                "score_best": best.likelihoods[table],
+                "score_default": confirmed[0].likelihoods[table],
+                "score_line": score,
+                "line_along": along,
+            }
         )
     return pd.DataFrame(rows)
 
@@ -330,10 +316,9 @@ def section(
         "it lies in the central 95 % of these. An interpretation whose runs vary widely excludes "
         "nothing, so each count is given with the one expected by chance, if printed numbers of "
         "one kind are permuted within their table. Numbers of a quantity that the paper does not "
-        "define have no vote. "
-        "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` "
-        "for each printed "
-        "number, `<study>_leave_one_table_out.csv` for each table.",
+        "define have no vote. `<study>_interpretations.csv` has a row for each interpretation, "
+        "`<study>_explained.csv` for each printed number, `<study>_leave_one_table_out.csv` for "
+        "each table.",
     ]
     for study, own in interpretations.groupby("study", sort=False):
         others = (table[table["study"] == study] for table in (explained, leave_one_table_out))
@@ -381,21 +366,17 @@ def sentences(
         interpretations.iloc[0],
         interpretations[interpretations["interpretation"] == DEFAULT].iloc[0],
     )
-    return " ".join(
-        filter(
-            None,
-            [
-                _most_likely(best, default),
-                _judged_anew(best),
-                "" if best["interpretation"] == DEFAULT else _by_table(leave_one_table_out),
-                _beside_a_line(leave_one_table_out),
-                _never(explained),
-                _searched(explained),
-                _ruled_out(interpretations),
-                _leave_one_table_out(leave_one_table_out),
-            ],
-        )
-    )
+    told = [
+        _most_likely(best, default),
+        _judged_anew(best),
+        "" if best["interpretation"] == DEFAULT else _by_table(leave_one_table_out),
+        _beside_a_line(leave_one_table_out),
+        _never(explained),
+        _searched(explained),
+        _ruled_out(interpretations),
+        _leave_one_table_out(leave_one_table_out),
+    ]
+    return " ".join(filter(None, told))
 
 
 def _most_likely(best: pd.Series, default: pd.Series) -> str:
@@ -408,8 +389,7 @@ def _most_likely(best: pd.Series, default: pd.Series) -> str:
     if best["interpretation"] == DEFAULT:
         return (
             "The printed numbers are most likely from the experiment of the default "
-            f"interpretation: none of {tried} interpretations is "
-            "more likely. It has "
+            f"interpretation: none of {tried} interpretations is more likely. It has "
             f"{_counted(default)}."
         )
     level = (
@@ -424,9 +404,8 @@ def _most_likely(best: pd.Series, default: pd.Series) -> str:
     )
     return (
         f"Of {tried} interpretations, the printed numbers are most likely from an experiment in "
-        "which these choices differ from ours: "
-        f"{best['in_words']} ({best['interpretation']}); {against}. It has "
-        f"{_counted(best)}{level}; the default has {_counted(default)}."
+        f"which these choices differ from ours: {best['in_words']} ({best['interpretation']}); "
+        f"{against}. It has {_counted(best)}{level}; the default has {_counted(default)}."
     )
 
 
@@ -488,10 +467,9 @@ def _beside_a_line(leave_one_table_out: pd.DataFrame) -> str:
         else "so the interpretation describes them better than such a line"
     )
     return (
-        f"A straight line in the column {along}, which predicts each number from the others of "
-        "its row, has a log-likelihood "
-        f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely "
-        f"interpretation: {verdict}."
+        f"A straight line in the column {along}, which predicts each number from the others of its "
+        f"row, has a log-likelihood {abs(difference):.1f} {'above' if difference < 0 else 'below'} "
+        f"that of the most likely interpretation: {verdict}."
     )
 
 

@@ -11,6 +11,7 @@ one.
 
 import itertools
 import math
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import possible
+from bezierplan.analysis.audit_rows import NOT_KEYS, checked
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.grid import Grid
@@ -158,16 +160,20 @@ def in_words(identification: Identified) -> str:
 
 def of_table(
     item: str, published: pd.DataFrame, entries: list[Identify], problems: dict[str, Problem]
-) -> list[dict]:
+) -> Iterator[dict]:
     """Rows of the audit: each published number for which an enumeration is declared, and one row a
     declaration with the chance of all.
 
     published: with the column `printed`, as from `audit.read_published`. problems: by name; a
     number's is in its column `problem`. A number that no path has is no contradiction.
     """
-    rows = []
+    keys = published.columns.difference(NOT_KEYS, sort=False)
     for entry in entries:
         tried = []
+        rule = (
+            f"{entry.because}: the length of a free polyline of at most {entry.edges} edges "
+            "through cell centres"
+        )
         for row in published.to_dict("records"):
             problem = problems.get(row.get("problem", row.get("workspace")))
             if not applies(entry, row) or problem is None:
@@ -176,48 +182,21 @@ def of_table(
             if path is None:
                 continue
             tried.append(path)
-            keys = [
-                key
-                for key in row
-                if key not in ("metric", "statistic", "n", "unit", "value", "printed")
-            ]
-            rows.append(
-                {
-                    "item": item,
-                    "place": ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"]),
-                    "rule": f"{entry.because}: the length of a free polyline of at most "
-                    f"{entry.edges} edges through cell centres",
-                    "printed": row["value"],
-                    "limit": path.length * problem.workspace.cell,
-                    "consistent": True if path.paths else None,
-                    "arithmetic": in_words(path),
-                }
-            )
+            location = ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"])
+            limit, fits = path.length * problem.workspace.cell, True if path.paths else None
+            yield checked(item, location, rule, row["value"], limit, fits, in_words(path))
         if tried:
             matched = sum(bool(path.paths) for path in tried)
             chance = at_least(matched, [path.chance for path in tried])
-            words = (
+            told = (
                 f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
             )
-            selection = ", ".join(
+            location = ", ".join(
                 f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
                 for key, wanted in entry.where.items()
             )
-            together = {
-                "item": item,
-                "place": selection,
-                "rule": f"{entry.because}: all numbers together",
-                "printed": matched,
-            }
-            rows.append(
-                together
-                | {
-                    "limit": len(tried),
-                    "consistent": True if matched == len(tried) else None,
-                    "arithmetic": words,
-                }
-            )
-    return rows
+            rule, fits = f"{entry.because}: all numbers together", matched == len(tried) or None
+            yield checked(item, location, rule, matched, len(tried), fits, told)
 
 
 def at_least(count: int, chances: list[float]) -> float:

@@ -171,6 +171,7 @@ def numbers_of(
         for entry in spec.values
         if isinstance(entry.least or metrics.METRICS[entry.metric].least, str)
     }
+    described_by = [*keys_printed, "metric", "statistic", "value_published"]
     rows, samples, least = [], [], []
     for number, row in both.iterrows():
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
@@ -178,23 +179,15 @@ def numbers_of(
         size = None if pd.isna(row["n"]) else int(row["n"])
         half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -int(row["decimals"])
         value, single = row["value_published"], (row["least"], row["most"])
+        rng, groups = generator(f"{name}/{number}"), row["groups"] or None
         *_, low, high = statistics.prediction(
-            row["statistic"],
-            row["numbers"],
-            value,
-            size,
-            None,
-            generator(f"{name}/{number}"),
-            single,
-            row["groups"] or None,
+            row["statistic"], row["numbers"], value, size, None, rng, single, groups
         )
         # An interpretation under which most runs fail explains nothing.
         enough = len(row["numbers"]) >= min(statistics.LEAST_RUNS, math.ceil(row["asked"] / 2))
         if not enough:
             low = high = math.nan
-        described = {
-            key: row[key] for key in [*keys_printed, "metric", "statistic", "value_published"]
-        }
+        described = {key: row[key] for key in described_by}
         inside = bool(low - half <= value <= high + half)
         below = (
             row["metric"] in bounded
@@ -210,31 +203,18 @@ def numbers_of(
         )
         samples.append(_Sample(_units(own, row), row["statistic"], size, name, number, enough))
         least.append(max(half / math.sqrt(3), _least_of_count(row, size)))
-    frame = pd.DataFrame(
-        rows,
-        columns=[
-            *keys_printed,
-            "metric",
-            "statistic",
-            "value_published",
-            "low",
-            "high",
-            "in_range",
-            "possible",
-        ],
-    )
+    columns = [*described_by, "low", "high", "in_range", "possible"]
+    frame = pd.DataFrame(rows, columns=columns)
     printed, floors = frame["value_published"].to_numpy(dtype=float), np.array(least)
     drawn = np.array([_experiments(sample) for sample in samples])
     again = [
-        _likelihood(
-            printed,
-            np.array([_experiments(_resampled(sample, number)) for sample in samples]),
-            floors,
-            results,
-        )
+        [_experiments(_resampled(sample, number)) for sample in samples]
         for number in range(resamples)
     ]
-    return frame, _likelihood(printed, drawn, floors, results), np.array(again)
+    likelihood, *others = (
+        _likelihood(printed, np.array(each), floors, results) for each in (drawn, *again)
+    )
+    return frame, likelihood, np.array(others)
 
 
 class _Sample(NamedTuple):

@@ -74,16 +74,9 @@ def environment(captioned: Captioned) -> str:
     """
     table = captioned.table
     sides = "".join("r" if _is_number(table[column]) else "l" for column in table)
-    rows = [
-        *_heads(list(table.columns)),
-        "\\midrule",
-        *(_row(row) for row in table.itertuples(index=False)),
-    ]
-    body = [
-        f"\\begin{{tabular}}{{{sides}}}",
-        *(f"  {row}" for row in ["\\toprule", *rows, "\\bottomrule"]),
-        "\\end{tabular}",
-    ]
+    cells = map(_row, table.itertuples(index=False))
+    rows = ["\\toprule", *_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]
+    body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in rows), "\\end{tabular}"]
     if len(table.columns) > _MOST_COLUMNS:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
     head = [

@@ -48,11 +48,6 @@ ROUNDED = 0.01
 _OUTLIER_REACH = 1.5
 
 
-def failed(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a run has no path that the certified checker accepts."""
-    return ~runs["feasible"].astype(bool)
-
-
 def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Whether (n,) the planner's own test gives this result and the checker the opposite."""
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
@@ -79,7 +74,7 @@ def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
 
 
-def _reference(runs: pd.DataFrame) -> pd.Series:
+def reference(runs: pd.DataFrame) -> pd.Series:
     """The length of the best known path of each run's problem. Raises ValueError if it is shorter
     than the exact shortest path.
     """
@@ -93,19 +88,7 @@ def _reference(runs: pd.DataFrame) -> pd.Series:
     return runs["reference"]
 
 
-def gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Length over that of the best known path of the same kind, minus 1 (n,); NaN where none is
-    known.
-    """
-    return runs["length"] / _reference(runs) - 1
-
-
-def excess_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Length minus that of the best known path of the same kind (n,); NaN where none is known."""
-    return runs["length"] - _reference(runs)
-
-
-def _held_history(runs: pd.DataFrame) -> np.ndarray:
+def held_history(runs: pd.DataFrame) -> np.ndarray:
     """Best objective so far by generation: (runs, maximum generations + 1). Runs that stopped early
     hold their last value.
     """
@@ -115,18 +98,13 @@ def _held_history(runs: pd.DataFrame) -> np.ndarray:
     return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
 
 
-def lowest_objective(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Lowest objective (n,) of any generation, even if the planner's result comes from another."""
-    return _held_history(runs).min(axis=1)
-
-
 def first_generation_within(
     share: float, runs: pd.DataFrame, problems: dict[str, Problem]
 ) -> np.ndarray:
     """First generation (n,) whose best objective so far is at most 1 + share times the final
     one.
     """
-    held = _held_history(runs)
+    held = held_history(runs)
     return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
 
 
@@ -136,7 +114,7 @@ def first_generation_improved_by(
     """First generation (n,) by which a share of the improvement from generation 0 to the last is
     made; 0 if there is none.
     """
-    held = _held_history(runs)
+    held = held_history(runs)
     return (held <= held[:, :1] - share * (held[:, :1] - held[:, -1:])).argmax(axis=1)
 
 
@@ -144,73 +122,21 @@ def improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Prob
     """Share (n,) of the improvement from generation 0 to the last that is achieved by the given
     generation.
     """
-    held = _held_history(runs)
+    held = held_history(runs)
     total = held[:, 0] - held[:, -1]
     made = held[:, 0] - held[:, min(generation, held.shape[1] - 1)]
     return np.divide(made, total, out=np.full(len(held), np.nan), where=total > 0)
 
 
-def history_mean(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Mean (n,) of the best objective so far over all generations."""
-    return _held_history(runs).mean(axis=1)
-
-
-def deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of the length from the median of its method and
-    condition.
-    """
-    return _from_median(runs, "length")
-
-
-def work_deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Absolute relative deviation (n,) of the number of evaluations from the median of its method
-    and condition.
-    """
-    return _from_median(runs, "evaluations")
-
-
-def _from_median(runs: pd.DataFrame, column: str) -> pd.Series:
+def deviation(column: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Absolute relative deviation (n,) of a column from the median of its method and condition."""
     median = runs.groupby(["experiment", "condition", "method"])[column].transform("median")
     return (runs[column] / median - 1).abs()
 
 
-def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Length over the exact shortest length of the problem, minus 1 (n,)."""
-    return runs["length"] / runs["bound"] - 1
-
-
-def collided(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive collides at any time."""
-    return runs["collision_at"].notna()
-
-
-def avoidable_waiting(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive first collides while the robot stands, and could have escaped when it
-    could know.
-    """
-    return runs["avoidable"] & runs["hit_waiting"]
-
-
-def unforeseen(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive collides and the robot could not know of it before."""
-    return collided(runs, problems) & runs["known_at"].isna()
-
-
-def warning(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Steps (n,) from when the robot could know of its first collision until then."""
-    return runs["collision_at"] - runs["known_at"]
-
-
-def gap_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Time of arrival over the earliest one of any drive of the experiment and of the search that
-    knows the future, minus 1 (n,).
-    """
-    return runs["arrival"] / runs["best_arrival"] - 1
-
-
-def gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Time of arrival over that before which no robot arrives, minus 1 (n,)."""
-    return runs["arrival"] / runs["least_arrival"] - 1
+def over(column: str, bound: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """A column over one that bounds it from below, minus 1 (n,)."""
+    return runs[column] / runs[bound] - 1
 
 
 def finished_by_all(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
@@ -310,16 +236,19 @@ def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
 
 def homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
     """The homotopy class of each run's path."""
+    return [
+        np.nan
+        if path is None
+        else homotopy_class(_samples(path, CLASS_SAMPLES), problems[problem].workspace)
+        for path, problem in zip(_paths(runs), runs["problem"])
+    ]
+
+
+def _samples(path: Path, count: int) -> np.ndarray:
+    """Points (count, 2) along a path."""
     from bezierplan.geometry import curves
 
-    classes = []
-    for path, problem in zip(_paths(runs), runs["problem"]):
-        if path is None:
-            classes.append(np.nan)
-            continue
-        points = curves.sample_matrix(path.curve, len(path.points), CLASS_SAMPLES) @ path.points
-        classes.append(homotopy_class(points, problems[problem].workspace))
-    return classes
+    return curves.sample_matrix(path.curve, len(path.points), count) @ path.points
 
 
 def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
@@ -336,32 +265,30 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
     return np.where(np.isnan(best), np.nan, runs["feasible"] & (homotopy(runs, problems) == best))
 
 
+def _curvature(path: Path) -> np.ndarray:
+    """Curvature of `CURVATURE_SAMPLES` samples, NaN where the speed is zero."""
+    from bezierplan.geometry import curves
+
+    return curves.curvature(path, CURVATURE_SAMPLES)[0]
+
+
 def max_curvature(path: Path) -> float:
     """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as 0 where
     the speed is zero.
     """
-    from bezierplan.geometry import curves
-
-    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
-    return float(np.nan_to_num(np.abs(kappa)).max())
+    return float(np.nan_to_num(np.abs(_curvature(path))).max())
 
 
 def signed_curvature(path: Path) -> float:
     """Largest curvature of `CURVATURE_SAMPLES` samples with its sign (song2016, eq. 5: left turns
     are positive), in 1/unit; it counts as 0 where the speed is zero.
     """
-    from bezierplan.geometry import curves
-
-    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
-    return float(np.nan_to_num(kappa).max())
+    return float(np.nan_to_num(_curvature(path)).max())
 
 
 def zero_speed_points(path: Path) -> int:
     """Number of `CURVATURE_SAMPLES` samples at which the speed is zero."""
-    from bezierplan.geometry import curves
-
-    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
-    return int(np.isnan(kappa).sum())
+    return int(np.isnan(_curvature(path)).sum())
 
 
 def curvature_jump(path: Path) -> float:
@@ -399,13 +326,8 @@ def _headings(steps: np.ndarray) -> np.ndarray:
 
 def _path_headings(path: Path) -> np.ndarray:
     """Changes of heading along a path; a curve is taken as chords between samples."""
-    from bezierplan.geometry import curves
-
-    if path.curve == "polyline":
-        return _headings(_steps(path.points))
-    return _headings(
-        _steps(curves.sample_matrix(path.curve, len(path.points), HEADING_SAMPLES) @ path.points)
-    )
+    is_polyline = path.curve == "polyline"
+    return _headings(_steps(path.points if is_polyline else _samples(path, HEADING_SAMPLES)))
 
 
 def heading_max(path: Path) -> float:
@@ -427,7 +349,7 @@ def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
     points = path.points
     if path.curve != "polyline":
         count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
-        points = curves.sample_matrix(path.curve, len(path.points), count) @ path.points
+        points = _samples(path, count)
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     parts = max(2, round(at[-1] / BENDING_PART))
     wanted = np.linspace(0.0, at[-1], parts + 1)
@@ -495,7 +417,7 @@ def length_over_polygon(path: Path) -> float:
     """Length of a path over that of its control polygon; 1 if the polygon has no length."""
     from bezierplan.geometry import curves
 
-    polygon = np.hypot(*np.diff(path.points, axis=0).T).sum()
+    polygon = polygon_length(path)
     return curves.length(path) / polygon if polygon else 1.0
 
 
@@ -575,11 +497,7 @@ def occupied_points(path: Path, grid: Grid) -> int:
 
 def fine_bad(path: Path, grid: Grid) -> int:
     """Number of `FINE_SAMPLES` samples in occupied cells."""
-    from bezierplan.geometry import curves
-
-    return _in_occupied_cells(
-        curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid
-    )
+    return _in_occupied_cells(_samples(path, FINE_SAMPLES), grid)
 
 
 def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from bezierplan.analysis.measures import BENDING_PART, CURVATURE_SAMPLES, FINE_S
 if TYPE_CHECKING:
     import pandas as pd
 
-    from bezierplan.workspaces.problem import Problem
+    from bezierplan.workspaces.problem import Path, Problem
 
 
 class Metric(NamedTuple):
@@ -140,19 +140,43 @@ def unit(name: str, workspace_unit: str) -> str:
     return re.sub(r"\bu\b", lambda _: workspace_unit, METRICS[name].unit)
 
 
+def _count(
+    meaning: str,
+    compute: Callable[[pd.DataFrame, dict[str, Problem]], np.ndarray] | None = None,
+    **more: Any,
+) -> Metric:
+    """A count of every run, or whether something is true of it: 1 or 0."""
+    return Metric("-", meaning, False, compute, step=1.0, **more)
+
+
+def _generation(meaning: str, compute: Callable[..., np.ndarray]) -> Metric:
+    """The number of a generation of every run."""
+    return Metric("generation", meaning, False, compute, least=0.0, step=1.0)
+
+
+def _of_path(
+    unit: str,
+    meaning: str,
+    measure: Callable[[Path], float],
+    feasible_only: bool = True,
+    **more: Any,
+) -> Metric:
+    """A measure of a path alone."""
+    return Metric(unit, meaning, feasible_only, partial(measures.of_path, measure), **more)
+
+
 # Lengths counted in cells have their own bound and gap.
 _CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
 _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 
+_GAP_ARRIVAL = partial(measures.over, "arrival", "best_arrival")
+_GAP_LEAST_ARRIVAL = partial(measures.over, "arrival", "least_arrival")
+
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "final value of the planner's objective", False),
     "length": Metric("u", "exact arc length", True, least="bound"),
-    "polygon_length": Metric(
-        "u",
-        "length of the control polygon",
-        True,
-        partial(measures.of_path, measures.polygon_length),
-        least="bound",
+    "polygon_length": _of_path(
+        "u", "length of the control polygon", measures.polygon_length, least="bound"
     ),
     "certified_length": Metric(
         "u",
@@ -161,24 +185,18 @@ METRICS: dict[str, Metric] = {
         running_time.certified_length,
         least="bound",
     ),
-    "claimed_feasible": Metric("-", "the planner's own test of the path", False, step=1.0),
-    "feasible": Metric("-", "the certified checker's test of the path", False, step=1.0),
-    "failed": Metric(
-        "-", "without a path that the certified checker accepts", False, measures.failed, step=1.0
+    "claimed_feasible": _count("the planner's own test of the path"),
+    "feasible": _count("the certified checker's test of the path"),
+    "failed": _count(
+        "without a path that the certified checker accepts",
+        lambda runs, _: ~runs["feasible"].astype(bool),
     ),
-    "falsely_claimed": Metric(
-        "-",
+    "falsely_claimed": _count(
         "free by the planner's own test, colliding by the checker's",
-        False,
         partial(measures.disagrees, True),
-        step=1.0,
     ),
-    "wrongly_rejected": Metric(
-        "-",
-        "free by the checker's test, not by the planner's own",
-        False,
-        partial(measures.disagrees, False),
-        step=1.0,
+    "wrongly_rejected": _count(
+        "free by the checker's test, not by the planner's own", partial(measures.disagrees, False)
     ),
     "obstacle_clearance": Metric(
         "u",
@@ -208,18 +226,11 @@ METRICS: dict[str, Metric] = {
         "u", "largest depth of the path in obstacles or beyond the border", False
     ),
     "clearance": Metric("u", "least distance to the obstacles and the border", False),
-    "evaluations": Metric(
-        "-", "paths whose objective the planner asked for", False, least=0.0, step=1.0
+    "evaluations": _count("paths whose objective the planner asked for", least=0.0),
+    "points_evaluated": _count(
+        "control points of all paths evaluated", measures.points_evaluated, least=0.0
     ),
-    "points_evaluated": Metric(
-        "-",
-        "control points of all paths evaluated",
-        False,
-        measures.points_evaluated,
-        least=0.0,
-        step=1.0,
-    ),
-    "generations": Metric("-", "generations made", False, step=1.0),
+    "generations": _count("generations made"),
     "rank": Metric(
         "-",
         "rank of the objective among the rows of the table, within one unit",
@@ -231,7 +242,11 @@ METRICS: dict[str, Metric] = {
     ),
     "cpu_s": Metric("s", "CPU seconds of the run alone", False, least=0.0),
     "gap": Metric(
-        "-", "length / exact shortest length of the problem - 1", True, measures.gap, least=0.0
+        "-",
+        "length / exact shortest length of the problem - 1",
+        True,
+        partial(measures.over, "length", "bound"),
+        least=0.0,
     ),
     "gap_best": Metric(
         "-",
@@ -239,29 +254,17 @@ METRICS: dict[str, Metric] = {
         True,
         measures.gap_best,
     ),
-    "generation_improved": Metric(
-        "generation",
+    "generation_improved": _generation(
         "last generation that improved the objective",
-        False,
         partial(measures.first_generation_within, 0.0),
-        least=0.0,
-        step=1.0,
     ),
-    "generation_1pct": Metric(
-        "generation",
+    "generation_1pct": _generation(
         "first generation within 1 % of the run's final objective",
-        False,
         partial(measures.first_generation_within, 0.01),
-        least=0.0,
-        step=1.0,
     ),
-    "generation_5pct": Metric(
-        "generation",
+    "generation_5pct": _generation(
         "first generation within 5 % of the run's final objective",
-        False,
         partial(measures.first_generation_within, 0.05),
-        least=0.0,
-        step=1.0,
     ),
     "improvement_30": Metric(
         "-",
@@ -269,33 +272,22 @@ METRICS: dict[str, Metric] = {
         False,
         partial(measures.improvement_by, 30),
     ),
-    "generation_90pct_improved": Metric(
-        "generation",
+    "generation_90pct_improved": _generation(
         "first generation by which nine tenths of the run's improvement of the objective are made",
-        False,
         partial(measures.first_generation_improved_by, 0.9),
-        least=0.0,
-        step=1.0,
     ),
     "objective_best": Metric(
-        "u", "lowest objective of any generation", False, measures.lowest_objective
+        "u",
+        "lowest objective of any generation",
+        False,
+        lambda runs, _: measures.held_history(runs).min(axis=1),
     ),
     "optimum": Metric("u", "least objective of all feasible paths of the planner's kind", False),
-    "optimal": Metric(
-        "-",
-        "whether the final path is feasible and optimal, by the planner's own test",
-        False,
-        step=1.0,
+    "optimal": _count("whether the final path is feasible and optimal, by the planner's own test"),
+    "near_optimal": _count(
+        "whether the final path is feasible but not optimal, by the planner's own test"
     ),
-    "near_optimal": Metric(
-        "-",
-        "whether the final path is feasible but not optimal, by the planner's own test",
-        False,
-        step=1.0,
-    ),
-    "infeasible": Metric(
-        "-", "whether the final path is infeasible, by the planner's own test", False, step=1.0
-    ),
+    "infeasible": _count("whether the final path is infeasible, by the planner's own test"),
     "feasible_last": Metric("-", "share of feasible paths in the last population", False),
     "made_infeasible": Metric(
         "-", "share of the mutated feasible paths that mutation made infeasible", False
@@ -305,61 +297,46 @@ METRICS: dict[str, Metric] = {
         "mean over generations of the chance that a path's inner node is no node of another",
         False,
     ),
-    "max_curvature": Metric(
+    "max_curvature": _of_path(
         "1/u",
         f"largest absolute curvature over {CURVATURE_SAMPLES} samples, "
         "corners between pieces left out",
-        True,
-        partial(measures.of_path, measures.max_curvature),
+        measures.max_curvature,
     ),
-    "signed_curvature": Metric(
+    "signed_curvature": _of_path(
         "1/u",
         f"largest curvature over {CURVATURE_SAMPLES} samples by its sign, left turns positive; "
         "corners between pieces left out",
-        True,
-        partial(measures.of_path, measures.signed_curvature),
+        measures.signed_curvature,
     ),
-    "curvature_jump": Metric(
+    "curvature_jump": _of_path(
         "1/u",
         "largest jump of curvature over the joints, infinite at a corner",
-        True,
-        partial(measures.of_path, measures.curvature_jump),
+        measures.curvature_jump,
     ),
-    "zero_speed_points": Metric(
+    "zero_speed_points": _of_path(
         "-",
         f"samples of {CURVATURE_SAMPLES} where the curve stands still and curvature is not defined",
-        True,
-        partial(measures.of_path, measures.zero_speed_points),
+        measures.zero_speed_points,
         step=1.0,
     ),
-    "heading_max": Metric(
-        "rad",
-        "largest change of heading between neighbouring chords",
-        True,
-        partial(measures.of_path, measures.heading_max),
+    "heading_max": _of_path(
+        "rad", "largest change of heading between neighbouring chords", measures.heading_max
     ),
-    "turning": Metric(
-        "rad", "changes of heading, all added", True, partial(measures.of_path, measures.turning)
-    ),
-    "bending": Metric(
+    "turning": _of_path("rad", "changes of heading, all added", measures.turning),
+    "bending": _of_path(
         "rad²/u",
         f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all "
         "added: the integral of squared curvature",
-        True,
-        partial(measures.of_path, measures.bending),
+        measures.bending,
     ),
-    "max_turn": Metric(
+    "max_turn": _of_path(
         "degrees",
         f"largest change of heading between parts of {BENDING_PART:g} u",
-        True,
-        partial(measures.of_path, measures.max_turn),
+        measures.max_turn,
     ),
-    "corners": Metric(
-        "-",
-        "joints of a path's pieces at which its heading changes",
-        True,
-        partial(measures.of_path, measures.corners),
-        step=1.0,
+    "corners": _of_path(
+        "-", "joints of a path's pieces at which its heading changes", measures.corners, step=1.0
     ),
     "spare_corners": Metric(
         "-",
@@ -369,17 +346,14 @@ METRICS: dict[str, Metric] = {
         partial(measures.of_path_on_grid, measures.spare_corners),
         step=1.0,
     ),
-    "length_over_polygon": Metric(
-        "-",
-        "length / length of the control polygon",
-        True,
-        partial(measures.of_path, measures.length_over_polygon),
+    "length_over_polygon": _of_path(
+        "-", "length / length of the control polygon", measures.length_over_polygon
     ),
-    "distinct_points": Metric(
+    "distinct_points": _of_path(
         "-",
         "control points that differ from each other",
-        False,
-        partial(measures.of_path, measures.distinct_points),
+        measures.distinct_points,
+        feasible_only=False,
         step=1.0,
     ),
     "occupied_points": Metric(
@@ -394,14 +368,14 @@ METRICS: dict[str, Metric] = {
         "-",
         "length / length of the best known path of the same kind - 1",
         True,
-        measures.gap_reference,
+        lambda runs, _: runs["length"] / measures.reference(runs) - 1,
         needs=("reference",),
     ),
     "excess_reference": Metric(
         "u",
         "length - length of the best known path of the same kind",
         True,
-        measures.excess_reference,
+        lambda runs, _: runs["length"] - measures.reference(runs),
         needs=("reference",),
     ),
     "cells4": Metric(
@@ -443,12 +417,9 @@ METRICS: dict[str, Metric] = {
         step=1.0,
         on=("circles",),
     ),
-    "best_corridor": Metric(
-        "-",
+    "best_corridor": _count(
         "whether the path is free and passes each circle where the shortest one does",
-        False,
         measures.best_corridor,
-        step=1.0,
         on=("circles",),
     ),
     "gap4": Metric(
@@ -469,29 +440,29 @@ METRICS: dict[str, Metric] = {
         **_CELLS8,
         on=("grid",),
     ),
-    "straight_blocked": Metric(
-        "-",
+    "straight_blocked": _count(
         "whether the straight line from start to target touches an occupied cell",
-        False,
         measures.straight_blocked,
-        step=1.0,
         on=("grid",),
     ),
     "history_mean": Metric(
-        "u", "mean over the generations of the best objective so far", False, measures.history_mean
+        "u",
+        "mean over the generations of the best objective so far",
+        False,
+        lambda runs, _: measures.held_history(runs).mean(axis=1),
     ),
     "deviation": Metric(
         "-",
         "absolute deviation of the length from the median of its condition and method, relative",
         True,
-        measures.deviation,
+        partial(measures.deviation, "length"),
     ),
     "work_deviation": Metric(
         "-",
         "absolute deviation of the evaluations from the "
         "median of their condition and method, relative",
         False,
-        measures.work_deviation,
+        partial(measures.deviation, "evaluations"),
     ),
     "distinct_chromosomes": Metric(
         "-", "different chromosomes in the population, mean over the generations", False
@@ -500,16 +471,10 @@ METRICS: dict[str, Metric] = {
     "population_q": Metric(
         "-", "mean Q statistic of the surviving population, mean over the generations", False
     ),
-    "extra_batches": Metric(
-        "-", "further batches of offspring that the rule for diversity asked for", False, step=1.0
-    ),
+    "extra_batches": _count("further batches of offspring that the rule for diversity asked for"),
     "valid_share": Metric("-", "share of the children that the planner kept", False),
-    "outlier": Metric(
-        "-",
-        "whether the objective lies beyond the whiskers of its method's box",
-        False,
-        measures.outlier,
-        step=1.0,
+    "outlier": _count(
+        "whether the objective lies beyond the whiskers of its method's box", measures.outlier
     ),
     "violation": Metric(
         "-",
@@ -531,11 +496,9 @@ METRICS: dict[str, Metric] = {
         "samples", "colliding samples of the best path, added over iterations", False, step=1.0
     ),
     "collisions_d": Metric("iterations", "iterations whose best path collides", False, step=1.0),
-    "collisions_e": Metric(
-        "-", "whether the final path collides, by the planner's own test", False, step=1.0
-    ),
-    "collisions_f": Metric("-", "paths evaluated that collide", False, step=1.0),
-    "bad_samples": Metric("-", "samples of the path that the planner penalised", False, step=1.0),
+    "collisions_e": _count("whether the final path collides, by the planner's own test"),
+    "collisions_f": _count("paths evaluated that collide"),
+    "bad_samples": _count("samples of the path that the planner penalised"),
     # Of drives in dynamic environments.
     "arrival": Metric("steps", "when the robot arrives", True, least=0.0),
     "steps": Metric("steps", "how long the robot drives and waits", False, least=0.0),
@@ -548,42 +511,32 @@ METRICS: dict[str, Metric] = {
         False,
         least=0.0,
     ),
-    "replans": Metric("-", "plans after the first", False, least=0.0, step=1.0),
+    "replans": _count("plans after the first", least=0.0),
     "waits": Metric("steps", "how long the robot waits", False, least=0.0),
-    "collision_steps": Metric(
-        "-", "steps in which the robot is in an obstacle", False, least=0.0, step=1.0
+    "collision_steps": _count("steps in which the robot is in an obstacle", least=0.0),
+    "collided": _count(
+        "whether the robot is in an obstacle at any time",
+        lambda runs, _: runs["collision_at"].notna(),
     ),
-    "collided": Metric(
-        "-", "whether the robot is in an obstacle at any time", False, measures.collided, step=1.0
+    "hit_waiting": _count("whether the robot waits when it first collides"),
+    "avoidable": _count(
+        "whether the robot could have escaped its first collision when it could know of it"
     ),
-    "hit_waiting": Metric("-", "whether the robot waits when it first collides", False, step=1.0),
-    "avoidable": Metric(
-        "-",
-        "whether the robot could have escaped its first collision when it could know of it",
-        False,
-        step=1.0,
-    ),
-    "avoidable_waiting": Metric(
-        "-",
+    "avoidable_waiting": _count(
         "whether it waits at a first collision that it could have escaped",
-        False,
-        measures.avoidable_waiting,
-        step=1.0,
+        lambda runs, _: runs["avoidable"] & runs["hit_waiting"],
         needs=("avoidable", "hit_waiting"),
     ),
-    "unforeseen": Metric(
-        "-",
+    "unforeseen": _count(
         "whether the robot collides and could not know of it before",
-        False,
-        measures.unforeseen,
-        step=1.0,
+        lambda runs, _: runs["collision_at"].notna() & runs["known_at"].isna(),
         needs=("known_at",),
     ),
     "warning": Metric(
         "steps",
         "from when the robot could know of its first collision until then",
         False,
-        measures.warning,
+        lambda runs, _: runs["collision_at"] - runs["known_at"],
         least=0.0,
         needs=("known_at",),
     ),
@@ -597,14 +550,14 @@ METRICS: dict[str, Metric] = {
         "-",
         "arrival / earliest arrival of all drives and of the clairvoyant search - 1",
         True,
-        measures.gap_arrival,
+        _GAP_ARRIVAL,
         needs=("arrival",),
     ),
     "gap_least_arrival": Metric(
         "-",
         "arrival / lower bound on the arrival - 1",
         True,
-        measures.gap_least_arrival,
+        _GAP_LEAST_ARRIVAL,
         least=0.0,
         needs=("arrival",),
     ),
@@ -612,7 +565,7 @@ METRICS: dict[str, Metric] = {
         "-",
         "gap_arrival where all methods of the table arrive",
         False,
-        partial(measures.paired, measures.gap_arrival),
+        partial(measures.paired, _GAP_ARRIVAL),
         among_rows=True,
         needs=("arrival",),
     ),
@@ -620,7 +573,7 @@ METRICS: dict[str, Metric] = {
         "-",
         "gap_least_arrival where all methods of the table arrive",
         False,
-        partial(measures.paired, measures.gap_least_arrival),
+        partial(measures.paired, _GAP_LEAST_ARRIVAL),
         among_rows=True,
         least=0.0,
         needs=("arrival",),
@@ -639,9 +592,7 @@ METRICS: dict[str, Metric] = {
         "steps", "earliest arrival found by the clairvoyant search, which knows the future", False
     ),
     "clairvoyant_length": Metric(
-        "u",
-        "distance travelled with the earliest arrival that the clairvoyant search found",
-        False,
+        "u", "distance travelled with the earliest arrival that the clairvoyant search found", False
     ),
     "replan_mean_s": Metric(
         "s", "CPU seconds of a plan after the first, mean of a drive", False, least=0.0
@@ -649,31 +600,23 @@ METRICS: dict[str, Metric] = {
     "replan_95_s": Metric(
         "s", "CPU seconds of a plan after the first, 95th percentile of a drive", False, least=0.0
     ),
-    "replans_late": Metric(
-        "-", "plans after the first that took longer than a step", False, least=0.0, step=1.0
-    ),
+    "replans_late": _count("plans after the first that took longer than a step", least=0.0),
     "replan_max_s": Metric(
         "s", "CPU seconds of a plan after the first, largest of a drive", False, least=0.0
     ),
-    "fine_bad": Metric(
-        "-",
+    "fine_bad": _count(
         f"samples of {FINE_SAMPLES} in occupied cells of a grid",
-        False,
         partial(measures.of_path_on_grid, measures.fine_bad),
-        step=1.0,
         on=("grid",),
     ),
 }
 
 for _within in running_time.TARGETS:
     _percent = f"{100 * _within:.0f}"
-    METRICS[f"within_{_percent}pct"] = Metric(
-        "-",
-        f"whether the path is certified and at most {_percent} % longer than "
-        "the exact shortest one",
-        False,
+    METRICS[f"within_{_percent}pct"] = _count(
+        f"whether the path is certified and at most {_percent} % longer than the exact shortest "
+        "one",
         partial(running_time.solved, _within),
-        step=1.0,
     )
     for _cost, _unit in (("evaluations", "-"), ("cpu_s", "s")):
         METRICS[f"{_cost}_to_{_percent}pct"] = Metric(

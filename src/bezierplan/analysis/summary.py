@@ -2,6 +2,7 @@
 confirmed.
 """
 
+import itertools
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -69,18 +70,11 @@ def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
         for (study, table), frame in comparisons.items()
     ]
     everything = pd.concat(frames, ignore_index=True)
-    last = list(
-        everything.columns[everything.columns.get_loc("metric") :].drop(
-            ["study", "table", "primary"], errors="ignore"
-        )
-    )
-    keys = [
-        column
-        for column in everything.columns
-        if column not in last and column not in ("study", "table", "primary")
-    ]
+    first = ["study", "table", "primary"]
+    last = everything.columns[everything.columns.get_loc("metric") :].difference(first, sort=False)
+    keys = list(everything.columns.difference([*first, *last], sort=False))
     everything = everything.assign(counted=_counted(everything, keys))
-    return everything[["study", "table", "primary", "counted", *keys, *last]]
+    return everything[[*first, "counted", *keys, *last]]
 
 
 def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
@@ -96,12 +90,9 @@ def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     counted = (numbers["primary"] & numbers["in_range"].notna() & possible).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
-        for n, (index, row) in enumerate(rows.iterrows()):
-            earlier = rows.iloc[:n]
-            if any(
-                each["table"] != row["table"] and _same_place(each, row, keys)
-                for _, each in earlier.iterrows()
-            ):
+        listed = list(rows.iterrows())
+        for (_, earlier), (index, row) in itertools.combinations(listed, 2):
+            if earlier["table"] != row["table"] and _same_place(earlier, row, keys):
                 counted[numbers.index.get_loc(index)] = False
     place = ["study", "table", "n_published", *keys]
     counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
@@ -196,24 +187,18 @@ def report(
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
     columns = [
-        "statement",
-        "verdict",
-        "verdict_papers_size",
-        "replication_probability",
-        "interpretations",
-        "holds",
-        "where_it_holds",
+        *("statement", "verdict", "verdict_papers_size", "replication_probability"),
+        *("interpretations", "holds", "where_it_holds", "units_to_decide"),
+        *("published", "effect", "size", "n"),
     ]
-    columns += ["units_to_decide", "published", "effect", "size", "n"]
     shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
-    for column in shown.columns.intersection(["effect", "replication_probability"]):
-        shown[column] = [
-            f"{value:.3g}" if isinstance(value, float) else value for value in shown[column]
-        ]
     # Read from a file with gaps, whole numbers are floats.
-    for column in shown.columns.intersection(["units_to_decide", "n"]):
+    whole = dict.fromkeys(("units_to_decide", "n"), ".0f")
+    digits = whole | dict.fromkeys(("effect", "replication_probability"), ".3g")
+    for column in shown.columns.intersection(list(digits)):
         shown[column] = [
-            f"{value:.0f}" if isinstance(value, float) else value for value in shown[column]
+            format(value, digits[column]) if isinstance(value, float) else value
+            for value in shown[column]
         ]
     return table_text(shown)
 

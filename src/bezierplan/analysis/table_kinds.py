@@ -61,9 +61,7 @@ class TableValue(Model):
     )
     statistic: listed(Statistic, single=True) = Field(
         description="the name of a statistic (`src/bezierplan/analysis/statistics.py`) or a list "
-        "of names; `unstated` where the "
-        "paper does not say, "
-        "and ours is then the median"
+        "of names; `unstated` where the paper does not say, and ours is then the median"
     )
     where: Where = Field(
         {}, description="column of the runs table → value or list of values: the runs that count"
@@ -156,8 +154,7 @@ class Pivot(Table):
     within: Column = Field(
         None,
         description="the column of which all runs behind a published number share one value, such "
-        "as layout: predictions are then for "
-        "experiments within one of ours; left out: none",
+        "as layout: predictions are then for experiments within one of ours; left out: none",
     )
     monotone: Annotated[list[Monotone], at_most(MOST_VALUES)] = Field(
         [],
@@ -167,8 +164,7 @@ class Pivot(Table):
     fitted: Flag = Field(
         False,
         description="true if the workspaces were reconstructed so that the published lengths are "
-        "possible: the audit does not compare them "
-        "with its bounds; left out: false",
+        "possible: the audit does not compare them with its bounds; left out: false",
     )
     identify: list[Identify] = Field(
         [],

@@ -83,56 +83,40 @@ def cells(
     rows = []
     for key, group in runs[keys].groupby(keys, dropna=False):
         positions = group.index.to_numpy()
-        shares = {
+        same = {
+            **dict(zip(keys, key)),
+            "runs": len(positions),
             "share_claimed": claimed[positions].mean(),
             "share_feasible": feasible[positions].mean(),
         }
-        same = {**dict(zip(keys, key)), "runs": len(positions), **shares}
         for value, (entry, metric) in enumerate(zip(entries, described)):
-            of_group = {
+            of_entry = positions[asked[value][positions]]
+            # A run without a value counts nowhere.
+            chosen = of_entry[~np.isnan(taken[value][of_entry])]
+            numbers = taken[value][chosen]
+            least, groups = leasts[value], None
+            if units is not None:
+                own = units[chosen]
+                # Tuples, because pandas would expand lists of arrays.
+                groups = tuple(np.sort(numbers[own == unit]) for unit in np.unique(own))
+            if isinstance(least, str):
+                least = np.fmin.reduce(bounds[least][positions])
+            cell = same | {
                 "bound": _median(bounds[metric.bound][positions]),
                 "gap": _median(measured[metric.gap][positions]),
-                "least": np.fmin.reduce(bounds[leasts[value]][positions])
-                if isinstance(leasts[value], str)
-                else leasts[value],
+                "least": least,
                 "most": metric.most,
-            }
-            chosen = positions[asked[value][positions]]
-            cell = {
                 "value": value,
                 "metric": entry.metric,
                 "decimals": entry.decimals,
-                "asked": len(chosen),
+                "asked": len(of_entry),
+                "numbers": np.sort(numbers),
+                "groups": groups,
             }
-            chosen = chosen[~np.isnan(taken[value][chosen])]  # a run without a value counts nowhere
-            numbers = taken[value][chosen]
-            # Tuples, because pandas would expand lists of arrays.
-            groups = (
-                None
-                if units is None
-                else tuple(
-                    np.sort(numbers[units[chosen] == unit]) for unit in np.unique(units[chosen])
-                )
-            )
-            for statistic in entry.statistics:
-                rows.append(
-                    same
-                    | of_group
-                    | cell
-                    | {"statistic": statistic, "numbers": np.sort(numbers), "groups": groups}
-                )
+            rows += [cell | {"statistic": statistic} for statistic in entry.statistics]
     of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
-    columns = [
-        *keys,
-        *of_runs,
-        "value",
-        "metric",
-        "statistic",
-        "decimals",
-        "asked",
-        "numbers",
-        "groups",
-    ]
+    of_cell = ["value", "metric", "statistic", "decimals", "asked", "numbers", "groups"]
+    columns = [*keys, *of_runs, *of_cell]
     # Of type object, so that integers stay integers next to published numbers without runs.
     return pd.DataFrame(rows, columns=columns).assign(
         decimals=pd.Series([row["decimals"] for row in rows], dtype=object)
@@ -165,17 +149,12 @@ def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame
     """
     index, columns = _levels(spec)
     table = in_order(cells(results, spec, spec.key_columns), spec, list(results.problems))
-    statistic_order = list(
-        dict.fromkeys(statistic for entry in spec.values for statistic in entry.statistics)
-    )
-    table["statistic"] = pd.Categorical(
-        table["statistic"], categories=statistic_order, ordered=True
-    )
+    order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
+    table["statistic"] = pd.Categorical(table["statistic"], categories=list(order), ordered=True)
+    numbers_behind = zip(table["statistic"], table["numbers"], table["decimals"])
     table["text"] = [
-        _printed(statistics.statistic(statistic, numbers), decimals)
-        for statistic, numbers, decimals in zip(
-            table["statistic"], table["numbers"], table["decimals"]
-        )
+        _printed(statistics.statistic(name, numbers), decimals)
+        for name, numbers, decimals in numbers_behind
     ]
     rows, heads = (
         table[levels].drop_duplicates().sort_values(levels) for levels in (index, columns)
@@ -221,16 +200,10 @@ def _with_counts(
             continue
         have, of = counted.iloc[:, row], asked.iloc[:, row]
         if (have < of).any():
-            texts = [
-                f"{number:.0f} of {total:.0f}" if total > 0 else ""
-                for number, total in zip(have, of)
-            ]
-            name = " to ".join(filter(None, dict.fromkeys([stems[first], stems[row]])))
-            columns.append(
-                pd.Series(
-                    texts, wide.index, object, f"runs counted: {name}" if name else "runs counted"
-                )
-            )
+            texts = [f"{n:.0f} of {total:.0f}" if total > 0 else "" for n, total in zip(have, of)]
+            of_what = " to ".join(filter(None, dict.fromkeys([stems[first], stems[row]])))
+            name = ": ".join(filter(None, ["runs counted", of_what]))
+            columns.append(pd.Series(texts, wide.index, object, name))
         first = row + 1
     return pd.concat(columns, axis=1) if columns else wide
 

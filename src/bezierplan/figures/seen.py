@@ -15,19 +15,11 @@ if TYPE_CHECKING:
 
 
 def extremes(name: str, values: Mapping[str, float]) -> str:
-    """Which of several has the lowest and which the highest value; nothing unless two are known.
+    """Which of several has the lowest and which the highest value, as a clause; nothing unless two
+    are known.
 
-    Parameters
-    ----------
-    name : str
-        What the values are, such as `median`.
-    values : mapping of str to float
-        Values by the printed names of what is compared; those that are not finite are left out.
-
-    Returns
-    -------
-    str
-        A clause.
+    name: what the values are, such as `median`. values: by the printed names of what is compared;
+    those that are not finite are left out.
     """
     known = {key: value for key, value in values.items() if np.isfinite(value)}
     if len(known) < 2:
@@ -48,20 +40,10 @@ def _printed(value: float) -> str:
 
 
 def mostly(name: str, table: pd.DataFrame) -> str:
-    """Which column has the lowest and which the highest value in most rows; as `extremes` for a
-    single row.
+    """Which column has the lowest and which the highest value in most rows, as a clause; as
+    `extremes` for a single row, and nothing unless a row has two known values.
 
-    Parameters
-    ----------
-    name : str
-        What the values are.
-    table : DataFrame
-        A row per place of the comparison, a column per printed name of what is compared.
-
-    Returns
-    -------
-    str
-        A clause; nothing unless a row has two known values.
+    table: a row per place of the comparison, a column per printed name of what is compared.
     """
     compared = table[table.notna().sum(axis=1) > 1]
     if compared.empty:

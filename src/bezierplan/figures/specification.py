@@ -46,23 +46,14 @@ def draw(interpretations: pd.DataFrame, choices: list[str]) -> Figure:
 
 def _draw_curve(axes: Axes, ordered: pd.DataFrame) -> None:
     place = np.arange(len(ordered))
-    axes.plot(
-        place, ordered["in_range"], label="in range", marker="o", markersize=2.5, **style.OURS
-    )
-    axes.plot(
-        place,
-        ordered["by_chance"],
-        label="expected with the printed numbers permuted",
-        **style.REFERENCE,
-    )
+    found = style.OURS | {"marker": "o", "markersize": 2.5}
+    axes.plot(place, ordered["in_range"], label="in range", **found)
+    label = "expected with the printed numbers permuted"
+    axes.plot(place, ordered["by_chance"], label=label, **style.REFERENCE)
     axes.axhline(ordered["numbers"].iloc[0], label="all", **style.BOUND)
     default = ordered.index[ordered["interpretation"] == "default"]
-    axes.plot(
-        default,
-        ordered["in_range"][default],
-        label="the default interpretation",
-        **style.PUBLISHED_MARK,
-    )
+    label, in_range = "the default interpretation", ordered["in_range"][default]
+    axes.plot(default, in_range, label=label, **style.PUBLISHED_MARK)
     axes.set_ylim(bottom=0)
     axes.set_ylabel("published numbers")
     axes.legend(loc="lower right", ncols=2)
@@ -71,9 +62,7 @@ def _draw_curve(axes: Axes, ordered: pd.DataFrame) -> None:
 def _draw_choices(axes: Axes, ordered: pd.DataFrame, rows: list[tuple[str, str]]) -> None:
     for row, (choice, value) in enumerate(rows):
         made = np.flatnonzero(ordered[choice].fillna("").astype(str) == value)
-        axes.plot(
-            made, np.full(len(made), row), linestyle="", marker="|", markersize=5, color=style.BLACK
-        )
+        axes.plot(made, np.full(len(made), row), **style.mark("|", 5, style.BLACK))
     axes.set_yticks(range(len(rows)), [f"{choice} = {value}" for choice, value in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xlabel("interpretation, ordered by how many published numbers it explains")

@@ -7,12 +7,13 @@ differ in line style, width or mark. A method has one look, in all figures of al
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
 # Widths of one and of two text columns of a journal, in inches.
 NARROW, WIDE = 85 / 25.4, 174 / 25.4
@@ -50,6 +51,12 @@ SETTINGS = {
     "svg.fonttype": "none",  # text stays text: searchable, and readable by screen readers
     "svg.hashsalt": "bezierplan",  # equal drawings get equal identifiers
 }
+
+
+def mark(shape: str, size: float, colour: str, **more: Any) -> dict[str, Any]:
+    """The style of marks without a line; more: of matplotlib's properties."""
+    return {"color": colour, "linestyle": "", "marker": shape, "markersize": size, **more}
+
 
 RED, BLUE, BLACK, AMBER = "#DD3322", "#004488", "#000000", "#E69F00"
 LIGHT_BLUE = "#B7CDE6"
@@ -105,16 +112,9 @@ LOOK_OF_PLANNER = {
 SCALE, _DARKEST, _LIGHTEST = "viridis", 0.0, 0.58
 
 BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
-PUBLISHED_MARK = {
-    "color": BLACK,
-    "linestyle": "",
-    "marker": "D",
-    "markersize": 4.5,
-    "markerfacecolor": "#FFFFFF",
-    "markeredgewidth": 0.9,
-}
-
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
+
+PUBLISHED_MARK = mark("D", 4.5, BLACK, markerfacecolor=FREE, markeredgewidth=0.9)
 
 # In the legend, an interval as a bar or as a band: of no method's colour, because all have one.
 INTERVAL = {"color": "0.35", "linewidth": 0.8, "label": "95 % interval"}
@@ -126,13 +126,7 @@ INTERVAL_BAND = {
 }
 
 # In the legend, the mark of a statistic to which not all runs contribute.
-HOLLOW = {
-    "linestyle": "",
-    "marker": "o",
-    "markersize": 3.5,
-    "color": BLACK,
-    "markerfacecolor": FREE,
-}
+HOLLOW = mark("o", 3.5, BLACK, markerfacecolor=FREE)
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
@@ -298,6 +292,22 @@ def in_milliseconds(axis: Any) -> None:
     if axis.get_label_text().endswith("(s)"):
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{1000 * value:,.6g}"))
         axis.set_label_text(f"{axis.get_label_text().removesuffix('(s)')}(ms)")
+
+
+def name_rows(axes: Axes, names: Sequence[str], room: float = 0.5) -> None:
+    """Name rows at heights 0, 1, ..., the first on top, with so much room beyond the outer ones."""
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 1 + room, -room)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(visible=True, axis="x")
+
+
+def separate_rows(axes: Axes, rows: int) -> None:
+    """Draw thin lines between rows at heights 0, 1, ..."""
+    import numpy as np
+
+    thin = {"color": "0.8", "linewidth": 0.5, "zorder": 0.5}
+    axes.hlines(np.arange(rows - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), **thin)
 
 
 def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:

@@ -40,8 +40,7 @@ class Claim(Model):
     artefact: listed(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
         [],
         description="the table or figure that shows it, or a list of them; the groups that `rest` "
-        "and the metric rank "
-        "range over are theirs",
+        "and the metric rank range over are theirs",
     )
     finding: Literal[True] = Field(
         None, description="true: our own finding, no sentence of the paper; left out otherwise"
@@ -61,8 +60,7 @@ class Claim(Model):
     variants: dict[str, listed(Values, least=2)] = Field(
         {},
         description="column → list of values: the claim is judged with the first one, and once "
-        "more, in a row of its own, with each of the "
-        "others in its place",
+        "more, in a row of its own, with each of the others in its place",
         min_length=1,
     )
     checks: Annotated[list[Annotated[Check, one_of("test", kinds())]], at_most(MOST_CHECKS)] = (

@@ -80,12 +80,9 @@ def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list
         if across in where:
             groups += one_or_list(where[across])
         else:
-            runs = [
-                material.results[name].runs
-                for name in check.experiments
-                if name in material.results
-            ]
-            groups += sorted({group for table in runs for group in table[across].dropna()})
+            made = [name for name in check.experiments if name in material.results]
+            every = [material.results[name].runs[across].dropna() for name in made]
+            groups += sorted(set(itertools.chain(*every)))
     return list(dict.fromkeys(groups))
 
 
@@ -100,39 +97,33 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
         raise Untestable("no run is of the conditions that the claim names")
     column, unit = check.cells, check.replicate
     every, pool = check.every, check.pooled
-    tables, printed_metric = _published_tables(check, claim, material), check.printed_metric
-    keys = [
-        "experiment",
-        *every,
-        *pool,
-        *([column] if column else []),
-        *(key for _, table in tables for key in table if key in runs),
-    ]
-    keys = list(dict.fromkeys(key for key in keys if key != "value"))
-    printed_tables = [
-        printed_table(experiment, table, printed_metric) for experiment, table in tables
-    ]
+    told_apart = [*every, *pool, *([column] if column else [])]
+    tables = _published_tables(check, claim, material)
+    of_tables = [key for _, table in tables for key in table if key in runs and key != "value"]
+    keys = list(dict.fromkeys(["experiment", *told_apart, *of_tables]))
+    printed_tables = [printed_table(*each, check.printed_metric) for each in tables]
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
-    _refuse_mixtures(check, claim, runs, [*every, *pool, *([column] if column else []), unit])
+    _refuse_mixtures(check, claim, runs, [*told_apart, unit])
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
     typical = _typical(check, claim, material)
+    paired = check.pairs_units
+    if paired is None:
+        paired = _shares_draws(check, material)
     made = []
     for condition, rows in _split(runs, every):
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
         conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
         compared = list(kind_of(check).cells(check, rows))
-        printed_rows = {
-            cell: [
-                rows_of_cell(
-                    [row for row in part if column is None or row[column] == cell],
-                    printed_tables,
-                    material.variant_of,
-                )
+        printed_rows = {}
+        for cell in dict.fromkeys(cell for _, cells in compared for cell in cells):
+            own = [
+                [row for row in part if column is None or row[column] == cell]
                 for part in conditions
             ]
-            for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)
-        }
+            printed_rows[cell] = [
+                rows_of_cell(part, printed_tables, material.variant_of) for part in own
+            ]
         for name, cells in compared:
             strata = {
                 key: effects.event(check, table.reindex(columns=cells).to_numpy())
@@ -150,9 +141,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                     printed=numbers,
                     paper_units=number_of_runs or material.repeats.get(check.experiments[0]),
                     boolean=_is_boolean(check, material),
-                    paired=_shares_draws(check, material)
-                    if check.pairs_units is None
-                    else check.pairs_units,
+                    paired=paired,
                     note=_note(check, rows, column, cells),
                     factors=tuple((key, rows[key].iloc[0]) for key in every),
                     typical=typical.get((condition, name), math.nan),

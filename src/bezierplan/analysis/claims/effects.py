@@ -169,6 +169,11 @@ def effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
         return kind_of(check).EFFECT.of(check, points, cells)
 
 
+def of_ours(check: OfRuns, comparison: Comparison) -> float:
+    """The effect of the statistic of our values."""
+    return float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
+
+
 def claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether an effect is what the claim says, by its value alone."""
     return kind_of(check).EFFECT.claimed(check, effects, margin)
@@ -312,7 +317,7 @@ def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     from our runs.
     """
     statistic = point_statistic(check)
-    ours = float(effect(check, points(comparison, statistic), comparison.cells))
+    ours = of_ours(check, comparison)
     margin, n = margin_of(check, comparison), units(comparison)
     finding = Finding(
         effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin
@@ -373,17 +378,11 @@ def no_difference(low: float, high: float, n: int) -> str:
 
 def units(comparison: Comparison) -> int:
     """Units of the smallest cell, over all conditions."""
-    return min(
-        map(
-            sum,
-            zip(
-                *(
-                    map(len, counted(stratum, comparison.paired))
-                    for stratum in comparison.strata.values()
-                )
-            ),
-        )
-    )
+    sizes = [
+        [len(values) for values in counted(stratum, comparison.paired)]
+        for stratum in comparison.strata.values()
+    ]
+    return min(map(sum, zip(*sizes)))
 
 
 def too_few(comparison: Comparison) -> str:

@@ -175,15 +175,18 @@ def _judge_variant(
         [each.mark for each in deciding], [each.mark_family for each in deciding], holds
     )
     everywhere = verdict == "supported" and holds != "any"
-    summary = {
+    reasons = [
+        _by_own_criterion(claim, verdict),
+        _less_than(deciding, verdict, material),
+        _reason(shown),
+        _disagreement(judged),
+        claim.note or "",
+    ]
+    summary = finding._asdict() | {
         "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
         "where_it_holds": "" if everywhere else _where_it_holds(judged, material.labels),
         "published": _published(deciding),
-        **{
-            key: getattr(finding, key)
-            for key in ("effect", "effect_size_name", "effect_size", "n", "p")
-        },
         "low95": finding.low,
         "high95": finding.high,
         "counted": shown.comparison.counted if shown.comparison else "",
@@ -191,18 +194,7 @@ def _judge_variant(
         "units_to_decide": _units_to_decide(deciding) if verdict == "undecided" else pd.NA,
         "replication_probability": _replication_probability(deciding, holds, f"{name}/replication"),
         "size": _size(shown),
-        "reason": "; ".join(
-            filter(
-                None,
-                [
-                    _by_own_criterion(claim, verdict),
-                    _less_than(deciding, verdict, material),
-                    _reason(shown),
-                    _disagreement(judged),
-                    claim.note or "",
-                ],
-            )
-        ),
+        "reason": "; ".join(filter(None, reasons)),
     }
     return described | summary, rows
 
@@ -503,20 +495,10 @@ def _reason(each: _Judged) -> str:
 
 
 def _check_row(judged: _Judged, material: Material) -> dict:
+    """A row of claim_checks.csv, whose columns leave out the rest of the finding."""
     check, finding = judged.check, judged.finding
     effect_published, held = _printed(judged)
-    fields = (
-        "effect",
-        "effect_size_name",
-        "effect_size",
-        "n",
-        "p",
-        "margin",
-        "least_detectable",
-        "rho",
-        "r_squared",
-    )
-    return {
+    return finding._asdict() | {
         "check": judged.number,
         "primary": judged.primary,
         "test": check.test,
@@ -529,7 +511,6 @@ def _check_row(judged: _Judged, material: Material) -> dict:
         "mark": judged.mark,
         "mark_family": judged.mark_family,
         "counted": judged.comparison.counted if judged.comparison else "",
-        **{key: getattr(finding, key) for key in fields},
         "low95": finding.low,
         "high95": finding.high,
         "p_family": judged.p_family,

@@ -6,6 +6,7 @@ Numbers of equations, sections, tables and figures are the paper's.
 
 import itertools
 import math
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -14,9 +15,11 @@ import pandas as pd
 import shapely
 
 from bezierplan.analysis import statistics
+from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.papers.validation import curve_through, is_free, verdicts
-from bezierplan.analysis.results import Results, path_of, select
+from bezierplan.analysis.results import path_of, select
 from bezierplan.geometry.cell_length import DIAGONAL, samples
 from bezierplan.geometry.region import region
 from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
@@ -25,10 +28,11 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 
-def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
+def said(published: "Published") -> dict[str, float]:
     """Values in the text, by quantity; a fraction stands for its value."""
     return {
         row.quantity: float(Fraction(str(row.value)))
@@ -36,7 +40,7 @@ def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
     }
 
 
-def solutions(published: dict[str, pd.DataFrame]) -> dict[str, np.ndarray]:
+def solutions(published: "Published") -> dict[str, np.ndarray]:
     """Table 1: the genes (10,) of each solution."""
     return {
         name: rows.sort_values("gene")["value"].to_numpy()
@@ -52,7 +56,7 @@ def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
     }
 
 
-def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def q_table(published: "Published") -> pd.DataFrame:
     """Table 1 and derived quantities: genes of the solutions, counts and Q (equation 10) of their
     pairs, and the mean Q.
     """
@@ -75,9 +79,7 @@ def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return table.astype(dict.fromkeys(whole, "Int64")).round({"Q": 4})
 
 
-def q_example(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, None, int]:
+def q_example(check: "Check", results: "Experiments", published: "Published") -> "Judged":
     """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest
     difference from a printed value.
     """
@@ -93,9 +95,7 @@ def q_example(
     return "+" if holds else "-", most, None, len(q_values)
 
 
-def printed_over_bound(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, None, int]:
+def printed_over_bound(check: "Check", results: "Experiments", published: "Published") -> "Judged":
     """Claim C23: whether no printed length of a competing method is larger than such fields
     explain.
 
@@ -117,15 +117,15 @@ def printed_over_bound(
 
 
 def fitness_leads(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
+    check: "Check",
+    results: "Experiments",
+    published: "Published",
     *,
     population: int,
     offspring: int,
     genes: int,
     words: list[int],
-) -> tuple[str, float, tuple[float, float], int]:
+) -> "Judged":
     """Claim C21: whether fitness takes more work than diversity, counted because seconds differ
     from machine to machine. Raises Untestable where this depends on how the genes are counted.
 
@@ -170,7 +170,7 @@ def fitness_leads(
     return marks[0], float(table[:, 0].mean()), ends[0], len(table)
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Printed numbers that contradict the text, other tables or the rule for counting lengths.
 
     A straight diagonal counts 1.5 cells per cell of the side, the minimum for a path between
@@ -180,67 +180,36 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     example, in Section 3.3 eta decreases linearly to 0 and then accepts more, and in Section 2.2.2
     any mutation leaves the subspace of a crossover.
     """
-    rows = []
-    printed = said(published)
+    parts = (_audit_lengths, _audit_times, _audit_example, _audit_text, _growth)
+    return [row for part in parts for row in part(published)]
+
+
+def _audit_lengths(published: "Published") -> Iterator[dict]:
+    least_rule = (
+        f"no path between opposite corners counts less than {DIAGONAL:g} cells for each of the side"
+    )
+    most_rule = "a path that never turns back counts at most 2 cells for each of the side"
     for table, side in _sides(published).items():
         cells = published[table]
-        for row in cells.itertuples():
-            rule = (
-                f"no path between opposite corners counts less than {DIAGONAL:g} cells for "
-                "each of the side"
-            )
-            rows.append(
-                _row(
-                    table,
-                    _place(row),
-                    rule,
-                    row.value,
-                    DIAGONAL * side,
-                    row.value >= DIAGONAL * side,
-                )
-            )
-            rule = "a path that never turns back counts at most 2 cells for each of the side"
-            rows.append(_row(table, _place(row), rule, row.value, 2 * side, row.value <= 2 * side))
+        for cell in cells.itertuples():
+            location = f"route={cell.route}, obstacles={cell.obstacles}, method={cell.method}"
+            yield compared(table, location, least_rule, cell.value, ">=", DIAGONAL * side)
+            yield compared(table, location, most_rule, cell.value, "<=", 2 * side)
         for (route, obstacles), column in cells.groupby(["route", "obstacles"]):
             lengths = column.set_index("method")["value"]
-            cell = f"route={route}, obstacles={obstacles}"
-            others = lengths.drop("prm").max()
+            location = f"route={route}, obstacles={obstacles}, method="
+            prm, mga, ga = lengths["prm"], lengths["mga"], lengths["ga"]
             rule = "the text has PRM the longest"
-            rows.append(
-                _row(
-                    table,
-                    f"{cell}, method=prm",
-                    rule,
-                    lengths["prm"],
-                    others,
-                    lengths["prm"] > others,
-                )
-            )
-            least = lengths.drop("mga").min()
+            yield compared(table, f"{location}prm", rule, prm, ">", lengths.drop("prm").max())
             rule = "the text has the proposed method the shortest"
-            rows.append(
-                _row(
-                    table,
-                    f"{cell}, method=mga",
-                    rule,
-                    lengths["mga"],
-                    least,
-                    lengths["mga"] < least,
-                )
-            )
+            yield compared(table, f"{location}mga", rule, mga, "<", lengths.drop("mga").min())
             if table == "table2":
                 rivals = lengths.drop(["mga", "ga"]).min()
                 rule = "the text has GA second"
-                rows.append(
-                    _row(
-                        table,
-                        f"{cell}, method=ga",
-                        rule,
-                        lengths["ga"],
-                        rivals,
-                        lengths["mga"] < lengths["ga"] < rivals,
-                    )
-                )
+                yield checked(table, f"{location}ga", rule, ga, rivals, bool(mga < ga < rivals))
+
+
+def _audit_times(published: "Published") -> Iterator[dict]:
     means = {
         name: published[name]
         .query("statistic == 'mean'")
@@ -248,102 +217,61 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         .sort_index()
         for name in ("table5", "table6")
     }
+    rule = "the text has the proposed method cheaper than all others in all cases"
     for table, times in means.items():
         for (method, obstacles), time in times.drop("mga").items():
-            ours = times["mga", obstacles]
-            rule = "the text has the proposed method cheaper than all others in all cases"
-            rows.append(
-                _row(
-                    table,
-                    f"method=mga, obstacles={obstacles}, beside {method}",
-                    rule,
-                    ours,
-                    time,
-                    ours < time,
-                )
+            location = f"method=mga, obstacles={obstacles}, beside {method}"
+            yield compared(table, location, rule, times["mga", obstacles], "<", time)
+    both = "Tables 5 and 6 print the same time of"
+    for obstacles in means["table5"]["mga"].index:
+        for rule, location, *methods in (
+            (f"{both} the proposed method", "method=mga", "mga", "mga"),
+            (f"{both} what both call GA", "method=GA", "mga_plain", "ga"),
+        ):
+            time, later = (
+                times[method, obstacles] for times, method in zip(means.values(), methods)
             )
-    for obstacles, time in means["table5"]["mga"].items():
-        later = means["table6"]["mga", obstacles]
-        rule = "Tables 5 and 6 print the same time of the proposed method"
-        rows.append(
-            _row("table5", f"method=mga, obstacles={obstacles}", rule, time, later, time == later)
-        )
-        time, later = means["table5"]["mga_plain", obstacles], means["table6"]["ga", obstacles]
-        rule = "Tables 5 and 6 print the same time of what both call GA"
-        rows.append(
-            _row("table5", f"method=GA, obstacles={obstacles}", rule, time, later, time == later)
-        )
-    genes = solutions(published)
+            yield compared("table5", f"{location}, obstacles={obstacles}", rule, time, "==", later)
+
+
+def _audit_example(published: "Published") -> Iterator[dict]:
+    printed, genes = said(published), solutions(published)
+    in_text = {name: int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")}
+    rule = "the text counts as it defines"
     for name, counted in counts(genes["S1"], genes["S2"]).items():
-        number = int(printed[f"{name} of S1 and S2"])
-        rows.append(
-            _row(
-                "table1",
-                f"S1, S2: {name}",
-                "the text counts as it defines",
-                number,
-                counted,
-                number == counted,
-            )
-        )
-    q = q_statistic(
-        *(int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01"))
-    )
-    of_text = printed["Q of S1 and S2"]
-    rows.append(
-        _row(
-            "table1",
-            "S1, S2: Q",
-            "Q of the counts in the text is the printed one",
-            of_text,
-            q,
-            q == of_text,
-        )
-    )
+        yield compared("table1", f"S1, S2: {name}", rule, in_text[name], "==", counted)
+    rule, q = "Q of the counts in the text is the printed one", q_statistic(*in_text.values())
+    yield compared("table1", "S1, S2: Q", rule, printed["Q of S1 and S2"], "==", q)
+
+
+def _audit_text(published: "Published") -> Iterator[dict]:
+    printed = said(published)
     eta, decay, iterations = printed["eta"], printed["decay of eta"], int(printed["iterations"])
     last = eta * decay**iterations
-    rows.append(
-        _row(
-            "text",
-            "3.3, 4.2.2",
-            f"eta decreases to 0 over the {iterations} iterations",
-            0.0,
-            round(last, 4),
-            last < 0.005,
-        )
-    )
-    half = eta * (1 - decay ** (iterations // 2))
+    rule = f"eta decreases to 0 over the {iterations} iterations"
+    yield checked("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)
+    half = eta * (1 - decay ** (iterations // 2)) / (eta - last)
     rule = "eta decreases linearly: half of the way in half of the iterations"
-    rows.append(
-        _row(
-            "text",
-            "3.3, 4.2.2",
-            rule,
-            0.5,
-            round(half / (eta - last), 4),
-            abs(half / (eta - last) - 0.5) < 0.005,
-        )
-    )
+    yield checked("text", "3.3, 4.2.2", rule, 0.5, round(half, 4), abs(half - 0.5) < 0.005)
     rule = (
         "3.3: as eta falls, more similar solutions are accepted, though theirs is a Q of at "
         "most eta: eta after an iteration"
     )
-    rows.append(_row("text", "3.3", rule, eta * decay, eta, eta * decay >= eta))
+    yield compared("text", "3.3", rule, eta * decay, ">=", eta)
     # A crossover keeps the digits that both parents have.
     digits, shared = int(printed["digits of A"]), int(printed["digits of A that B has too"])
     rule = (
         "2.2.2: a change of any digit of A leaves the subspace of its crossover with B: digits "
         "of which that is true"
     )
-    rows.append(_row("text", "2.2.2", rule, digits, shared, digits == shared))
+    yield compared("text", "2.2.2", rule, digits, "==", shared)
     # A table of drives would say how fast the obstacles are.
     drives = sum(not {"speed", "moment"}.isdisjoint(table) for table in published.values())
     rule = "the title speaks of a dynamic field: some table has obstacles that move"
-    rows.append(_row("text", "title", rule, drives, 1, drives >= 1))
-    return rows + _growth(published)
+    yield compared("text", "title", rule, drives, ">=", 1)
 
 
-def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
+def _growth(published: "Published") -> Iterator[dict]:
     """Rows of the audit: do the printed lengths of the proposed method grow with the obstacles as
     the counting rule has it?
 
@@ -364,7 +292,8 @@ def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
         f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how "
         "many of the printed can be such"
     )
-    rows = [_row("table2, table3", "method=mga", rule, whole, len(printed), whole == len(printed))]
+    location = "table2, table3", "method=mga"
+    yield compared(*location, rule, whole, "==", len(printed))
     # The radius is fitted to these lengths.
     freedom = len(blocked_cells) - 1
     chi_square, limit = (
@@ -375,33 +304,7 @@ def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
         f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} "
         "degrees of freedom) and its limit at 5 %"
     )
-    return [
-        *rows,
-        _row(
-            "table2, table3",
-            "method=mga",
-            rule,
-            round(chi_square, 1),
-            round(limit, 1),
-            chi_square <= limit,
-        ),
-    ]
-
-
-def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": printed,
-        "limit": limit,
-        "consistent": bool(consistent),
-    }
-
-
-def _place(row: tuple) -> str:
-    """The cell of Table 2 or 3 that holds a printed number."""
-    return f"route={row.route}, obstacles={row.obstacles}, method={row.method}"
+    yield checked(*location, rule, round(chi_square, 1), round(limit, 1), bool(chi_square <= limit))
 
 
 # --------------------------------------------------------------------------------------------------
@@ -425,15 +328,10 @@ def memory(
         for each in sides
     ]
     fields = [(each, count, random_field.from_circles(circles)) for each, count, circles in empty]
+    gravel = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
     for count in obstacles:
-        described = {
-            "side": side,
-            "start": [0, 0],
-            "target": [side, side],
-            "obstacles": count,
-            "layout": 0,
-        }
-        gravel = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
+        described = {"side": side, "start": [0, 0], "target": [side, side]}
+        described |= {"obstacles": count, "layout": 0}
         fields.append((side, count, random_field.field(gravel, described, "elhoseny2017/gravel")))
     rows = []
     for length, count, grid in fields:
@@ -443,7 +341,7 @@ def memory(
     return pd.DataFrame(rows)
 
 
-def _sides(published: dict[str, pd.DataFrame]) -> dict[str, int]:
+def _sides(published: "Published") -> dict[str, int]:
     """The side of the fields of a table of lengths, in cells."""
     printed = said(published)
     return {table: int(printed[f"side in {table}"]) for table in ("table2", "table3")}
@@ -461,7 +359,7 @@ def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np
     return side * (2 - (2 - DIAGONAL) * free)
 
 
-def _printed_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def _printed_lengths(published: "Published") -> pd.DataFrame:
     """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value,
     in cells.
     """
@@ -479,7 +377,7 @@ def _errors(printed: pd.DataFrame, side: int, radius: float) -> tuple[float, flo
     return error, error / own["value"].mean()
 
 
-def radius_fit(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
+def radius_fit(published: "Published", *, radii: list[float]) -> pd.DataFrame:
     """The printed lengths of the proposed method, those expected for several obstacle radii (shares
     of the side), and the errors of the latter.
 
@@ -493,38 +391,28 @@ def radius_fit(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.
     rows = []
     for (side, route), own in printed.groupby(["side", "route"]):
         lengths = own.set_index("obstacles")["value"]
-        rows.append(
-            {
-                "lengths": f"printed, {route}",
-                "side": side,
-                **{f"{n} obstacles": lengths[n] for n in numbers},
-            }
-        )
+        printed_lengths = {f"{n} obstacles": lengths[n] for n in numbers}
+        rows.append({"lengths": f"printed, {route}", "side": side, **printed_lengths})
     for name, radius in [("expected", radius) for radius in radii] + [("least error", best)]:
         for side in _sides(published).values():
             cells, share = _errors(printed, side, radius)
-            expected = {
-                f"{n} obstacles": round(expected_length(side, radius, n), 1) for n in numbers
-            }
-            error = {
-                "mean error (cell)": round(cells, 2),
-                "mean error / mean length": round(share, 4),
-            }
             rows.append(
-                {"lengths": name, "radius / side": radius, "side": side, **expected, **error}
+                {
+                    "lengths": name,
+                    "radius / side": radius,
+                    "side": side,
+                    **{
+                        f"{n} obstacles": round(expected_length(side, radius, n), 1)
+                        for n in numbers
+                    },
+                    "mean error (cell)": round(cells, 2),
+                    "mean error / mean length": round(share, 4),
+                }
             )
-    columns = [
-        "lengths",
-        "radius / side",
-        "side",
-        *(f"{n} obstacles" for n in numbers),
-        "mean error (cell)",
-        "mean error / mean length",
-    ]
-    return pd.DataFrame(rows)[columns]
+    return pd.DataFrame(rows)[list(rows[-1])]
 
 
-def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
+def radius_lengths(published: "Published", *, radii: list[float]) -> pd.DataFrame:
     """Printed and expected lengths against the number of obstacles; columns: side, lengths (which),
     obstacles, cells4 (in cells).
     """
@@ -532,13 +420,8 @@ def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) ->
     printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
     counts = np.arange(printed["obstacles"].min(), printed["obstacles"].max() + 1)
     expected = [
-        pd.DataFrame(
-            {
-                "side": side,
-                "lengths": f"R = {radius:g} N",
-                "obstacles": counts,
-                "cells4": expected_length(side, radius, counts),
-            }
+        pd.DataFrame({"obstacles": counts, "cells4": expected_length(side, radius, counts)}).assign(
+            side=side, lengths=f"R = {radius:g} N"
         )
         for side in _sides(published).values()
         for radius in radii
@@ -546,22 +429,17 @@ def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) ->
     return pd.concat([printed, *expected], ignore_index=True)
 
 
-def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def radius_errors(published: "Published") -> pd.DataFrame:
     """The error of the expected lengths against the radius; columns: radius (a share of the side),
     side, relative_error.
     """
     printed = _printed_lengths(published)
-    return pd.DataFrame(
-        [
-            {
-                "radius": thousandths / 1000,
-                "side": side,
-                "relative_error": _errors(printed, side, thousandths / 1000)[1],
-            }
-            for side in _sides(published).values()
-            for thousandths in range(5, 81)
-        ]
-    )
+    rows = [
+        (thousandths / 1000, side, _errors(printed, side, thousandths / 1000)[1])
+        for side in _sides(published).values()
+        for thousandths in range(5, 81)
+    ]
+    return pd.DataFrame(rows, columns=["radius", "side", "relative_error"])
 
 
 # --------------------------------------------------------------------------------------------------
@@ -590,43 +468,26 @@ def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
         ("mutation", parents[:1], mutated),
     ):
         for chromosome, (x, y) in at.items():
-            role = (
-                "accent" if chromosome in origins else "muted" if chromosome in children else "none"
+            role, label = (
+                ("accent", "parent")
+                if chromosome in origins
+                else ("muted", "possible child")
+                if chromosome in children
+                else ("none", None)
             )
-            label = {"accent": "parent", "muted": "possible child", "none": None}[role]
-            box = {
-                "mark": "cell",
-                "group": chromosome,
-                "role": role,
-                "x": x,
-                "y": y,
-                "width": 0.92,
-                "height": 0.92,
-                "label": label,
-            }
-            marks.append(box | {"operator": operator})
-        words = {"mark": "text", "role": "note", "operator": operator}
-        marks += [
-            words | {"x": x, "y": y, "text": " ".join(chromosome)}
-            for chromosome, (x, y) in at.items()
-        ]
-    x, y = at[first]
+            size = {"width": 0.92, "height": 0.92}
+            named = {"group": chromosome, "label": label, "operator": operator}
+            marks.append(mark("cell", role, x, y, **size, **named))
+        marks += [text(*at[name], " ".join(name), operator=operator) for name in at]
+    middle = np.array(at[first])
     for child in sorted(mutated):
-        towards = np.subtract(at[child], (x, y))
-        arrow = {"mark": "arrow", "role": "second", "group": f"to {child}", "operator": "mutation"}
-        tail, head = ((x, y) + share * towards for share in (0.3, 0.68))
-        marks += [arrow | {"x": tail[0], "y": tail[1]}, arrow | {"x": head[0], "y": head[1]}]
+        arrow = [middle + share * (at[child] - middle) for share in (0.3, 0.68)]
+        marks += along("arrow", "second", arrow, group=f"to {child}", operator="mutation")
     frame = np.add(
         [[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[first][1])
     )
-    border = {
-        "mark": "line",
-        "role": "first",
-        "group": "subspace",
-        "label": "subspace 00 of the parents",
-        "operator": "crossover",
-    }
-    return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
+    named = {"group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
+    return pd.DataFrame([*marks, *along("line", "first", frame, **named)])
 
 
 def chromosome(*, least_distance: float) -> pd.DataFrame:
@@ -655,37 +516,31 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         path = curve_through(points, start, target) if len(points) == number else None
     curve = shapely.LineString(grid.in_units(np.column_stack(samples(path, grid))))
     marks = []
-    words = {"mark": "text", "role": "note"}
     gene_width, top = 0.44, 1.4
     for gene, (x, y) in enumerate(itertools.product(range(side + 1), repeat=2)):
         value = -1 if grid.occupied[y, x] else int((x, y) in points)
         role = {-1: "obstacle", 1: "accent", 0: "none"}[value]
         label = {-1: "obstacle, -1", 1: "control point, 1", 0: None}[value]
-        box = {
-            "mark": "cell",
-            "group": f"gene {gene}",
-            "role": role,
-            "label": label,
-            "gene": gene,
-            "value": value,
-        }
-        marks.append(box | {"x": x, "y": y + top, "width": 1.0, "height": 1.0})
+        named = {"group": f"gene {gene}", "label": label, "gene": gene, "value": value}
         middle = side / 2 + gene_width * (gene - 12)
-        marks.append(box | {"x": middle, "y": 0.0, "width": gene_width, "height": gene_width})
-        marks.append(words | {"x": middle, "y": 0.0, "text": str(value)})
+        marks += [
+            mark("cell", role, x, y + top, width=1.0, height=1.0, **named),
+            mark("cell", role, middle, 0.0, width=gene_width, height=gene_width, **named),
+            text(middle, 0.0, value),
+        ]
         corners = [
             (x + aside, y + above) for aside, above in itertools.product((0.28, -0.28), (0.3, -0.3))
         ]
         a, b = max(corners, key=lambda corner: round(curve.distance(shapely.Point(corner)), 6))
-        marks.append(words | {"x": a, "y": b + top, "text": str(gene)})
+        marks.append(text(a, b + top, gene))
         if y == 0 or gene == (side + 1) ** 2 - 1:
-            marks.append(words | {"x": middle, "y": -0.45, "text": str(gene)})
-    line = {"mark": "line", "role": "second", "group": "curve", "label": "Bézier curve"}
-    marks += [line | {"x": a, "y": b + top} for a, b in curve.coords]
-    for role, (a, b) in (("start", start), ("target", target)):
-        marks.append(
-            {"mark": "dots", "role": role, "group": role, "label": role, "x": a, "y": b + top}
-        )
+            marks.append(text(middle, -0.45, gene))
+    places = [(a, b + top) for a, b in curve.coords]
+    marks += along("line", "second", places, group="curve", label="Bézier curve")
+    marks += [
+        mark("dots", role, a, b + top, group=role, label=role)
+        for role, (a, b) in (("start", start), ("target", target))
+    ]
     return pd.DataFrame(marks)
 
 
@@ -711,13 +566,8 @@ def validation(
     ends = tuple(start), tuple(target)
     workspace = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
     for number in itertools.count():
-        described = {
-            "side": side,
-            "start": ends[0],
-            "target": ends[1],
-            "obstacles": obstacles,
-            "layout": number,
-        }
+        described = {"side": side, "start": ends[0], "target": ends[1]}
+        described |= {"obstacles": obstacles, "layout": number}
         grid = random_field.field(workspace, described, "elhoseny2017/figure4")
         drawn = np.random.default_rng(number).integers(0, side + 1, (points, 2))
         judged = verdicts(drawn, grid, least_distance)
@@ -726,61 +576,28 @@ def validation(
             path, grid
         ):
             break
-    angles = np.linspace(0, 2 * math.pi, 61)
     marks = [
-        {
-            "mark": "circle",
-            "role": "obstacle",
-            "group": "obstacles",
-            "label": "obstacle",
-            "x": x,
-            "y": y,
-            "radius": reach,
-        }
+        mark("circle", "obstacle", x, y, group="obstacles", label="obstacle", radius=reach)
         for (x, y), reach in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
     ]
+    angles = np.linspace(0, 2 * math.pi, 61)
+    circle = least_distance * np.column_stack([np.cos(angles), np.sin(angles)])
+    label = f"distance r = {least_distance:g}"
+    for candidate, (point, word) in enumerate(judged, 1):
+        if word == "accepted":
+            ring = (np.array(point) + circle).tolist()
+            marks += along("line", "muted", ring, group=f"ring {candidate}", label=label)
+    curve = grid.in_units(np.column_stack(samples(path, grid)))
+    marks += along("line", "third", curve, group="curve", label="Bézier curve")
     looks = {
         "accepted": ("first", "control point"),
         "obstacle": ("accent", "on an obstacle"),
         "too near": ("second", "too near to another"),
     }
-    for candidate, (point, word) in enumerate(judged, 1):
-        if word == "accepted":
-            ring = {
-                "mark": "line",
-                "role": "muted",
-                "group": f"ring {candidate}",
-                "label": f"distance r = {least_distance:g}",
-            }
-            circle = np.array(point) + least_distance * np.column_stack(
-                [np.cos(angles), np.sin(angles)]
-            )
-            marks += [ring | {"x": x, "y": y} for x, y in circle.tolist()]
-    x, y = grid.in_units(np.column_stack(samples(path, grid))).T
-    marks += [
-        {"mark": "line", "role": "third", "group": "curve", "label": "Bézier curve", "x": a, "y": b}
-        for a, b in zip(x, y)
-    ]
-    for candidate, (point, word) in enumerate(judged, 1):
+    for candidate, ((x, y), word) in enumerate(judged, 1):
         role, label = looks[word]
-        dot = {
-            "mark": "dots",
-            "role": role,
-            "group": word,
-            "label": label,
-            "candidate": candidate,
-            "verdict": word,
-        }
-        marks.append(dot | {"x": point[0], "y": point[1]})
-        marks.append(
-            {
-                "mark": "text",
-                "role": "note",
-                "x": point[0] - 0.8,
-                "y": point[1] + 0.7,
-                "text": str(candidate),
-            }
-        )
-    for role, (x, y) in zip(("start", "target"), ends, strict=True):
-        marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": x, "y": y})
+        named = {"group": word, "label": label, "candidate": candidate, "verdict": word}
+        marks += [mark("dots", role, x, y, **named), text(x - 0.8, y + 0.7, candidate)]
+    for role, place in zip(("start", "target"), ends, strict=True):
+        marks.append(mark("dots", role, *place, group=role, label=role))
     return pd.DataFrame(marks)

@@ -2,20 +2,25 @@
 curvature, and its audit.
 """
 
+import itertools
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.measures import obstacle_clearance
-from bezierplan.analysis.results import Results, path_of, pick, select
+from bezierplan.analysis.papers.marks import along, mark, text
+from bezierplan.analysis.results import path_of, pick, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts.genetic import swap_tails
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # Methods that plan on cells.
 LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
@@ -42,20 +47,21 @@ def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
     """
     zigzag = np.array(points, dtype=float)
     steps = curves.sample_matrix("bezier", len(zigzag), 201) @ zigzag
-    corners = _line(zigzag, "second", "path with corners")
-    curve = _line(steps, "first", "Bézier curve")
-    inner = _dots(zigzag[1:-1], "third", f"corners P1 to P{len(zigzag) - 2}")
-    ends = pd.concat(
-        [_dots(zigzag[:1], "start", "start S"), _dots(zigzag[-1:], "target", "target T")]
+    corners = _labelled("line", "second", zigzag, "path with corners")
+    curve = _labelled("line", "first", steps, "Bézier curve")
+    dots = [
+        *_labelled("dots", "third", zigzag[1:-1], f"corners P1 to P{len(zigzag) - 2}"),
+        *_labelled("dots", "start", zigzag[:1], "start S"),
+        *_labelled("dots", "target", zigzag[-1:], "target T"),
+    ]
+    parts = {"corners": corners, "curve": curve, "both": corners + curve}
+    return pd.DataFrame(
+        [each | {"drawn": name} for name, lines in parts.items() for each in lines + dots]
     )
-    parts = {
-        "corners": [corners, inner, ends],
-        "curve": [curve, inner, ends],
-        "both": [corners, curve, inner, ends],
-    }
-    return pd.concat(
-        [pd.concat(marks).assign(drawn=name) for name, marks in parts.items()], ignore_index=True
-    )
+
+
+def _labelled(kind: str, role: str, points: np.ndarray, label: str) -> list[dict]:
+    return along(kind, role, points, group=label, label=label)
 
 
 def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
@@ -68,72 +74,24 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
     chromosomes = np.array(parents)
     children = chromosomes.copy()
     swap_tails(*children, bits * cut, bits)
-    frames = []
+    marks = []
     for drawn, rows in (("before", chromosomes), ("after", children)):
+        shown = {"drawn": drawn}
         for height, row in zip((1.3, 0.0), rows):
             # A gene keeps the colour of its original chromosome.
-            for position, gene in enumerate(row):
-                role = "accent" if gene == chromosomes[0, position] else "muted"
-                box = {
-                    "mark": "cell",
-                    "role": role,
-                    "x": position,
-                    "y": height,
-                    "width": 0.96,
-                    "height": 0.8,
-                }
-                frames.append(
-                    pd.DataFrame(
-                        [
-                            box,
-                            {
-                                "mark": "text",
-                                "role": "note",
-                                "x": position,
-                                "y": height,
-                                "text": str(gene + 1),
-                            },
-                        ]
-                    ).assign(drawn=drawn)
-                )
-        line = _line(
-            np.array([(cut - 0.5, -0.7), (cut - 0.5, 2.0)]),
-            "second",
-            f"cut between genes {cut} and {cut + 1}",
-        )
-        frames.append(line.assign(drawn=drawn))
-    return pd.concat(frames, ignore_index=True)
-
-
-def _line(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
-    return _marks("line", points, role, label)
-
-
-def _dots(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
-    return _marks("dots", points, role, label)
-
-
-def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame:
-    return pd.DataFrame(
-        {
-            "mark": mark,
-            "group": label,
-            "role": role,
-            "x": points[:, 0],
-            "y": points[:, 1],
-            "label": label,
-        }
-    )
+            for x, gene in enumerate(row):
+                role = "accent" if gene == chromosomes[0, x] else "muted"
+                marks.append(mark("cell", role, x, height, width=0.96, height=0.8, **shown))
+                marks.append(text(x, height, gene + 1, **shown))
+        label = f"cut between genes {cut} and {cut + 1}"
+        line = [(cut - 0.5, -0.7), (cut - 0.5, 2.0)]
+        marks += along("line", "second", line, group=label, label=label, **shown)
+    return pd.DataFrame(marks)
 
 
 def drawn_farther(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    method: str,
-    other: str,
-) -> tuple[str, float, None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, method: str, other: str
+) -> "Judged":
     """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles
     than that drawn of another, on every map.
 
@@ -162,14 +120,14 @@ def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
     The half diagonals from start and to target count as one diagonal move. The number of straight
     moves is even, and with s straight and d diagonal moves, s + 2 d is at least twice the side.
     """
-    found = []
-    for diagonal in range(1, int(length / math.sqrt(2)) + 2):
-        for straight in range(max(0, 2 * side - 2 * diagonal), int(length) + 2, 2):
-            found.append((abs(straight + diagonal * math.sqrt(2) - length), straight, diagonal))
-    return min(found)[1:]
+    return min(
+        (abs(straight + diagonal * math.sqrt(2) - length), straight, diagonal)
+        for diagonal in range(1, int(length / math.sqrt(2)) + 2)
+        for straight in range(max(0, 2 * side - 2 * diagonal), int(length) + 2, 2)
+    )[1:]
 
 
-def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def lattice_lengths(published: "Published") -> pd.DataFrame:
     """Printed shortest and longest lengths next to the nearest length of an 8-connected path.
 
     Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length,
@@ -216,8 +174,8 @@ def chance_of_lattice(low: float, high: float, tolerance: float, side: int) -> f
 
 
 def continuous_curvature(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published"
+) -> "Judged":
     """Claim C20: whether every feasible path is one polynomial piece with non-zero speed
     everywhere, so that its curvature is continuous.
 
@@ -238,7 +196,7 @@ def _least_speed(pieces: np.ndarray) -> float:
     return float(speed.min() / speed.max())
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Printed numbers that are impossible, or contradict others.
 
     If the four lattice methods plan on cells, each of their shortest and longest paths has the
@@ -247,84 +205,62 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     lengths and times are checked against the tables, that on the parameter of a curve and equation
     (11) by computing.
     """
-    tables = {name: published[name] for name in ("table1", "table2")}
+    parts = (_audit_lengths, _audit_sentences, _audit_text)
+    return [row for part in parts for row in part(published)]
+
+
+def _audit_lengths(published: "Published") -> Iterator[dict]:
     side = _side(published)
-    shortest = side * math.sqrt(2)
-    rows = []
-    for name, table in tables.items():
-        lengths = table[table["metric"] == "length"]
-        for row in lengths.itertuples():
-            rows.append(
-                _row(
-                    name,
-                    row,
-                    "no path is shorter than the straight line",
-                    shortest,
-                    row.value >= shortest,
-                )
-            )
-        for row in lengths[
-            lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")
-        ].itertuples():
-            straight, diagonal = nearest_lattice_length(row.value, side)
+    for name in ("table1", "table2"):
+        lengths = published[name][published[name]["metric"] == "length"]
+        places = [
+            f"method={cell.method}, metric=length, statistic={cell.statistic}"
+            for cell in lengths.itertuples()
+        ]
+        rule = "no path is shorter than the straight line"
+        for location, value in zip(places, lengths["value"]):
+            yield compared(name, location, rule, value, ">=", side * math.sqrt(2))
+        rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
+        on_cells = lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")
+        for location, value in itertools.compress(zip(places, lengths["value"]), on_cells):
+            straight, diagonal = nearest_lattice_length(value, side)
             nearest = straight + diagonal * math.sqrt(2)
-            rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
-            rows.append(
-                _row(name, row, rule, nearest, abs(row.value - nearest) <= LATTICE_TOLERANCE)
-            )
-    mean = _means(tables["table1"], "length")
-    for method in ("bca", "bca_q"):
-        for rival in LATTICE_METHODS:
-            rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
-            rows.append(
-                _said(
-                    "table1",
-                    f"method={method}, metric=length",
-                    rule,
-                    mean[method],
-                    mean[rival],
-                    mean[method] < mean[rival],
-                )
-            )
-    time = _means(tables["table2"], "cpu_s")
+            fits = abs(value - nearest) <= LATTICE_TOLERANCE
+            yield checked(name, location, rule, value, nearest, fits)
+
+
+def _audit_sentences(published: "Published") -> Iterator[dict]:
+    mean, time = _means(published["table1"], "length"), _means(published["table2"], "cpu_s")
+    for method, rival in itertools.product(("bca", "bca_q"), LATTICE_METHODS):
+        rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
+        place = f"method={method}, metric=length"
+        yield compared("table1", place, rule, mean[method], "<", mean[rival])
     for rival in ("aco", "ga", "aco_ga"):
         rule = (
             f"the text (4.2) has the time of bca slightly above that of {rival}, here: at most "
             f"{SLIGHTLY} times"
         )
         limit = SLIGHTLY * time[rival]
-        rows.append(
-            _said(
-                "table2", "method=bca, metric=cpu_s", rule, time["bca"], limit, time["bca"] <= limit
-            )
-        )
+        yield compared("table2", "method=bca, metric=cpu_s", rule, time["bca"], "<=", limit)
+
+
+def _audit_text(published: "Published") -> Iterator[dict]:
+    side = _side(published)
     parameters = published["parameters"].set_index(["workspace", "parameter"])["value"]
+    rule = "a share of the cells is a whole number of cells"
     for workspace in ("environment1", "environment2"):
-        cells = (
-            parameters[workspace, "obstacle_coverage"]
-            / 100
-            * parameters[workspace, "grid_size"] ** 2
-        )
-        rule = "a share of the cells is a whole number of cells"
-        rows.append(
-            _said(
-                "parameters",
-                f"workspace={workspace}",
-                rule,
-                cells,
-                round(cells),
-                abs(cells - round(cells)) < 1e-9,
-            )
-        )
+        share = parameters[workspace, "obstacle_coverage"] / 100
+        cells = share * parameters[workspace, "grid_size"] ** 2
+        whole = round(cells)
+        location = f"workspace={workspace}"
+        yield checked("parameters", location, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
     # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
     heights = side + np.arange(1, side * side + 1) // side + 0.5
     rule = (
         "equation (11) gives the heights of the cells' centres: cells whose height lies on the map"
     )
     inside = int((heights < side).sum())
-    rows.append(
-        _said("text", "3.2, equation (11)", rule, inside, side * side, inside == side * side)
-    )
+    yield compared("text", "3.2, equation (11)", rule, inside, "==", side * side)
     # One curve refutes a sentence about all: its points lie on a line, two of them at the start.
     text = published["text_values"].set_index("quantity")["value"]
     quarter = float(text["t of a quarter of the path"])
@@ -333,16 +269,16 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         f"a curve is a quarter of the way along at t = {quarter:g}: share of the way of the curve "
         "with control points at 0, 0 and 1"
     )
-    rows.append(_said("text", "2, equation (1)", rule, quarter, share, abs(share - quarter) < 1e-9))
+    location = "2, equation (1)"
+    yield checked("text", location, rule, quarter, share, abs(share - quarter) < 1e-9)
     listed = int((published["parameters"]["parameter"] == "control_points").sum())
     rule = (
         "Data Availability: all required parameters are listed, here: the number of control points"
     )
-    rows.append(_said("text", "Data Availability", rule, listed, 1, listed >= 1))
-    return rows
+    yield compared("text", "Data Availability", rule, listed, ">=", 1)
 
 
-def _side(published: dict[str, pd.DataFrame]) -> int:
+def _side(published: "Published") -> int:
     """Cells of both maps along x and along y, as printed: those from start to target."""
     parameters = published["parameters"]
     (side,) = parameters.loc[parameters["parameter"] == "grid_size", "value"].unique()
@@ -353,25 +289,3 @@ def _means(table: pd.DataFrame, metric: str) -> dict[str, float]:
     """Printed means of a metric, by method."""
     means = table[(table["metric"] == metric) & (table["statistic"] == "mean")]
     return dict(zip(means["method"], means["value"]))
-
-
-def _row(item: str, row: tuple, rule: str, limit: float, consistent: bool) -> dict:
-    return _said(
-        item,
-        f"method={row.method}, metric={row.metric}, statistic={row.statistic}",
-        rule,
-        row.value,
-        limit,
-        consistent,
-    )
-
-
-def _said(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": printed,
-        "limit": limit,
-        "consistent": bool(consistent),
-    }

@@ -12,7 +12,9 @@ import numpy as np
 import pandas as pd
 import shapely
 
-from bezierplan.analysis.results import Results, select
+from bezierplan.analysis.audit_rows import checked, compared
+from bezierplan.analysis.papers.marks import along, mark, text
+from bezierplan.analysis.results import select
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic, planner_settings
 from bezierplan.planners.parts.node_mutation import (
@@ -33,7 +35,8 @@ from bezierplan.workspaces.ground import (
 )
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # Of a cell: any nearer to the path there is no room for a number.
 BESIDE = 0.45
@@ -54,33 +57,23 @@ def chromosome(*, genes: list[int], side: int) -> pd.DataFrame:
     side cells (part `path`).
     """
     row = _genes(genes, 0, ["accent", *["muted"] * (len(genes) - 2), "accent"])
-    names = [
-        {"mark": "text", "role": "note", "x": x, "y": -0.9, "text": word}
-        for x, word in ((0, "start"), (3, "passage"), (6, "target"))
-    ]
+    row += [text(x, -0.9, word) for x, word in ((0, "start"), (3, "passage"), (6, "target"))]
     places = [_place(number, side) for number in genes]
     way = shapely.LineString(places)
+    cells = {number: _place(number, side) for number in range(1, side * side + 1)}
+    path = [_cell("free", *place) for place in cells.values()]
     # Cells that the path crosses between its nodes show no number, because the path would make it
     # illegible.
-    cells = {number: _place(number, side) for number in range(1, side * side + 1)}
-    boxes = [{"mark": "cell", "role": "free", **_box(*place)} for place in cells.values()]
-    apart = {
-        number: place
+    path += [
+        text(*place, number)
         for number, place in cells.items()
         if shapely.Point(place).distance(way) > BESIDE
-    }
-    others = [
-        {"mark": "text", "role": "note", **_words(number, *place)}
-        for number, place in apart.items()
     ]
-    nodes = [
-        mark
-        for number, place in zip(genes, places, strict=True)
-        for mark in _gene(number, *place, "accent")
-    ]
-    path = [*boxes, *others, *_path(places, "accent", "path"), *nodes]
-    return pd.concat(
-        [pd.DataFrame([*row, *names]).assign(part="genes"), pd.DataFrame(path).assign(part="path")]
+    path += along("line", "accent", places, group="path", label="path")
+    for number, place in zip(genes, places, strict=True):
+        path += [_cell("accent", *place), text(*place, number)]
+    return pd.DataFrame(
+        [each | {"part": "genes"} for each in row] + [each | {"part": "path"} for each in path]
     )
 
 
@@ -103,18 +96,9 @@ def crossover(*, parents: list[list[int]], cut: int) -> pd.DataFrame:
         ]
         looks[1] += ["accent"] * (len(second) - len(looks[1]))
         marks = [*_genes(first, 1.5, looks[0]), *_genes(second, 0, looks[1])]
-        line = [
-            {
-                "mark": "line",
-                "role": "second",
-                "group": "cut",
-                "x": cut - 0.5,
-                "y": y,
-                "label": "cut",
-            }
-            for y in (-0.8, 2.3)
-        ]
-        frames.append(pd.DataFrame([*marks, *line]).assign(part=part))
+        line = [(cut - 0.5, -0.8), (cut - 0.5, 2.3)]
+        marks += along("line", "second", line, group="cut", label="cut")
+        frames.append(pd.DataFrame(marks).assign(part=part))
     return pd.concat(frames)
 
 
@@ -204,34 +188,27 @@ def _shown(
 
 def _mutation(
     grid: Grid, operator: str, before: np.ndarray, after: np.ndarray, k: int
-) -> Iterator[dict]:
+) -> list[dict]:
     """Marks of a path before and after the change of node k."""
     first, second = (centres(grid, path).tolist() for path in (before, after))
-    yield from _path(first, "third", "before")
-    yield from _path(second, "accent", "after")
+    marks = along("line", "third", first, group="before", label="before")
+    marks += along("line", "accent", second, group="after", label="after")
     if operator != "random":
-        column, row = before[k] % grid.occupied.shape[1], before[k] // grid.occupied.shape[1]
+        row, column = divmod(before[k], grid.occupied.shape[1])
         for up, across in itertools.product((-1, 0, 1), repeat=2):
             cell = grid.occupied.shape[1] * (row + up) + column + across
             if (up, across) != (0, 0) and not grid.occupied.flat[cell]:
-                x, y = grid.centre(int(cell))
-                yield {
-                    "mark": "dots",
-                    "role": "muted",
-                    "x": x,
-                    "y": y,
-                    "group": "tried",
-                    "label": "cells tried",
-                }
-    for x, y in [*first[1:k], *first[k + 1 : -1]]:
-        yield {"mark": "dots", "role": "third", "x": x, "y": y, "group": "others", "label": "node"}
-    for role, label, (x, y) in (
+                centre = grid.centre(int(cell))
+                marks.append(mark("dots", "muted", *centre, group="tried", label="cells tried"))
+    marks += along("dots", "third", first[1:k] + first[k + 1 : -1], group="others", label="node")
+    for role, label, centre in (
         ("first", "node that changes", first[k]),
         ("accent", "node in its place", second[k]),
         ("start", "start", first[0]),
         ("target", "target", first[-1]),
     ):
-        yield {"mark": "dots", "role": role, "x": x, "y": y, "group": role, "label": label}
+        marks.append(mark("dots", role, *centre, group=role, label=label))
+    return marks
 
 
 def _place(number: int, side: int) -> tuple[float, float]:
@@ -239,39 +216,22 @@ def _place(number: int, side: int) -> tuple[float, float]:
     return (number - 1) % side + 1.0, (number - 1) // side + 1.0
 
 
-def _genes(numbers: Sequence[int], y: float, roles: Sequence[str]) -> Iterator[dict]:
+def _genes(numbers: Sequence[int], y: float, roles: Sequence[str]) -> list[dict]:
     """Marks of a chromosome, as a row of boxes."""
-    for x, (number, role) in enumerate(zip(numbers, roles, strict=True)):
-        yield from _gene(number, x, y, role)
+    return [
+        each
+        for x, (number, role) in enumerate(zip(numbers, roles, strict=True))
+        for each in (_cell(role, x, y), text(x, y, number))
+    ]
 
 
-def _gene(number: int, x: float, y: float, role: str) -> Iterator[dict]:
-    yield {"mark": "cell", "role": role, **_box(x, y)}
-    yield {"mark": "text", "role": "note", **_words(number, x, y)}
-
-
-def _box(x: float, y: float) -> dict:
-    return {"x": x, "y": y, "width": 1.0, "height": 1.0}
-
-
-def _words(number: int, x: float, y: float) -> dict:
-    return {"x": x, "y": y, "text": str(number)}
-
-
-def _path(places: Sequence[tuple[float, float]], role: str, label: str) -> Iterator[dict]:
-    """Marks of a line through places and of its nodes."""
-    for x, y in places:
-        yield {"mark": "line", "role": role, "group": label, "x": x, "y": y, "label": label}
+def _cell(role: str, x: float, y: float) -> dict:
+    return mark("cell", role, x, y, width=1.0, height=1.0)
 
 
 def less_work_for_a_path(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    group: str,
-    other: str,
-) -> tuple[str, float, tuple[float, float], int]:
+    check: "Check", results: "Experiments", published: "Published", *, group: str, other: str
+) -> "Judged":
     """Claim C7: whether one kind of first population takes less work than another until a run ends
     feasible, in every environment.
 
@@ -307,7 +267,7 @@ def _work(runs: pd.DataFrame) -> tuple[float, float, float]:
     return least, typical, most
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Numbers in Tables 2 to 5 that contradict others.
 
     The three counts of a row add up to the trials. What Section 4 says about the proposed mutation
@@ -331,9 +291,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 table[method, metric] for metric in ("optimal", "near_optimal", "infeasible")
             )
             rule = "the three counts add to the trials"
-            rows.append(
-                _row(name, f"method={method}", rule, total, trials[name], total == trials[name])
-            )
+            rows.append(compared(name, f"method={method}", rule, total, "==", trials[name]))
         for sentence in said:
             sign = SIGN[sentence.best]
             proposed, *theirs = (
@@ -342,7 +300,8 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             best = sign * max(sign * value for value in theirs)
             place = f"metric={sentence.quantity}"
             rule = f"the proposed mutation has the {sentence.words} (Section 4)"
-            rows.append(_row(name, place, rule, proposed, best, sign * (proposed - best) > 0))
+            relation = {1: ">", -1: "<"}[sign]
+            rows.append(compared(name, place, rule, proposed, relation, best))
     for sentence in said:
         if sentence.quantity in TESTED:
             rows += _fisher_rows(
@@ -357,17 +316,14 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 for one, other in pairs
             )
             rule = f"pairs of operators that rank by {words} as in Table 2 (Section 4): all"
-            rows.append(
-                _row(name, f"metric={metric}", rule, agree, len(pairs), agree == len(pairs))
-            )
+            rows.append(compared(name, f"metric={metric}", rule, agree, "==", len(pairs)))
     # A table of drives would say when the environment changes.
     drives = sum(not {"after", "moment"}.isdisjoint(table) for table in published.values())
     rule = (
         "the title speaks of dynamic environments: some table has drives during which the "
         "environment changes"
     )
-    rows.append(_row("text", "title", rule, drives, 1, drives >= 1))
-    return rows
+    return [*rows, compared("text", "title", rule, drives, ">=", 1)]
 
 
 def _fisher_rows(
@@ -391,11 +347,11 @@ def _fisher_rows(
     ]
     p = holm(np.array([stats.fisher_exact(square).pvalue for square in squares]))
     return [
-        _row(
+        checked(
             *(name, f"metric={metric}, proposed and {other}"),
             f"the proposed mutation has the {words} beyond chance: "
             "p of Fisher's test, corrected by Holm",
-            *(value, ALPHA, value < ALPHA and sign * (own - theirs) > 0),
+            *(value, ALPHA, bool(value < ALPHA and sign * (own - theirs) > 0)),
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())
     ]
@@ -405,14 +361,3 @@ def _printed(table: pd.Series, method: str, metric: str) -> float:
     if metric == "found":
         return table[method, "optimal"] + table[method, "near_optimal"]
     return table[method, metric]
-
-
-def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": float(printed),
-        "limit": float(limit),
-        "consistent": bool(consistent),
-    }

@@ -9,25 +9,22 @@ import pandas as pd
 import shapely
 
 from bezierplan.analysis import identified
-from bezierplan.analysis.results import Results
+from bezierplan.analysis.audit_rows import compared
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.planners.parts.genetic import complement_bit, swap_tails
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 TRIALS = 10_000
 
 
 def genes_in_range(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    bits: int,
-    genes: int,
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, bits: int, genes: int
+) -> "Judged":
     """Claim C8: genes outside 0 .. 2^bits - 1 after a crossover at every kind of cut and a mutation
     at any bit, in random chromosomes.
     """
@@ -43,27 +40,22 @@ def genes_in_range(
     return "-" if outside else "+", float(outside), None, TRIALS
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Whether every minimal generation of Table I lies within the generations of Section IV."""
     table = published["table1"]
-    rows = table[table["metric"] == "generation_1pct"]
-    said = published["text_values"].set_index("quantity")["value"]
+    most = published["text_values"].set_index("quantity")["value"]["generations"]
+    rule = "a minimal generation is at most the number of generations"
     return [
-        {
-            "item": "table1",
-            "place": f"problem={row.problem}, method={row.method}",
-            "rule": "a minimal generation is at most the number of generations",
-            "printed": row.value,
-            "limit": said["generations"],
-            "consistent": row.value <= said["generations"],
-        }
-        for row in rows.itertuples()
+        compared(
+            "table1", f"problem={cell.problem}, method={cell.method}", rule, cell.value, "<=", most
+        )
+        for cell in table[table["metric"] == "generation_1pct"].itertuples()
     ]
 
 
 def identified_paths(
     workspace: Grid,
-    published: dict[str, pd.DataFrame],
+    published: "Published",
     *,
     start: int,
     target: int,
@@ -92,28 +84,24 @@ def identified_paths(
     identification = identified.in_problem(
         problem, float(printed["value"].iloc[0]), decimals, edges
     )
-    rows = []
+    marks = []
     for number, path in reversed(list(enumerate(identification.paths))):
         role = ("accent", "first", "third")[min(number, 2)]
         name = f"{' '.join(map(str, path))}: length {identification.length * workspace.cell:.6f}"
-        points = [{"x": x, "y": y} for x, y in map(workspace.centre, path)]
-        rows += [
-            {"mark": "line", "role": role, "group": f"path {number}", "label": name} | point
-            for point in points
-        ]
+        places = map(workspace.centre, path)
+        marks += along("line", role, places, group=f"path {number}", label=name)
     lines = shapely.MultiLineString(
         [[workspace.centre(cell) for cell in path] for path in identification.paths]
     )
-    rows += [
-        {"mark": "text", "role": "note", "text": str(cell)}
-        | dict(zip("xy", _beside(workspace.centre(cell), lines, 0.85 * workspace.cell)))
+    away = 0.85 * workspace.cell
+    marks += [
+        text(*_beside(workspace.centre(cell), lines, away), cell)
         for path in identification.paths[:1]
         for cell in path[1:-1]
     ]
     for role, cell in (("start", start), ("target", target)):
-        x, y = workspace.centre(cell)
-        rows.append({"mark": "dots", "role": role, "label": role, "x": x, "y": y})
-    return pd.DataFrame(rows)
+        marks.append(mark("dots", role, *workspace.centre(cell), label=role))
+    return pd.DataFrame(marks)
 
 
 def _beside(

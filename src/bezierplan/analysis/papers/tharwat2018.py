@@ -11,7 +11,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
+from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps
@@ -19,7 +21,8 @@ from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import function
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # The three control points (x, y), in units, of the best known single Bézier curves, by workspace:
 # the results of 300 long runs, improved by sequential quadratic programming. Their lengths are
@@ -82,8 +85,8 @@ def chaotic_sequences(
 
 def ends(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
     """Figure 5: marks of start and target, for any circles."""
-    dots = [("dots", role, role, *place) for role, place in (("start", start), ("target", target))]
-    return pd.DataFrame(dots, columns=["mark", "role", "label", "x", "y"])
+    ends = {"start": start, "target": target}
+    return pd.DataFrame([mark("dots", role, *at, label=role) for role, at in ends.items()])
 
 
 def movement(
@@ -96,74 +99,34 @@ def movement(
     swarm. inertia, c1, c2: as in eq. 8. Further columns: part (of the velocity, its name) and value
     (its signed length).
     """
-    rows = []
+    marks = []
     for number, (x, v, p, r1, r2) in enumerate(particles):
         line = -5.0 * number  # the height at which the particle moves
-        parts = {
-            "w v": inertia * v,
-            "C1 r1 (p - x)": c1 * r1 * (p - x),
-            "C2 r2 (G - x)": c2 * r2 * (best - x),
-        }
-        moved = x + sum(parts.values())
-        names = zip(
-            ("inertia", "cognition", "social part"),
-            ("third", "first", "second"),
-            parts.items(),
-            strict=True,
+        parts = (
+            ("inertia", "third", "w v", inertia * v),
+            ("cognition", "first", "C1 r1 (p - x)", c1 * r1 * (p - x)),
+            ("social part", "second", "C2 r2 (G - x)", c2 * r2 * (best - x)),
         )
+        moved = x + sum(part for *_, part in parts)
         aside = math.copysign(1.0, best - x)  # words are placed beyond the heads
-        rows.append(
-            {"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line}
-        )
-        rows.append(
-            {"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line}
-        )
+        marks += along("line", "muted", [(-1.0, line), (15.0, line)], group=f"line {number}")
         tail = x
-        for height, (name, role, (formula, part)) in enumerate(names, start=1):
-            arrow = {
-                "mark": "arrow",
-                "role": role,
-                "group": f"{name} {number}",
-                "y": line + 0.9 * height,
-                "part": name,
-                "value": part,
-            }
-            rows += [arrow | {"x": tail}, arrow | {"x": tail + part}]
+        for height, (name, role, formula, part) in enumerate(parts, start=1):
+            y = line + 0.9 * height
+            named = {"group": f"{name} {number}", "part": name, "value": part}
+            marks += along("arrow", role, [(tail, y), (tail + part, y)], **named)
             tail += part
-            words = {
-                "mark": "text",
-                "role": "note",
-                "y": line + 0.9 * height,
-                "text": f"{name} {formula}",
-            }
-            rows.append(words | {"x": moved + aside * 4.3})
-        for role, position, words in (
-            ("first", x, "x"),
-            ("third", p, "p"),
-            ("start", moved, "new x"),
-            ("target", best, "G"),
+            marks.append(text(moved + aside * 4.3, y, f"{name} {formula}"))
+        for role, position, words, label in (
+            ("first", x, "x", "position"),
+            ("third", p, "p", "best position"),
+            ("start", moved, "new x", "next position"),
+            ("target", best, "G", "best position of the swarm"),
         ):
-            label = {
-                "first": "position",
-                "third": "best position",
-                "start": "next position",
-                "target": "best position of the swarm",
-            }[role]
-            rows.append(
-                {
-                    "mark": "dots",
-                    "role": role,
-                    "group": f"{words} {number}",
-                    "label": label,
-                    "x": position,
-                    "y": line,
-                }
-            )
+            marks.append(mark("dots", role, position, line, group=f"{words} {number}", label=label))
             if words != "new x":
-                rows.append(
-                    {"mark": "text", "role": "note", "x": position, "y": line - 0.75, "text": words}
-                )
-    return pd.DataFrame(rows)
+                marks.append(text(position, line - 0.75, words))
+    return pd.DataFrame(marks)
 
 
 def flow_chart() -> pd.DataFrame:
@@ -179,7 +142,7 @@ def flow_chart() -> pd.DataFrame:
         ("accent", "last iteration, or G not better for ten?"),
         ("none", "next number ζ of the map (eqs. 9 to 16)"),
     ]
-    boxes = [(middle, -step * i, width, role, text) for i, (role, text) in enumerate(steps)]
+    boxes = [(middle, -step * i, width, role, words) for i, (role, words) in enumerate(steps)]
     boxes += [
         (left, -step * 6, 115.0, "accent", "CPSO-I: ζ for r1 (eq. 17)"),
         (right, -step * 6, 115.0, "accent", "CPSO-II: ζ for r2 (eq. 18)"),
@@ -195,34 +158,18 @@ def flow_chart() -> pd.DataFrame:
         [(-width / 2, -step * 7), (edge, -step * 7), (edge, -step), (-width / 2, -step)],
         [(width / 2, -step * 4), (-edge, -step * 4), (-edge, -step * 8), (width / 2, -step * 8)],
     ]
-    rows = [
-        {"mark": "cell", "role": role, "x": x, "y": y, "width": wide, "height": height}
-        for x, y, wide, role, _ in boxes
-    ]
-    rows += [
-        {"mark": "text", "role": "note", "x": x, "y": y, "text": text} for x, y, _, _, text in boxes
-    ]
+    marks = [mark("cell", role, x, y, width=wide, height=height) for x, y, wide, role, _ in boxes]
+    marks += [text(x, y, words) for x, y, _, _, words in boxes]
     for number, way in enumerate(ways):
-        line, arrow = (
-            {"mark": "line", "role": "note", "group": number},
-            {"mark": "arrow", "role": "note", "group": number},
-        )
-        rows += [line | {"x": x, "y": y} for x, y in way[:-1]] if len(way) > 2 else []
-        rows += [arrow | {"x": x, "y": y} for x, y in way[-2:]]
-    rows += [
-        {"mark": "text", "role": "note", "x": -edge - 14, "y": -step * 4 + 7, "text": "yes"},
-        {"mark": "text", "role": "note", "x": middle + 12, "y": -step * 4.5, "text": "no"},
-    ]
-    return pd.DataFrame(rows)
+        marks += along("line", "note", way[:-1], group=number) if len(way) > 2 else []
+        marks += along("arrow", "note", way[-2:], group=number)
+    marks += [text(-edge - 14, -step * 4 + 7, "yes"), text(middle + 12, -step * 4.5, "no")]
+    return pd.DataFrame(marks)
 
 
 def gauss_above(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    limit: float,
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, limit: float
+) -> "Judged":
     """Claim C39: the share of values above a limit in long sequences of the Gauss map, without
     their first values.
 
@@ -241,9 +188,9 @@ def gauss_above(
 
 
 def sensitive_to_start(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
+    check: "Check",
+    results: "Experiments",
+    published: "Published",
     *,
     apart: float,
     iterations: int,
@@ -252,7 +199,7 @@ def sensitive_to_start(
     sine_a: float,
     piecewise_p: float,
     sinusoidal_a: float,
-) -> tuple[str, float, tuple[float, float], int]:
+) -> "Judged":
     """Claim C46: whether every map of the paper is sensitive to its first value.
 
     The effect is the least Lyapunov exponent of a map: the mean logarithm by which a difference
@@ -287,9 +234,7 @@ def _exponent(
     return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
 
 
-def optimum_grows(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float], int]:
+def optimum_grows(check: "Check", results: "Experiments", published: "Published") -> "Judged":
     """Claim C48: whether the exact shortest path of a layout grows from the fewest to the most
     obstacles, in the mean over layouts.
 
@@ -304,8 +249,8 @@ def optimum_grows(
 
 
 def bowl_with_local_minima(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published"
+) -> "Judged":
     """Claim C16: whether the fitness over one control point is a bowl with several local minima.
 
     The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the
@@ -475,14 +420,13 @@ def local_minima(values: np.ndarray) -> np.ndarray:
     """Which values of a grid (n, m) are below all eight neighbours, never those at its edge: (n,
     m).
     """
-    inner = values[1:-1, 1:-1]
-    rows, columns = inner.shape
-    lower = np.ones(inner.shape, dtype=bool)
-    for i in range(3):
-        for j in range(3):
-            if (i, j) != (1, 1):
-                lower &= inner < values[i : i + rows, j : j + columns]
-    return np.pad(lower, 1)
+    from scipy import ndimage
+
+    around = np.ones((3, 3), dtype=bool)
+    around[1, 1] = False
+    return values < ndimage.minimum_filter(
+        values.astype(float), footprint=around, mode="constant", cval=-np.inf
+    )
 
 
 def valleys(values: np.ndarray) -> np.ndarray:
@@ -502,8 +446,8 @@ def valleys(values: np.ndarray) -> np.ndarray:
 
 
 def several_homotopy_classes(
-    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
-) -> tuple[str, float, tuple[float, float] | None, int]:
+    check: "Check", results: "Experiments", published: "Published"
+) -> "Judged":
     """Claim C17: the number of classes in which runs converge; two paths of one class pass every
     circle on the same side.
 
@@ -521,12 +465,8 @@ def several_homotopy_classes(
 
 
 def least_above(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    *,
-    limit: int,
-) -> tuple[str, float, None, int]:
+    check: "Check", results: "Experiments", published: "Published", *, limit: int
+) -> "Judged":
     """Claim C3: whether the least mean value belongs to more particles than a limit.
 
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal
@@ -543,13 +483,13 @@ def least_above(
 
 
 def fewer_outliers(
-    check: "function.Options",
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
+    check: "Check",
+    results: "Experiments",
+    published: "Published",
     *,
     runs_drawn: int,
     margin: float,
-) -> tuple[str, float, tuple[float, float], int]:
+) -> "Judged":
     """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less
     often than for the other maps.
 
@@ -588,7 +528,7 @@ def _surely(share: float) -> str:
     return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"
 
 
-def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+def audit(published: "Published") -> list[dict]:
     """Printed numbers that are impossible, or contradict others.
 
     No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. Statements in
@@ -596,75 +536,33 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     tables, and against each other.
     """
     tables = {name: published[name] for name in RANKED}
-    rows = []
     straight = float(_said(published, "straight_line_length")[0])
-    for name, table in tables.items():
-        for row in _cells(table, "objective").itertuples():
-            rows.append(
-                _row(
-                    name,
-                    _place(row),
-                    "no path is shorter than the straight line",
-                    row.value,
-                    straight,
-                    row.value >= straight,
-                )
-            )
+    rule = "no path is shorter than the straight line"
+    rows = [
+        compared(name, _place(cell), rule, cell.value, ">=", straight)
+        for name, table in tables.items()
+        for cell in _cells(table, "objective").itertuples()
+    ]
     before = pd.concat([tables["table3"], tables["table4"]])
+    rule = "Table 5 has the number of Table 3 or 4"
     for metric in ("collisions_c", "objective"):
         first = _by_method(before, metric)
-        for row in _cells(tables["table5"], metric).itertuples():
-            if row.method in first:
-                rule = "Table 5 has the number of Table 3 or 4"
-                rows.append(
-                    _row(
-                        "table5",
-                        _place(row),
-                        rule,
-                        row.value,
-                        first[row.method],
-                        row.value == first[row.method],
-                    )
-                )
+        rows += [
+            compared("table5", _place(cell), rule, cell.value, "==", first[cell.method])
+            for cell in _cells(tables["table5"], metric).itertuples()
+            if cell.method in first
+        ]
     best = _by_method(
         pd.concat(list(tables.values())[:3]).drop_duplicates(["method", "metric"]), "objective"
     )
-    for place, better, worse in published["said"].itertuples(index=False):
+    for section, better, worse in published["said"].itertuples(index=False):
         table = "table5" if worse == "pso" else "table4" if better.startswith("cpso2") else "table3"
-        rule = f"the text ({place}) has {better} better than {worse}"
-        rows.append(
-            _row(
-                table,
-                f"method={better}, metric=objective",
-                rule,
-                best[better],
-                best[worse],
-                best[better] < best[worse],
-            )
-        )
+        rule = f"the text ({section}) has {better} better than {worse}"
+        place = f"method={better}, metric=objective"
+        rows.append(compared(table, place, rule, best[better], "<", best[worse]))
     first, second = _said(published, "population_of_second_experiment")
-    rows.append(
-        _row(
-            "text",
-            "5.5",
-            "one number for the second population of Section 5.5",
-            first,
-            second,
-            first == second,
-        )
-    )
-    return rows
-
-
-def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
-    return {
-        "item": item,
-        "place": place,
-        "rule": rule,
-        "printed": printed,
-        "limit": limit,
-        "consistent": bool(consistent),
-    }
+    rule = "one number for the second population of Section 5.5"
+    return [*rows, compared("text", "5.5", rule, first, "==", second)]
 
 
 def _cells(table: pd.DataFrame, metric: str) -> pd.DataFrame:
@@ -684,7 +582,7 @@ def _by_method(table: pd.DataFrame, metric: str) -> dict[str, float]:
     return dict(zip(cells["method"], cells["value"]))
 
 
-def _said(published: dict[str, pd.DataFrame], quantity: str) -> list[float]:
+def _said(published: "Published", quantity: str) -> list[float]:
     """The values that the text gives for a quantity, in order of appearance."""
     text = published["text_values"]
     return text.loc[text["quantity"] == quantity, "value"].to_list()

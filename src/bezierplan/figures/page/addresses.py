@@ -31,21 +31,15 @@ def of_cells(
         for column in (cells[0] if cells else ())
         if len({cell[column] for cell in cells}) == 1
     } - {"metric", "statistic"}
-    short = [
-        "/".join(
-            [
-                table,
-                address(
-                    *(
-                        value
-                        for column, value in cell.items()
-                        if column not in single and primary.get(column) != value
-                    )
-                ),
-            ]
-        )
+    told = [
+        [
+            value
+            for column, value in cell.items()
+            if column not in single and primary.get(column) != value
+        ]
         for cell in cells
     ]
+    short = [f"{table}/{address(*values)}" for values in told]
     count = Counter(short)
     return [
         name if count[name] == 1 else f"{table}/{address(*cell.values())}"

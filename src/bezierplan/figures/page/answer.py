@@ -26,23 +26,13 @@ def answer(studies: dict[str, Study]) -> list[Sentence]:
     """
     claims = [claim for study in studies.values() for claim in _sentences(study)]
     if not claims and not any(_counted(study) for study in studies.values()):
-        runs = (
-            sum(
-                shown.count
-                for study in studies.values()
-                for shown in study.shown
-                if not shown.problem
-            )
-            or "no"
+        shown = [each for study in studies.values() for each in study.shown if not each.problem]
+        runs = sum(each.count for each in shown) or "no"
+        text = (
+            f"A subset that shows how the page works: {runs} runs, too few to judge numbers or "
+            "claims."
         )
-        return [
-            [
-                Part(
-                    text=f"A subset that shows how the page works: {runs} runs, too few to judge "
-                    "numbers or claims."
-                )
-            ]
-        ]
+        return [[Part(text=text)]]
     of_studies = [
         _of_study(key, study) for key, study in studies.items() if study.claims or _counted(study)
     ]
@@ -132,25 +122,20 @@ def _sentences(study: Study) -> list[Claim]:
 def _of_study(key: str, study: Study) -> Sentence:
     """How many numbers of a study agree, how many of its claims are supported, and which fail."""
     counted, claims = Counter(number.verdict for number in _counted(study)), _sentences(study)
-    parts, failed = (
-        [Part(text=key, address=study.address)],
-        [claim for claim in claims if _fails(claim)],
-    )
-    said = []
+    failed, said = [claim for claim in claims if _fails(claim)], []
     if counted:
         agree, disagree = counted["identified"] + counted["agrees"], counted["disagrees"]
-        numbers = (
+        said.append(
             f"{agree} of {counted.total()} numbers {_verb(agree, 'agrees', 'agree')}, "
             f"{disagree} {_verb(disagree, 'disagrees', 'disagree')}"
         )
-        said.append(numbers)
     if claims:
         supported = sum(claim.verdict == "supported" for claim in claims)
         said.append(
             f"{supported} of {_count(len(claims), 'claim')} {_verb(supported, 'is', 'are')} "
             f"supported, {'' if failed else 'none fails'}"
         )
-    parts.append(Part(text=": " + "; ".join(said)))
+    parts = [Part(text=key, address=study.address), Part(text=": " + "; ".join(said))]
     if failed:
         parts += [
             *_listed([(claim.id, claim.address) for claim in failed]),
@@ -183,12 +168,11 @@ def _interpretations(claims: list[Claim]) -> Sentence:
         all(interpretation.verdict == claim.verdict for interpretation in claim.interpretations)
         for claim in several
     )
-    text = f"{same} of {_count(len(several), 'claim')} that can be interpreted in more than one way"
-    return [
-        Part(
-            text=f"{text} {_verb(same, 'keeps its', 'keep their')} verdict in every interpretation."
-        )
-    ]
+    text = (
+        f"{same} of {_count(len(several), 'claim')} that can be interpreted in more than one way "
+        f"{_verb(same, 'keeps its', 'keep their')} verdict in every interpretation."
+    )
+    return [Part(text=text)]
 
 
 def _audit(studies: dict[str, Study]) -> Sentence:

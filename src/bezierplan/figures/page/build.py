@@ -75,7 +75,6 @@ def html(page: content.Page, folder: Path) -> str:
         "heading": addresses.heading,
         "settings": settings,
         "json_text": _json_text,
-        "printed_key": printed_key,
     }
     drawn = charts.charts(page)
     environment.globals |= {
@@ -161,12 +160,9 @@ def times_as_long(ratio: float) -> str:
 
 def counts(verdicts: list[str]) -> list[tuple[str, int]]:
     """How many there are of each verdict, in the order of `LOOKS`."""
-    found = Counter(verdict for verdict in verdicts if verdict)
-    return [
-        (name, found[name])
-        for name in [*LOOKS, *sorted(found.keys() - LOOKS.keys())]
-        if found[name]
-    ]
+    found = Counter(filter(None, verdicts))
+    names = [*LOOKS, *sorted(found.keys() - LOOKS.keys())]
+    return [(name, found[name]) for name in names if found[name]]
 
 
 class Row(NamedTuple):
@@ -293,17 +289,12 @@ def evidence(claim: content.Claim) -> str:
     """The comparison that determines the verdict on a claim, in words; empty if there is none."""
     if claim.decisive is None:
         return ""
-    comparison, (low, high) = (
-        claim.comparisons[claim.decisive],
-        claim.comparisons[claim.decisive].interval,
-    )
+    comparison = claim.comparisons[claim.decisive]
+    low, high = comparison.interval
     what = f"{meaning(comparison.metric) or comparison.metric.replace('_', ' ')}, {comparison.name}"
     if comparison.effect is None:
-        return (
-            f"{what}: a value in {comparison.counted.replace(', ', ' and ')} runs"
-            if comparison.counted
-            else what
-        )
+        counted = comparison.counted.replace(", ", " and ")
+        return f"{what}: a value in {counted} runs" if counted else what
     effect = short(comparison.effect, 3)
     if comparison.unit not in ("", "-") and comparison.test != "share":
         effect = amount(effect, comparison.unit)

@@ -38,14 +38,8 @@ _VERDICTS = {
 # Colours and marks of papers.
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8c510a", "#7e67d6")
 _MARKS = (
-    "circle",
-    "square",
-    "triangle-up",
-    "diamond",
-    "cross",
-    "triangle-down",
-    "triangle-right",
-    "triangle-left",
+    *("circle", "square", "triangle-up", "diamond"),
+    *("cross", "triangle-down", "triangle-right", "triangle-left"),
 )
 # An axis of ratios reaches at most from one over this to this.
 _MOST_TIMES = 8.0
@@ -116,11 +110,11 @@ def charts(page: content.Page) -> dict[str, Chart]:
             "$schema": f"https://vega.github.io/schema/vega-lite/v{VEGA_LITE}.json",
             "config": _STYLE,
             "width": "container",
+            "autosize": {"type": "fit-x", "contains": "padding"},
+            **body,
         }
-        spec |= {"autosize": {"type": "fit-x", "contains": "padding"}} | body
-        drawn[name] = Chart(
-            title, text, spec, _named(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE), name)
-        )
+        svg = vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE)
+        drawn[name] = Chart(title, text, spec, _named(svg, name))
     return drawn
 
 
@@ -163,13 +157,11 @@ Written = tuple[str, str, dict[str, Any]]
 
 
 def _numbers_by_verdict(page: content.Page) -> Written | None:
-    title = "Published numbers by verdict"
     text = (
         "Stacked bars: how many of the published numbers of each paper agree with our runs, "
         "disagree, or are inconclusive."
     )
-    spec = _stacked(page, comparison.VERDICTS)
-    return (title, text, spec) if spec else None
+    return _stacked(page, "Published numbers by verdict", text, comparison.VERDICTS)
 
 
 def _claims_by_verdict(page: content.Page) -> Written | None:
@@ -177,11 +169,10 @@ def _claims_by_verdict(page: content.Page) -> Written | None:
         "Stacked bars: how many of the claims of each paper are supported, hold in part, are "
         "contradicted, or are undecided."
     )
-    spec = _stacked(page, VERDICTS)
-    return ("Claims by verdict", text, spec) if spec else None
+    return _stacked(page, "Claims by verdict", text, VERDICTS)
 
 
-def _stacked(page: content.Page, verdicts: Iterable[str]) -> dict[str, Any] | None:
+def _stacked(page: content.Page, title: str, text: str, verdicts: Iterable[str]) -> Written | None:
     """Bars of one length, a row per study, divided by its counts of verdicts, which are printed
     where there is room.
     """
@@ -197,60 +188,49 @@ def _stacked(page: content.Page, verdicts: Iterable[str]) -> dict[str, Any] | No
                     "middle": (before + count / 2) / total,
                 }
                 tip = f"{key}; {count} of {total} {name}"
-                rows.append(
-                    {
-                        "study": key,
-                        "verdict": name,
-                        "count": count,
-                        "tip": tip,
-                        "address": study.address,
-                    }
-                    | extent
-                )
+                row = {"study": key, "verdict": name, "count": count, "tip": tip}
+                rows.append(row | {"address": study.address} | extent)
                 before += count
     if not rows:
         return None
     shown = [name for name in ordered if any(row["verdict"] == name for row in rows)]
-    y = {
-        "field": "study",
-        "type": "nominal",
-        "sort": list(page.studies),
-        "title": None,
-        "axis": {"domain": False, "ticks": False},
+    sides = {"domain": False, "ticks": False}
+    shares = {"format": "%", "title": None, "tickCount": 5}
+    bars = {
+        "mark": {"type": "bar", "stroke": "var(--paper)", "height": {"band": 0.82}},
+        "encoding": {
+            "x": _number("from", axis=shares),
+            "x2": {"field": "to"},
+            "color": _name("verdict", scale=_scale(shown, 0), legend={"title": None}),
+        },
     }
-    colour = {
-        "field": "verdict",
-        "type": "nominal",
-        "scale": _scale(shown, 0),
-        "legend": {"title": None},
+    numbers = {
+        "transform": [{"filter": "datum.to - datum.from > 0.045"}],
+        "mark": {"type": "text", "color": "#000000"},
+        "encoding": {"x": _number("middle"), "text": {"field": "count"}},
     }
-    return {
+    y = _name("study", sort=list(page.studies), title=None, axis=sides)
+    spec = {
         "data": {"values": rows},
         "height": _BAR * len({row["study"] for row in rows}),
         "encoding": {"y": y, "tooltip": {"field": "address"}},
-        "layer": [
-            {
-                "mark": {"type": "bar", "stroke": "var(--paper)", "height": {"band": 0.82}},
-                "encoding": {
-                    "x": {
-                        "field": "from",
-                        "type": "quantitative",
-                        "axis": {"format": "%", "title": None, "tickCount": 5},
-                    },
-                    "x2": {"field": "to"},
-                    "color": colour,
-                },
-            },
-            {
-                "transform": [{"filter": "datum.to - datum.from > 0.045"}],
-                "mark": {"type": "text", "color": "#000000"},
-                "encoding": {
-                    "x": {"field": "middle", "type": "quantitative"},
-                    "text": {"field": "count"},
-                },
-            },
-        ],
+        "layer": [bars, numbers],
     }
+    return title, text, spec
+
+
+def _number(field: str, **more: Any) -> dict[str, Any]:
+    """The encoding of a field of numbers."""
+    return {"field": field, "type": "quantitative", **more}
+
+
+def _name(field: str, **more: Any) -> dict[str, Any]:
+    """The encoding of a field of names."""
+    return {"field": field, "type": "nominal", **more}
+
+
+def _point(**more: Any) -> dict[str, Any]:
+    return {"type": "point", "filled": True, **more}
 
 
 def _scale(names: list[str], part: int) -> dict[str, list[str]]:
@@ -274,59 +254,37 @@ def _ratios(page: content.Page) -> Written | None:
     shown = [name for name in _VERDICTS if any(row["verdict"] == name for row in rows)]
     scale = {"type": "log", "domain": [1 / reach, reach], "clamp": True, "nice": False}
     ticks = [each for each in (1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8) if 1 / reach <= each <= reach]
-    y = {
-        "field": "table",
-        "type": "nominal",
-        "sort": list(dict.fromkeys(row["table"] for row in rows)),
-        "title": None,
+    y = _name(
+        "table",
+        sort=list(dict.fromkeys(row["table"] for row in rows)),
+        title=None,
+        axis={"grid": True, "tickBand": "extent", "ticks": False, "domain": False},
+    )
+    above = _number("height", scale={"domain": [-0.08, 1.08]})
+    colour, shape = (
+        _name("verdict", scale=_scale(shown, part), legend={"title": None, "columns": 2})
+        for part in (0, 1)
+    )
+    axis = {"values": ticks, "title": "ours / published", "format": "~g"}
+    equal = {
+        "data": {"values": [{"one": 1}]},
+        "mark": {"type": "rule", "color": _SOFT},
+        # It crosses the whole chart: none of the channels of the others.
+        "encoding": dict.fromkeys(("y", "yOffset", "color", "tooltip")) | {"x": _number("one")},
     }
-    y |= {"axis": {"grid": True, "tickBand": "extent", "ticks": False, "domain": False}}
-    above = {"field": "height", "type": "quantitative", "scale": {"domain": [-0.08, 1.08]}}
-    verdict = {
-        "field": "verdict",
-        "type": "nominal",
-        "scale": _scale(shown, 0),
-        "legend": {"title": None, "columns": 2},
+    ranges = {
+        "mark": {"type": "rule", "opacity": 0.55, "clip": True},
+        "encoding": {"x": _number("low", scale=scale, axis=axis), "x2": {"field": "high"}},
     }
-    mark = {
-        "field": "verdict",
-        "type": "nominal",
-        "scale": _scale(shown, 1),
-        "legend": {"title": None, "columns": 2},
+    points = {
+        "mark": _point(size=34, opacity=1, strokeWidth=0),
+        "encoding": {"x": _number("ratio"), "shape": shape},
     }
     spec = {
         "data": {"values": rows},
         "height": _ROW * len({row["table"] for row in rows}),
-        "encoding": {"y": y, "yOffset": above, "color": verdict, "tooltip": {"field": "address"}},
-        "layer": [
-            {
-                "data": {"values": [{"one": 1}]},
-                "mark": {"type": "rule", "color": _SOFT},
-                "encoding": _only("x", "one"),
-            },
-            {
-                "mark": {"type": "rule", "opacity": 0.55, "clip": True},
-                "encoding": {
-                    "x": {
-                        "field": "low",
-                        "type": "quantitative",
-                        "scale": scale,
-                        "axis": {"values": ticks, "title": "ours / published", "format": "~g"},
-                    },
-                    "x2": {"field": "high"},
-                },
-            },
-            {
-                "mark": {
-                    "type": "point",
-                    "filled": True,
-                    "size": 34,
-                    "opacity": 1,
-                    "strokeWidth": 0,
-                },
-                "encoding": {"x": {"field": "ratio", "type": "quantitative"}, "shape": mark},
-            },
-        ],
+        "encoding": {"y": y, "yOffset": above, "color": colour, "tooltip": {"field": "address"}},
+        "layer": [equal, ranges, points],
     }
     counted = sum(
         number.counted
@@ -338,18 +296,10 @@ def _ratios(page: content.Page) -> Written | None:
     zero = " (a ratio with 0 has no place)" if of else ""
     text = (
         f"Dots: {len(rows)}{of} published numbers, ours divided by the published one, on a "
-        f"logarithmic axis{zero}, one row per table; lines: the "
-        "range (95 %) that an experiment of the paper's size would print. A line that does not "
-        "reach 1 is a number that disagrees."
+        f"logarithmic axis{zero}, one row per table; lines: the range (95 %) that an experiment of "
+        "the paper's size would print. A line that does not reach 1 is a number that disagrees."
     )
     return "Ours over published, every number", text, spec
-
-
-def _only(channel: str, field: str) -> dict[str, Any]:
-    """The encoding of a mark that crosses the whole chart: none of the channels of the others."""
-    return dict.fromkeys(("y", "yOffset", "color", "tooltip")) | {
-        channel: {"field": field, "type": "quantitative"}
-    }
 
 
 def _of_table(study: content.Study, table: content.Table) -> list[dict[str, Any]]:
@@ -369,13 +319,9 @@ def _of_table(study: content.Study, table: content.Table) -> list[dict[str, Any]
             "address": number.address,
             "table": f"{study.address} {heading(table.name)}",
             "verdict": number.verdict,
-        }
-        row |= {
             "ratio": _digits(number.beside / number.published),
             "height": _digits((position + 0.5) / len(numbers_shown)),
-        }
-        # A range without an end reaches to the edge.
-        row |= {
+            # A range without an end reaches to the edge.
             "low": _digits(max(low or 0, 1 / _MOST_TIMES)),
             "high": _digits(min(high or math.inf, _MOST_TIMES)),
         }
@@ -414,85 +360,59 @@ def _methods(page: content.Page) -> Written | None:
         _span([feasible, *(row["feasible"] for row in rows)]),
     )
     times = _span([row["cpu"] for row in rows])
-    x = {
-        "field": "length",
-        "type": "quantitative",
-        "scale": {"type": "log", "domain": lengths, "nice": False, "padding": 12},
+    x = _number(
+        "length",
+        scale={"type": "log", "domain": lengths, "nice": False, "padding": 12},
+        axis={"title": "path length / baseline's", "format": "~g", "tickCount": 6},
+    )
+    y = _number(
+        "feasible",
+        scale={"domain": shares, "zero": False, "padding": 12},
+        axis={"title": "feasible runs", "format": "%", "tickCount": 6},
+    )
+    powers = _powers(row["cpu"] for row in rows)
+    size = _number(
+        "cpu",
+        scale={"type": "log", "domain": times, "range": [40, 420]},
+        legend={"title": "CPU time / baseline's", "values": powers, "format": "~g"} | _BELOW,
+    )
+    colour, shape = (
+        _name("study", legend={"title": None}, scale=scale) for scale in (colours, marks)
+    )
+    methods = {
+        "data": {"values": rows},
+        "transform": [{"filter": "indexof(hidden, datum.address) < 0"}],
+        "mark": _point(opacity=0.75, stroke="var(--paper)", strokeWidth=0.7),
+        "encoding": {
+            "x": x,
+            "y": y,
+            "size": size,
+            "tooltip": {"field": "address"},
+            "color": colour,
+            "shape": shape,
+        },
     }
-    x |= {"axis": {"title": "path length / baseline's", "format": "~g", "tickCount": 6}}
-    y = {
-        "field": "feasible",
-        "type": "quantitative",
-        "scale": {"domain": shares, "zero": False, "padding": 12},
+    star = {
+        "type": "point",
+        "shape": _STAR,
+        "size": 160,
+        "filled": True,
+        "color": _TEXT,
+        "opacity": 1,
     }
-    y |= {"axis": {"title": "feasible runs", "format": "%", "tickCount": 6}}
-    size = {
-        "field": "cpu",
-        "type": "quantitative",
-        "scale": {"type": "log", "domain": times, "range": [40, 420]},
+    words = {"type": "text", "align": "left", "dx": 12, "dy": -12, "color": _TEXT}
+    baseline = {
+        "data": {"values": [{"length": 1, "feasible": feasible}]},
+        "layer": [
+            {"mark": star},
+            {"mark": words, "encoding": {"text": {"value": "the baseline"}}},
+        ],
+        "encoding": {"x": _number("length"), "y": _number("feasible")},
     }
-    size |= {
-        "legend": {
-            "title": "CPU time / baseline's",
-            "values": _powers(row["cpu"] for row in rows),
-            "format": "~g",
-        }
-        | _BELOW
-    }
-    of_study = {"field": "study", "type": "nominal", "legend": {"title": None}}
     spec = {
         "params": [{"name": "hidden", "value": []}],
         "height": 340,
-        "layer": [
-            {
-                "data": {"values": rows},
-                "transform": [{"filter": "indexof(hidden, datum.address) < 0"}],
-                "mark": {
-                    "type": "point",
-                    "filled": True,
-                    "opacity": 0.75,
-                    "stroke": "var(--paper)",
-                    "strokeWidth": 0.7,
-                },
-                "encoding": {
-                    "x": x,
-                    "y": y,
-                    "size": size,
-                    "tooltip": {"field": "address"},
-                    "color": of_study | {"scale": colours},
-                    "shape": of_study | {"scale": marks},
-                },
-            },
-            {
-                "data": {"values": [{"length": 1, "feasible": feasible}]},
-                "layer": [
-                    {
-                        "mark": {
-                            "type": "point",
-                            "shape": _STAR,
-                            "size": 160,
-                            "filled": True,
-                            "color": _TEXT,
-                            "opacity": 1,
-                        }
-                    },
-                    {
-                        "mark": {
-                            "type": "text",
-                            "align": "left",
-                            "dx": 12,
-                            "dy": -12,
-                            "color": _TEXT,
-                        },
-                        "encoding": {"text": {"value": "the baseline"}},
-                    },
-                ],
-                "encoding": {
-                    "x": {"field": "length", "type": "quantitative"},
-                    "y": {"field": "feasible", "type": "quantitative"},
-                },
-            },
-        ],
+        "layer": [methods, baseline],
     }
     text = (
         f"Dots: {len(rows)} methods by the share of their runs that are feasible, and by the "
@@ -528,8 +448,8 @@ def _of_method(key: str, study: content.Study, row: content.BaselineComparison) 
         f"{name} ({key}); feasible {100 * row.feasible:.1f} %; length {row.length:.4g} times "
         f"the baseline's; CPU time {row.cpu:.3g} times"
     )
-    given = {"study": key, "name": name, "address": row.address, "tip": tip}
-    return given | {
+    named = {"study": key, "name": name, "address": row.address, "tip": tip}
+    return named | {
         "length": _digits(row.length),
         "feasible": _digits(row.feasible),
         "cpu": _digits(row.cpu),

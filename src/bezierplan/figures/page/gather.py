@@ -5,11 +5,12 @@ a file lacks stay empty.
 from collections.abc import Mapping
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, TypeVar
 
 import pandas as pd
 
 from bezierplan.analysis import headline, sensitivity
+from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
@@ -19,37 +20,7 @@ from bezierplan.figures.page.page_job import AssumptionShown, FigureShown, Study
 
 # Columns of claims.csv that the page shows in places of their own, or that repeat the comparison
 # that decides.
-_CLAIM_COLUMNS = {
-    *(
-        "study",
-        "id",
-        "variant",
-        "primary",
-        "finding",
-        "own_criterion",
-        "place",
-        "statement",
-        "verdict",
-        "holds",
-        "where_it_holds",
-        "published",
-        "reason",
-    ),
-    *(
-        "effect",
-        "effect_size_name",
-        "effect_size",
-        "low95",
-        "high95",
-        "n",
-        "counted",
-        "p",
-        "p_family",
-        "replication_probability",
-        "size",
-    ),
-    *("artefact", "timed"),
-}
+_CLAIM_COLUMNS = set(CLAIM_COLUMNS) - {"units_to_decide"}
 
 
 def read(file: str | Path) -> pd.DataFrame:
@@ -81,6 +52,27 @@ def _text(row: pd.Series, column: str) -> str:
 
 def _flag(row: pd.Series, column: str) -> bool:
     return str(row.get(column)) == "True"
+
+
+_READ = {
+    str: _text,
+    bool: _flag,
+    float | None: _number,
+    content.Cell: lambda row, column: cell(row.get(column)),
+}
+"""How a field of a record is read from the column of its name, by its type."""
+
+R = TypeVar("R", bound=content.Record)
+
+
+def _record(kind: type[R], row: pd.Series, /, **more: Any) -> R:
+    """A record of a row: fields that are not given are what the columns of their names hold."""
+    columns = {
+        name: _READ[field.annotation](row, name)
+        for name, field in kind.model_fields.items()
+        if name not in more and field.annotation in _READ
+    }
+    return kind(**columns, **more)
 
 
 def studies(
@@ -157,15 +149,16 @@ def _study(
 def _figure(study: str, name: str, job: FigureShown, folder: Path) -> content.Figure:
     stem = f"{study}/figures/{name}"
     told, _, seen = (folder / f"{stem}.txt").read_text(encoding="utf-8").strip().partition("\n")
-    named = {
-        "address": address(study, name),
-        "name": name,
-        "title": job.title,
-        "caption": job.caption,
-        "told": told,
-        "seen": seen,
-    }
-    return content.Figure(**named, svg=f"{stem}.svg", csv=f"{stem}.csv")
+    return content.Figure(
+        address=address(study, name),
+        name=name,
+        title=job.title,
+        caption=job.caption,
+        told=told,
+        seen=seen,
+        svg=f"{stem}.svg",
+        csv=f"{stem}.csv",
+    )
 
 
 def _table(
@@ -176,23 +169,21 @@ def _table(
     numbers: pd.DataFrame | None,
     labels: dict[str, str],
 ) -> content.Table:
-    file = f"{study}/tables/{name}.csv"
-    compared = folder / study / "tables" / f"{name}.comparison.csv"
-    named = {
-        "address": address(study, name),
-        "name": name,
-        "title": job.title,
-        "caption": job.caption,
-        "csv": file,
-    }
-    if isinstance(job.spec, Pivot) and job.spec.published:
-        cells = _numbers(named["address"], read(compared), job.spec, numbers, labels)
-        return content.Table(
-            **named | {"csv": f"{study}/tables/{name}.comparison.csv"}, numbers=cells
-        )
-    plain = read(folder / file)
-    rows = [[cell(value) for value in row] for row in plain.itertuples(index=False)]
-    return content.Table(**named, columns=[str(column) for column in plain], rows=rows)
+    table_address, spec = address(study, name), job.spec
+    is_compared = isinstance(spec, Pivot) and spec.published
+    file = f"{study}/tables/{name}{'.comparison' if is_compared else ''}.csv"
+    table = read(folder / file)
+    shown: dict[str, Any] = (
+        {"numbers": _numbers(table_address, table, spec, numbers, labels)}
+        if is_compared
+        else {
+            "columns": [str(column) for column in table],
+            "rows": [[cell(value) for value in row] for row in table.itertuples(index=False)],
+        }
+    )
+    return content.Table(
+        address=table_address, name=name, title=job.title, caption=job.caption, csv=file, **shown
+    )
 
 
 def _numbers(
@@ -220,28 +211,19 @@ def _numbers(
     cells = []
     for place, name, (_, row) in zip(places, addresses, shown.iterrows(), strict=True):
         cells.append(
-            content.Number(
+            _record(
+                content.Number,
+                row,
                 address=name,
                 keys={key: cell(place[key]) for key in keys},
                 row=", ".join(printed_key(key, place[key], labels) for key in keys),
                 column=_heading(row["metric"], row["statistic"], spec, labels),
-                metric=row["metric"],
-                statistic=row["statistic"],
-                unit=row["unit"],
                 published=_number(row, "value_published"),
-                n_published=_number(row, "n_published"),
                 ours=_number(row, "value_ours"),
                 scaled=_number(row, "value_ours_scaled"),
                 n=_number(row, "n_ours"),
                 interval=_interval(row, "low95_ours", "high95_ours"),
                 predicted=_interval(row, "low95_predicted", "high95_predicted"),
-                verdict=_text(row, "verdict"),
-                why=_text(row, "why"),
-                primary=_flag(row, "primary"),
-                counted=_flag(row, "counted"),
-                share_feasible=_number(row, "share_feasible"),
-                bound=_number(row, "bound"),
-                gap=_number(row, "gap"),
             )
         )
     return cells
@@ -290,20 +272,12 @@ def _claims(
             (n for n, (_, each) in enumerate(compared.iterrows()) if _flag(each, "decisive")), None
         )
         claims.append(
-            content.Claim(
+            _record(
+                content.Claim,
+                row,
                 address=address(study, identity),
-                id=identity,
-                place=_text(row, "place"),
-                statement=_text(row, "statement"),
-                finding=_flag(row, "finding"),
-                own_criterion=_flag(row, "own_criterion"),
-                verdict=_text(row, "verdict"),
-                holds=_text(row, "holds"),
                 where=_text(row, "where_it_holds"),
-                published=_text(row, "published"),
-                reason=_text(row, "reason"),
                 replication=_number(row, "replication_probability"),
-                size=_text(row, "size"),
                 shown_in=[
                     address(study, name)
                     for name in _text(row, "artefact").replace(",", " ").split()
@@ -311,12 +285,14 @@ def _claims(
                 ],
                 comparisons=[_comparison(each, labels, written) for _, each in compared.iterrows()],
                 decisive=decisive,
-                why=_why(compared.iloc[decisive], written, labels, row)
-                if decisive is not None
-                else "",
+                why="" if decisive is None else _why(compared.iloc[decisive], written, labels, row),
                 variant=_labelled(variant, labels),
                 interpretations=[
-                    _interpretation(each, labels)
+                    _record(
+                        content.Interpretation,
+                        each,
+                        variant=_labelled(_text(each, "variant"), labels),
+                    )
                     for _, each in rows[~rows["primary"].astype(bool)].iterrows()
                 ],
                 choices=[choice for choice in choices if choice.claim == identity],
@@ -340,28 +316,17 @@ def _why(decisive: pd.Series, checks: list[Check], labels: dict[str, str], claim
 
 
 def _comparison(row: pd.Series, labels: dict[str, str], checks: list[Check]) -> content.Comparison:
-    words = [
-        _labelled(_text(row, "comparison"), labels),
-        _labelled(_text(row, "condition"), labels),
-    ]
-    return content.Comparison(
-        check=(number := int(row["check"])),
+    number = int(row["check"])
+    words = (_labelled(_text(row, name), labels) for name in ("comparison", "condition"))
+    return _record(
+        content.Comparison,
+        row,
+        check=number,
         reference=why.reference(checks[number - 1]) if number <= len(checks) else 0.0,
         deciding=_flag(row, "primary"),
-        test=_text(row, "test"),
-        metric=_text(row, "metric"),
-        statistic=_text(row, "statistic"),
-        unit=_text(row, "unit"),
         name=", ".join(filter(None, words)),
         mark=_text(row, "mark_family") or _text(row, "mark"),
-        effect=_number(row, "effect"),
         interval=_interval(row, "low95", "high95"),
-        margin=_number(row, "margin"),
-        effect_published=_number(row, "effect_published"),
-        p=_number(row, "p"),
-        n=_number(row, "n"),
-        counted=_text(row, "counted"),
-        reason=_text(row, "reason"),
     )
 
 
@@ -377,14 +342,6 @@ def _labelled(words: str, labels: dict[str, str]) -> str:
         else:
             parts.append(" ".join(style.column_name(word, labels) for word in part.split(" ")))
     return ", ".join(parts)
-
-
-def _interpretation(row: pd.Series, labels: dict[str, str]) -> content.Interpretation:
-    return content.Interpretation(
-        variant=_labelled(_text(row, "variant"), labels),
-        verdict=_text(row, "verdict"),
-        holds=_text(row, "holds"),
-    )
 
 
 def _choices(tried: pd.DataFrame | None, judged: pd.DataFrame) -> list[content.Choice]:
@@ -411,30 +368,21 @@ def _assumption(
     study: str, job: AssumptionShown, choices: list[content.Choice]
 ) -> content.Assumption:
     default = job.default
+    if isinstance(default, dict):
+        default = ", ".join(f"{name}: {value}" for name, value in default.items())
     return content.Assumption(
-        address=address(study, job.id),
-        id=job.id,
-        detail=job.detail,
-        default=", ".join(f"{name}: {value}" for name, value in default.items())
-        if isinstance(default, dict)
-        else str(default),
-        alternatives=[str(value) for value in job.alternatives],
-        reason=job.reason,
-        source=job.source,
-        setting=job.setting or "",
-        claims=job.claims,
-        choices=[choice for choice in choices if choice.assumption == job.id],
+        **job._asdict()
+        | {
+            "address": address(study, job.id),
+            "default": str(default),
+            "alternatives": [str(value) for value in job.alternatives],
+            "setting": job.setting or "",
+            "choices": [choice for choice in choices if choice.assumption == job.id],
+        }
     )
 
 
 def _audited(row: pd.Series) -> content.Audited:
     checked = cell(row["consistent"])
-    return content.Audited(
-        item=_text(row, "item"),
-        place=_text(row, "place"),
-        rule=_text(row, "rule"),
-        printed=cell(row["printed"]),
-        limit=cell(row["limit"]),
-        consistent=None if checked is None else str(checked) == "True",
-        arithmetic=_text(row, "arithmetic"),
-    )
+    consistent = None if checked is None else str(checked) == "True"
+    return _record(content.Audited, row, consistent=consistent)

@@ -59,24 +59,18 @@ def page(
     readme = outcome.kept() if job.outcome else None
     if readme:
         studies = outcome.beside(studies, readme)
-    shared = {"workspaces": workspaces, "problems": problems}
     checked = content.Verified(**json.loads(Path(verified).read_text())) if verified else None
-    said = answer.answer(studies)
-    first = _headline(tables, titles)
-    about = {
-        "about_scale": answer.about_scale(job.scale, _repeats(job.studies)),
-        "made_by": _made_by(),
-    }
     return content.Page(
         scale=job.scale,
-        **about,
-        headline=first,
+        about_scale=answer.about_scale(job.scale, _repeats(job.studies)),
+        made_by=_made_by(),
+        headline=_headline(tables, titles),
         headline_extended=outcome.sentences(readme, titles) if readme else [],
-        answer=said,
+        answer=answer.answer(studies),
         verified=checked,
         studies=studies,
         runs=kept,
-        **_once(**shared),
+        **_once(workspaces, problems),
     )
 
 

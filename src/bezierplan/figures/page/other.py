@@ -33,13 +33,8 @@ def of_method(study: str, name: str, method: MethodShown) -> content.Method:
     told = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     about = [" ".join(paragraph.replace("`", "").split()) for paragraph in told.split("\n\n")]
     settings = {setting: str(value) for setting, value in method.settings.items()}
-    return content.Method(
-        address=address(study, "method", name),
-        name=name,
-        planner=planner,
-        about=about,
-        settings=settings,
-    )
+    place = address(study, "method", name)
+    return content.Method(address=place, name=name, planner=planner, about=about, settings=settings)
 
 
 def of_baseline_comparison(study: str, measured: pd.DataFrame) -> dict[str, Any]:

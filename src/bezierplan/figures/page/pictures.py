@@ -14,16 +14,10 @@ from bezierplan.figures.page.content import Comparison
 # Coordinates are in points, so two decimals are finer than any screen or printer.
 _TAG, _LONG_NUMBER = re.compile(r"<[^/>][^>]*>"), re.compile(r"-?\d+\.\d{3,}")
 _HEAD = re.compile(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<metadata>.*?</metadata>", re.DOTALL)
-_STYLE, _CLIP, _ID = (
-    re.compile(r'\bstyle="([^"]*)"'),
-    re.compile(r'\bclip-path="([^"]*)"'),
-    re.compile(r'\bid="([^"]*)"'),
+_STYLE, _CLIP, _ID, _OUTLINE = (
+    re.compile(rf'\b{name}="([^"]*)"') for name in ("style", "clip-path", "id", "d")
 )
-_OUTLINE, _STEP, _REFERENCE = (
-    re.compile(r'\bd="([^"]*)"'),
-    re.compile(r"([A-Za-z])([^A-Za-z]*)"),
-    re.compile(r'(?:url\(|href=")#([^)"]*)'),
-)
+_STEP, _REFERENCE = re.compile(r"([A-Za-z])([^A-Za-z]*)"), re.compile(r'(?:url\(|href=")#([^)"]*)')
 # What may not stand in a quoted attribute as part of a data URI.
 _UNSAFE = re.compile(r"""[^-.\w /:;,=<>()'!*@$+?\[\]{}|^`~]""", re.ASCII)
 
@@ -187,19 +181,14 @@ def _strips(comparisons: Sequence[Comparison]) -> list[Strip]:
     low, high = low - pad, high + pad
 
     def place(value: float | None) -> float | None:
-        return (
-            None
-            if value is None
-            else round(100 * (min(max(value, low), high) - low) / (high - low), 2)
-        )
+        if value is None:
+            return None
+        return round(100 * (min(max(value, low), high) - low) / (high - low), 2)
 
     return [
         Strip(
             each,
-            place(each.reference),
-            place(each.effect),
-            place(each.interval[0]),
-            place(each.interval[1]),
+            *map(place, (each.reference, each.effect, *each.interval)),
             any(end is not None and not low <= end <= high for end in each.interval),
             (place(-abs(each.margin)), place(abs(each.margin))) if each.margin else None,
             place(each.effect_published),

@@ -33,15 +33,8 @@ _FLAT, _MOST_STEPS = 5e-4, 80
 
 _RANKED = ["id", "problem", "method", "repeat", "feasible", "length"]
 _DRAWN = [
-    "claimed_feasible",
-    "collision_at",
-    "collision_depth",
-    "clearance",
-    "evaluations",
-    "stop",
-    "history",
-    "path_curve",
-    "path_points",
+    *("claimed_feasible", "collision_at", "collision_depth", "clearance"),
+    *("evaluations", "stop", "history", "path_curve", "path_points"),
 ]
 
 
@@ -86,7 +79,7 @@ def chosen(study: str, experiment: str, described: ExperimentShown) -> Chosen:
         if name
     }
     kept = [
-        _drawn(tables[file], rows.index)
+        tables[file].take(rows.index.to_list()).to_pandas()
         for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)
     ]
     rows = pd.concat(kept) if kept else ranked
@@ -126,11 +119,6 @@ def _traces(named: list[str], ids: list[str]) -> dict[str, np.ndarray]:
     }
 
 
-def _drawn(table: Any, rows: pd.Index) -> pd.DataFrame:
-    """Some rows of a table of runs, whole."""
-    return table.take(rows.to_list()).to_pandas()
-
-
 def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> content.Shown:
     feasible = runs[runs["feasible"]]
     # Much faster than pandas, which first numbers the ids.
@@ -138,20 +126,15 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> co
         name for _, name in sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
     ]
     failed = runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED]
-    best, median, worst = (
-        (ordered[0], ordered[(len(ordered) - 1) // 2], ordered[-1])
-        if ordered
-        else (None, None, None)
-    )
-    number = {"count": len(runs), "feasible": len(ordered)}
     return content.Shown(
         experiment=experiment,
         problem=problem,
         method=method,
-        **number,
-        best=best,
-        median=median,
-        worst=worst,
+        count=len(runs),
+        feasible=len(ordered),
+        best=ordered[0] if ordered else None,
+        median=ordered[(len(ordered) - 1) // 2] if ordered else None,
+        worst=ordered[-1] if ordered else None,
         failed=failed,
     )
 
@@ -198,17 +181,13 @@ def _drive(run: content.Run, trace: np.ndarray, row: dict[str, Any], pace: float
     then.
     """
     size = float(np.ptp(trace, axis=0).max()) or 1.0
-    driven, steps, collision = (
-        _driven(np.reshape(run.path, (-1, 2)), trace, pace),
-        float(row["steps"]),
-        None,
-    )
+    steps, collision = float(row["steps"]), None
     if np.isfinite(row["collision_at"]):
         times = np.append(np.arange(len(trace) - 1), steps)
         collision = tuple(float(np.interp(row["collision_at"], times, along)) for along in trace.T)
     more = {
         "control": [],
-        "driven": _rounded(driven, size),
+        "driven": _rounded(_driven(np.reshape(run.path, (-1, 2)), trace, pace), size),
         "steps": steps,
         "collision": collision,
         "collision_step": _finite(row["collision_at"]),

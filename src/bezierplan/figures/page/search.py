@@ -110,15 +110,11 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
 
 
 def _of_number(number: Number, table: str, more: str) -> Entry:
-    values = (
-        f"{number.published:.4g} → {'–' if number.ours is None else f'{number.beside:.4g}'} "
-        f"{number.verdict}"
-    )
-    column = (
-        number.column
-        if number.statistic in number.column
-        else f"{number.column}, {number.statistic}"
-    )
+    ours = "–" if number.ours is None else f"{number.beside:.4g}"
+    values = f"{number.published:.4g} → {ours} {number.verdict}"
+    column = number.column
+    if number.statistic not in column:
+        column += f", {number.statistic}"
     keys = " ".join(str(value) for value in number.keys.values())
     more = f"{more} published reproduced {number.metric} {number.statistic} {keys}"
     return Entry(

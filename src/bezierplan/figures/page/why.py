@@ -45,9 +45,12 @@ def why(row: pd.Series, check: Check, name: str, condition: str, own_criterion: 
     own_criterion: whether the limit is ours because the paper gives no number.
     """
     where = f"{condition}: " if condition else ""
-    said = _TEMPLATES.get(row["test"], _effect)(row, check, name)
+    template = _TEMPLATES.get(row["test"], _effect)
+    if pd.isna(row["effect"]) and template not in (_function, _arithmetic):
+        template = _effect
+    said = template(row, check, name)
     notes = [
-        _seconds(check, row),
+        _seconds(check),
         "the paper gives no number, so this limit is ours" if own_criterion else "",
     ]
     text = "; ".join(filter(None, [where + said, *notes]))
@@ -66,7 +69,7 @@ def reference(check: Check) -> float:
 def _between(row: pd.Series, check: lower.Options | ordered.Options, name: str) -> str:
     """Of groups that should be lower, or higher, than others."""
     together = re.fullmatch(r"all (\d+) together", name)
-    if together and not pd.isna(row["effect"]):
+    if together:
         decisive = (
             f"of {together[1]} comparisons in {_measured(row)}, the decisive one is "
             f"{_apart(row, check).removesuffix(' than')}"
@@ -76,7 +79,7 @@ def _between(row: pd.Series, check: lower.Options | ordered.Options, name: str) 
             f"them{_margin(row, check)}"
         )
     match = re.fullmatch(r"(.+) (lower|higher) than (.+)", name)
-    if not match or pd.isna(row["effect"]):
+    if not match:
         return _effect(row, check, name)
     group, direction, other = match.groups()
     told = f"in {_measured(row)}, {group} is {_apart(row, check)} {other}{_interval(row, check)}"
@@ -96,7 +99,7 @@ def _apart(row: pd.Series, check: Check) -> str:
 def _equal(row: pd.Series, check: equal_within.Options, name: str) -> str:
     """Of groups that should be alike, or apart by a stated amount."""
     group, _, second = name.partition(" as ")
-    if pd.isna(row["effect"]) or not second:
+    if not second:
         return _effect(row, check, name)
     target = check.target
     says = (
@@ -113,8 +116,6 @@ def _equal(row: pd.Series, check: equal_within.Options, name: str) -> str:
 
 def _differ(row: pd.Series, check: difference.Options, name: str) -> str:
     """Of groups that should differ at all."""
-    if pd.isna(row["effect"]):
-        return _effect(row, check, name)
     amount = f"{_amount(abs(row['effect']), row, check)}{_interval(row, check)}"
     return (
         f"{_quantity(row)} differs between {name} by {amount}; the claim says that it "
@@ -124,8 +125,6 @@ def _differ(row: pd.Series, check: difference.Options, name: str) -> str:
 
 def _trend(row: pd.Series, check: trend.Options, name: str) -> str:
     """Of a quantity that should rise or fall along another."""
-    if pd.isna(row["effect"]):
-        return _effect(row, check, name)
     along, moves = check.x.replace("_", " "), "rises" if row["effect"] > 0 else "falls"
     wanted = {"up": "rises", "down": "falls"}[check.direction]
     amount = f"{_amount(abs(row['effect']), row, check)}{_interval(row, check)}"
@@ -137,8 +136,6 @@ def _trend(row: pd.Series, check: trend.Options, name: str) -> str:
 
 def _share(row: pd.Series, check: share.Options, name: str) -> str:
     """Of a share of runs in which an event happens."""
-    if pd.isna(row["effect"]):
-        return _effect(row, check, name)
     happens = _event(row, check)
     if check.pick:
         picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
@@ -149,13 +146,9 @@ def _share(row: pd.Series, check: share.Options, name: str) -> str:
     needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
     needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
     low, high = 100 * row["low95"], 100 * row["high95"]
-    interval = (
-        "" if pd.isna(low) or pd.isna(high) else f" (95 % interval {low:.3g} to {high:.3g} %)"
-    )
-    return (
-        f"{happens} in {100 * row['effect']:.3g} % of the runs{interval}; "
-        f"the claim needs it {needed}"
-    )
+    ends = "" if pd.isna(low) or pd.isna(high) else f" (95 % interval {low:.3g} to {high:.3g} %)"
+    found = f"{happens} in {100 * row['effect']:.3g} % of the runs{ends}"
+    return f"{found}; the claim needs it {needed}"
 
 
 def _event(row: pd.Series, check: share.Options) -> str:
@@ -223,12 +216,7 @@ def _quantity(row: pd.Series) -> str:
 
 def _measured(row: pd.Series) -> str:
     """What is compared: of an event, the share of runs in which it happens."""
-    quantity = _quantity(row)
-    return (
-        f"the share of runs in which {quantity.removeprefix('whether ')}"
-        if quantity.startswith("whether ")
-        else quantity
-    )
+    return re.sub("^whether ", "the share of runs in which ", _quantity(row))
 
 
 def _unit(row: pd.Series) -> str:
@@ -267,7 +255,7 @@ def _margin(row: pd.Series, check: Check) -> str:
     return f"; differences below {_amount(row['margin'], row, check)} do not count ({origin})"
 
 
-def _seconds(check: Check, row: pd.Series) -> str:
+def _seconds(check: Check) -> str:
     return (
         "judged on counted work, because seconds differ from machine to machine"
         if isinstance(check, OfRuns) and check.counted_work

@@ -73,8 +73,7 @@ class Note(NamedTuple):
 
 EACH = (
     "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, "
-    "with its own keys and those beside "
-    "`each`; `where` may be given in both"
+    "with its own keys and those beside `each`; `where` may be given in both"
 )
 
 
@@ -201,6 +200,17 @@ class TablePanel(Panel):
         return select(sources.table(self), self.where).copy()
 
 
+class MayPrint:
+    """A panel that draws published numbers if its key `printed` names a table of them. It does not
+    declare the key: each kind describes its own.
+    """
+
+    @property
+    def published_drawn(self) -> bool:
+        """Whether published numbers are drawn."""
+        return self.printed is not None
+
+
 class Pick(Model):
     """One run."""
 
@@ -232,8 +242,7 @@ class Pick(Model):
 
 PICK = (
     "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; "
-    "with having: metric, only of those that "
-    "have more than 0 of it"
+    "with having: metric, only of those that have more than 0 of it"
 )
 
 
@@ -258,6 +267,19 @@ def exactly_one(panel: Model, *keys: str) -> None:
     given = [key for key in keys if key in panel.model_fields_set]
     if len(given) != 1:
         raise wrong(f"{' and '.join(given) or 'neither'}: expected either {' or '.join(keys)}")
+
+
+def only(runs: pd.DataFrame, column: str) -> Any:
+    """The one value of a column of the runs that a panel shows. Raises ValueError if there are
+    others.
+    """
+    values = list(runs[column].unique())
+    if len(values) != 1:
+        raise ValueError(
+            f"the panel needs runs of exactly one {column}, not of {len(values)} {values}; see its "
+            "`where`"
+        )
+    return values[0]
 
 
 def kind_module(name: str) -> ModuleType:

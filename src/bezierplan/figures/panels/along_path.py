@@ -34,8 +34,6 @@ _JOINT = {"color": style.BLUE, "linestyle": (0, (3, 1.5)), "linewidth": 0.9}
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
 
     pick: Pick = Field(description=PICK)
@@ -71,7 +69,6 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     row = frame.iloc[0]
     unit = scene.problems[options.experiment][row["problem"]].workspace.unit
     axes.set_xlim(0, 1)
@@ -79,20 +76,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_ylabel(f"signed {row['quantity']} (1/{unit})")
     axes.grid(visible=True)
     if not math.isnan(row["limit"]):
-        axes.axhline(
-            row["limit"],
-            label=f"published limit: {row['limit']:g} 1/{unit}, for turns to either side",
-            zorder=3,
-            **style.PUBLISHED,
-        )
+        label = f"published limit: {row['limit']:g} 1/{unit}, for turns to either side"
+        axes.axhline(row["limit"], label=label, zorder=3, **style.PUBLISHED)
         axes.axhline(-row["limit"], zorder=3, **style.PUBLISHED)
     if frame["value"].isna().all():
-        return Note(
-            "",
-            run_note(
-                frame, "no path" if frame["t"].isna().all() else "the curve is a single point"
-            ),
-        )
+        missing = "no path" if frame["t"].isna().all() else "the curve is a single point"
+        return Note("", run_note(frame, missing))
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
     for joint in range(1, int(row["pieces"])):
         axes.axvline(joint / row["pieces"], label="joint of two pieces", zorder=2, **_JOINT)
@@ -109,19 +98,9 @@ def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
     top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([magnitude, limit, 1e-3])
     axes.set_ylim(-top, top)
     marker = ("^" if side > 0 else "v") if cut else "o"
-    mark = {
-        "marker": marker,
-        "markersize": 5,
-        "color": style.BLACK,
-        "linestyle": "",
-        "label": "largest magnitude",
-    }
+    mark = style.mark(marker, 5, style.BLACK, label="largest magnitude")
     axes.plot(highest["t"], side * min(magnitude, top), clip_on=False, zorder=4, **mark)
     still = int(frame["value"].isna().sum())
-    left_out = (
-        [f"{still} of {len(frame)} samples left out, where the curve stands still"] if still else []
-    )
-    return Note(
-        f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}",
-        run_note(frame, *left_out),
-    )
+    shown = f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
+    left_out = f"{still} of {len(frame)} samples left out, where the curve stands still"
+    return Note(shown, run_note(frame, *([left_out] if still else [])))

@@ -15,6 +15,7 @@ from bezierplan.figures.panels.lines import (
     OfMetric,
     axis_label,
     constants,
+    counts,
     published,
     runs_note,
     shared_limits,
@@ -45,8 +46,6 @@ _BEHIND_TEXT = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 
 
 
 class Options(OfMetric, RunsPanel):
-    """Keys of a panel."""
-
     named_rows: ClassVar[bool] = True
     published_drawn: ClassVar[bool] = True
 
@@ -80,11 +79,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
     for group, group_runs in runs.groupby(by):
-        named = constants(runs) | {
-            by: group,
-            "runs": len(group_runs),
-            "feasible_runs": int(group_runs["feasible"].sum()),
-        }
+        named = constants(runs) | {by: group} | counts(group_runs)
         parts = _box(np.sort(group_runs["value"].dropna().to_numpy())) or [("none", np.nan)]
         for part, statistic in (
             ("published", "mean"),
@@ -134,12 +129,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         for value in frame.loc[frame["part"] == name, "value"]:
             axes.axvline(value, zorder=1.5, **look)
     for value in frame.loc[frame["part"] == "limit", "value"]:
-        axes.axvline(
-            value,
-            zorder=1.5,
-            label=f"published limit: {amount(format(value, 'g'), scene.unit)}",
-            **style.PUBLISHED,
-        )
+        label = f"published limit: {amount(format(value, 'g'), scene.unit)}"
+        axes.axvline(value, zorder=1.5, label=label, **style.PUBLISHED)
     axes.set_xlabel(axis_label(options.metric, scene))
     medians = frame.loc[frame["part"] == "median", "value"]
     # Labels such as 0.0025 would touch each other.
@@ -152,28 +143,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     else:
         far = _draw_far(axes, boxes, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
     marks = {
-        "beyond": {
-            "color": style.BLUE,
-            "marker": ".",
-            "markersize": 1.6,
-            "alpha": 0.6,
-            "label": "outlier",
-            "zorder": 1,
-        },
-        "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
-        "published_end": {
-            "color": style.BLACK,
-            "marker": "|",
-            "markersize": 9,
-            "label": "published minimum and maximum",
-            "zorder": 5,
-        },
-        "published": {
-            **style.PUBLISHED_MARK,
-            "clip_on": False,
-            "label": "published mean",
-            "zorder": 5,
-        },
+        "beyond": style.mark(".", 1.6, style.BLUE, alpha=0.6, label="outlier", zorder=1),
+        "mean": style.mark("x", 4, style.RED, label="mean", zorder=4),
+        "published_end": style.mark(
+            "|", 9, style.BLACK, label="published minimum and maximum", zorder=5
+        ),
+        "published": style.PUBLISHED_MARK
+        | {"clip_on": False, "label": "published mean", "zorder": 5},
     }
     for part, look in marks.items():
         points = [
@@ -183,32 +159,22 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
             if value not in far
         ]
         if points:
-            axes.plot(*zip(*points), **({"linestyle": ""} | look))
+            axes.plot(*zip(*points), **look)
     of_feasible = metrics.METRICS[options.metric].feasible_only
     for height, parts in enumerate(boxes):
         if "none" in parts:
-            axes.text(
-                0.5,
-                height,
-                "no feasible run" if of_feasible else "no value",
-                transform=axes.get_yaxis_transform(),
-                ha="center",
-                va="center_baseline",
-            )
-    axes.set_ylim(len(groups) - 0.4, -0.6)
+            words = "no feasible run" if of_feasible else "no value"
+            middle = {"ha": "center", "va": "center_baseline"}
+            axes.text(0.5, height, words, transform=axes.get_yaxis_transform(), **middle)
     names = [style.printed(group, by, scene.labels) for group in groups]
     partial = {}
     if of_feasible:
         partial = _partial_shares(frame.dropna(subset=[by]).groupby(by).first())
-    axes.set_yticks(
-        range(len(groups)),
-        [
-            f"{name} ({partial[group]})" if group in partial else name
-            for name, group in zip(names, groups)
-        ],
-    )
-    axes.tick_params(axis="y", length=0)
-    axes.grid(visible=True, axis="x")
+    rows = [
+        f"{name} ({partial[group]})" if group in partial else name
+        for name, group in zip(names, groups)
+    ]
+    style.name_rows(axes, rows, 0.6)
     if scene.milliseconds:
         style.in_milliseconds(axes.xaxis)
     told = runs_note(frame, "box", "method" if by == "method" else "row")
@@ -276,14 +242,8 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
                 "marker": ">" if above else "<",
                 "label": "published mean, off the scale",
             }
-            axes.plot(
-                1.0 if above else 0.0,
-                height,
-                transform=axes.get_yaxis_transform(),
-                clip_on=False,
-                zorder=5,
-                **edge,
-            )
+            place = {"transform": axes.get_yaxis_transform(), "clip_on": False, "zorder": 5}
+            axes.plot(1.0 if above else 0.0, height, **place, **edge)
     if far:
         # Ends of the scale: the threshold for far means, if there are any; otherwise everything
         # shown, with a small margin.

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel, only
 from bezierplan.schema.model import Repeat
 
 if TYPE_CHECKING:
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     rerun: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem",)
     drives: ClassVar[bool] = True
@@ -41,29 +39,26 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
     from bezierplan.running import rides
 
-    if results.runs["problem"].nunique() != 1:
-        raise ValueError(
-            "clearance over time needs runs of one problem, not of "
-            f"{results.runs['problem'].nunique()}; see the panel's `where`"
-        )
+    problem = only(results.runs, "problem")
+    place = results.problems[problem], results.worlds[problem]
     parts = []
     for _, run in results.runs[results.runs["repeat"] == options.repeat].iterrows():
-        given = (results.problems[run["problem"]], results.worlds[run["problem"]])
         ride, verdict = rides.rerun(
-            results.jobs[run["method"]], run["condition"], options.repeat, *given
+            results.jobs[run["method"]], run["condition"], options.repeat, *place
         )
-        names = {"problem": run["problem"], "method": run["method"], "run": run["id"]}
-        steps = np.arange(1, len(verdict.clearance) + 1)
-        parts.append(
-            pd.DataFrame(
-                {**names, "step": steps, "clearance": verdict.clearance, "arrived": ride.arrived}
-            )
-        )
+        columns = {
+            "problem": problem,
+            "method": run["method"],
+            "run": run["id"],
+            "step": np.arange(1, len(verdict.clearance) + 1),
+            "clearance": verdict.clearance,
+            "arrived": ride.arrived,
+        }
+        parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     methods = style.in_order(frame["method"], options.where)
     for method, look in zip(methods, style.lines(methods, scene.looks)):
         own = frame[frame["method"] == method]
@@ -73,8 +68,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         axes.plot(own["step"].iloc[-1:], own["clearance"].iloc[-1:], zorder=4, **end)
         axes.plot([], [], label=style.printed(method, "method", scene.labels), **look)
         if not arrived:
-            not_there = style.HOLLOW | {"label": "hollow: ends without arrival"}
-            axes.plot([], [], **not_there)
+            axes.plot([], [], label="hollow: ends without arrival", **style.HOLLOW)
     axes.axhline(0.0, label="surface of an obstacle", **style.BOUND)
     axes.set_xlabel("step")
     axes.set_ylabel(f"least distance to an obstacle ({scene.unit})")

@@ -13,10 +13,11 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import statistics
 from bezierplan.figures import seen, style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
+from bezierplan.figures.panels import PICK, MayPrint, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.lines import (
     LIMITS,
     constants,
+    counts,
     interval_band,
     published,
     runs_note,
@@ -50,9 +51,7 @@ _PRINTED = style.PUBLISHED_MARK | {"markersize": 3.5}
 _FAR = 0.5
 
 
-class Options(RunsPanel):
-    """Keys of a panel."""
-
+class Options(MayPrint, RunsPanel):
     pick: Pick = Field(None, description=PICK)
     hue: Column = Field(
         None,
@@ -74,11 +73,6 @@ class Options(RunsPanel):
         description="with hue, the name of a published table "
         "whose means are marked next to the last values",
     )
-
-    @property
-    def published_drawn(self) -> bool:
-        """Whether published numbers are drawn."""
-        return self.printed is not None
 
     @property
     def named_rows(self) -> bool:
@@ -126,8 +120,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     else:
         frame = _of_groups(results, options.hue, options.statistic, generations)
     if options.printed is not None and results.published is not None:
-        table = results.published[results.published["table"] == options.printed]
-        frame["printed"] = _published_ends(results._replace(published=table), frame, options.hue)
+        frame["printed"] = _published_ends(results, frame, options)
     return (
         frame.assign(reference=shared_limits(results.runs).get("reference", np.nan))
         if options.reference
@@ -157,26 +150,18 @@ def _of_groups(results: Results, hue: str, statistic: str, generations: int) -> 
 
     runs = results.runs.sort_values("id")
     frames = []
-    for value, own in runs.groupby(hue):
-        histories = np.array([_lengthened(history, generations) for history in own["history"]])
-        named = constants(runs) | {
-            hue: value,
-            "runs": len(own),
-            "feasible_runs": int(own["feasible"].sum()),
-        }
-        objective = statistics.STATISTICS[statistic](histories.T)
-        low, high = _intervals(histories, statistic, f"convergence/{hue}={value}")
-        frames.append(
-            pd.DataFrame(
-                named
-                | {
-                    "generation": range(generations),
-                    "objective": objective,
-                    "low95": low,
-                    "high95": high,
-                }
-            )
+    for value, group_runs in runs.groupby(hue):
+        histories = np.array(
+            [_lengthened(history, generations) for history in group_runs["history"]]
         )
+        low, high = _intervals(histories, statistic, f"convergence/{hue}={value}")
+        columns = {
+            "generation": range(generations),
+            "objective": statistics.STATISTICS[statistic](histories.T),
+            "low95": low,
+            "high95": high,
+        }
+        frames.append(pd.DataFrame(constants(runs) | {hue: value} | counts(group_runs) | columns))
     bound = runs["bound"].iloc[0] if runs["bound"].nunique() == 1 else np.nan
     return pd.concat(frames, ignore_index=True).assign(bound=bound)
 
@@ -193,14 +178,13 @@ def _intervals(histories: np.ndarray, statistic: str, name: str) -> tuple[np.nda
     return low, high
 
 
-def _published_ends(results: Results, frame: pd.DataFrame, hue: str) -> np.ndarray:
+def _published_ends(results: Results, frame: pd.DataFrame, options: Options) -> np.ndarray:
     """For each row of `data`, the published mean of its group, at the last generation only."""
     printed = np.full(len(frame), np.nan)
     last = frame["generation"] == frame["generation"].max()
-    for value, own in results.runs.groupby(hue):
-        printed[last & (frame[hue] == value)] = next(
-            iter(published(results, own, "objective")), np.nan
-        )
+    for value, own in results.runs.groupby(options.hue):
+        means = published(results, own, "objective", table=options.printed)
+        printed[last & (frame[options.hue] == value)] = next(iter(means), np.nan)
     return printed
 
 
@@ -210,7 +194,6 @@ def _lengthened(history: list[float], generations: int) -> np.ndarray:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(style.column_name("generation", scene.labels))
@@ -243,13 +226,8 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
     for number, (group, rows, look) in enumerate(zip(groups, lines, looks)):
         step = max(1, len(rows) // _MARKS)
         if len(groups) <= style.MOST_BANDS:
-            interval_band(
-                axes,
-                rows["generation"],
-                rows["low95"],
-                rows["high95"],
-                look["color"],
-            )
+            ends = rows["low95"], rows["high95"]
+            interval_band(axes, rows["generation"], *ends, look["color"])
         named = look | {"label": style.printed(group, hue, scene.labels)}
         axes.plot(
             rows["generation"],
@@ -298,13 +276,8 @@ def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: 
     strip.set_xlabel(f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8)
     strip.grid(visible=True, axis="y")
     for column, (end, look, value) in enumerate(zip(ends, looks, printed)):
-        strip.plot(
-            [column, column],
-            [end["low95"], end["high95"]],
-            color=look["color"],
-            linewidth=0.9,
-            zorder=2,
-        )
+        bar = {"color": look["color"], "linewidth": 0.9, "zorder": 2}
+        strip.plot([column, column], [end["low95"], end["high95"]], **bar)
         strip.plot(column, end["objective"], zorder=3, **look | {"linestyle": ""})
         if not np.isfinite(value):
             continue

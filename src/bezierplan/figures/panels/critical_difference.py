@@ -15,7 +15,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics, running_time
 from bezierplan.figures import seen, style
-from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.figures.panels import MayPrint, Note, RunsPanel
 from bezierplan.schema.model import Metric, PrintedTable
 
 if TYPE_CHECKING:
@@ -31,9 +31,7 @@ _LEVEL = 0.05
 _ROW = 0.085
 
 
-class Options(RunsPanel):
-    """Keys of a panel."""
-
+class Options(MayPrint, RunsPanel):
     named_rows: ClassVar[bool] = True
     fewest_methods: ClassVar[int] = 3
 
@@ -48,11 +46,6 @@ class Options(RunsPanel):
         description="in what methods are ranked: each repeat of a condition (left out: this), or "
         "each problem, by the median run",
     )
-
-    @property
-    def published_drawn(self) -> bool:
-        """Whether published mean ranks are shown."""
-        return self.printed is not None
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -99,14 +92,12 @@ def data(results: Results, options: Options) -> pd.DataFrame:
             {"method": row.method, "part": "published", "value": row.value}
             for row in theirs.itertuples()
         ]
-    tested = {
-        "methods": methods,
-        "units": units,
-        "chi2": chi2,
-        "p_value": p_value,
-        "difference": difference,
-    }
-    return pd.DataFrame(rows).reindex(columns=["method", "part", "value"]).assign(**tested)
+    columns = ["method", "part", "value"]
+    return (
+        pd.DataFrame(rows)
+        .reindex(columns=columns)
+        .assign(methods=methods, units=units, chi2=chi2, p_value=p_value, difference=difference)
+    )
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -117,33 +108,24 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         frame[frame["part"] == "published"].set_index("method")["value"],
     )
     methods, half = list(ranks["method"]), tested["difference"] / 2
+    names = [scene.labels.get(method, method) for method in methods]
+    bar = {"color": "0.6", "linewidth": 2.2, "zorder": 2, "label": "critical difference"}
     for row, (rank, look) in enumerate(zip(ranks["value"], style.lines(methods, scene.looks))):
-        axes.plot(
-            [rank - half, rank + half],
-            [row, row],
-            color="0.6",
-            linewidth=2.2,
-            zorder=2,
-            label="critical difference",
-        )
+        axes.plot([rank - half, rank + half], [row, row], **bar)
         axes.plot(rank, row, zorder=3, **look | {"markersize": 4.5})
     if len(printed):
         heights = [methods.index(method) for method in printed.index]
         axes.plot(printed, heights, label="published mean rank", zorder=4, **style.PUBLISHED_MARK)
-    axes.set_yticks(range(len(methods)), [scene.labels.get(method, method) for method in methods])
-    axes.set_ylim(len(methods) - 0.5, -0.5)
-    axes.tick_params(axis="y", length=0)
+    style.name_rows(axes, names)
     axes.set_xticks(range(1, len(methods) + 1))
     axes.set_box_aspect(0.1 + _ROW * len(methods))
     axes.set_xlabel("mean rank (1 is best)")
-    axes.grid(visible=True, axis="x")
     chance = f"p = {tested['p_value']:.2g}" if tested["p_value"] >= 1e-4 else "p below 0.0001"
     units = "problems" if options.unit == "problem" else "repeats"
     words = (
         f"methods whose bars overlap cannot be distinguished: {tested['units']:g} {units}, "
         f"Friedman's chi-squared {tested['chi2']:.1f}"
     )
-    names = [scene.labels.get(method, method) for method in methods]
     return Note(
         "",
         f"{words}, {chance}; critical difference {tested['difference']:.2f}",

@@ -34,12 +34,10 @@ _FILLED = 0.8
 # Height of a row, and of each of its dots, as a share of the panel's width.
 _ROW, _DOT = 0.035, 0.014
 
-_NONE = {"linestyle": "", "marker": "x", "markersize": 3.5, "color": style.BLACK}
+_NONE = style.mark("x", 3.5, style.BLACK)
 
 
 class Options(OfMetric, RunsPanel):
-    """Keys of a panel."""
-
     named_rows: ClassVar[bool] = True
     published_drawn: ClassVar[bool] = True
 
@@ -88,23 +86,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     x, hue = options.x, options.hue
     rows, dots = style.in_order(frame[x], options.where), style.in_order(frame[hue], options.where)
     axes.set_xlabel(axis_label(options.metric, scene, options.statistic))
-    axes.set_ylim(len(rows) - 0.5, -0.5)
-    axes.set_yticks(
-        range(len(rows)),
-        [scene.labels.get(row, row) if isinstance(row, str) else f"{row:g}" for row in rows],
+    style.name_rows(
+        axes, [scene.labels.get(row, row) if isinstance(row, str) else f"{row:g}" for row in rows]
     )
-    axes.tick_params(axis="y", length=0)
     axes.set_box_aspect(0.1 + (_ROW + _DOT * len(dots)) * len(rows))
-    axes.hlines(
-        np.arange(len(rows) - 1) + 0.5,
-        0,
-        1,
-        transform=axes.get_yaxis_transform(),
-        color="0.8",
-        linewidth=0.5,
-        zorder=0.5,
-    )
-    axes.grid(visible=True, axis="x")
+    style.separate_rows(axes, len(rows))
     for number, (dot, look) in enumerate(zip(dots, style.lines(dots, scene.looks))):
         own = frame[frame[hue] == dot]
         at = own[x].map(rows.index).to_numpy() + _FILLED * ((number + 0.5) / len(dots) - 0.5)
@@ -122,15 +108,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         style.in_milliseconds(axes.xaxis)
     bounds = frame[frame["bound"].notna()].groupby(x)["bound"].mean()
     for row, bound in bounds.items():
-        middle = rows.index(row)
-        axes.vlines(
-            bound,
-            middle - 0.45,
-            middle + 0.45,
-            label="exact shortest path",
-            zorder=1.5,
-            **style.BOUND,
-        )
+        ends = rows.index(row) - 0.45, rows.index(row) + 0.45
+        axes.vlines(bound, *ends, label="exact shortest path", zorder=1.5, **style.BOUND)
     table = frame.pivot(index=x, columns=hue, values="value")
     names = [style.printed(value, hue, scene.labels) for value in table]
     metric = f"{options.statistic} {style.column_name(options.metric, scene.labels)}"
@@ -147,12 +126,8 @@ def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> N
     axes.plot(frame["value"][whole], at[whole], zorder=4, **look)
     none = frame["value"].isna().to_numpy()
     if not (whole | none).all():
-        axes.plot(
-            frame["value"][~whole],
-            at[~whole],
-            zorder=4,
-            **look | {"markerfacecolor": style.FREE, "label": None},
-        )
+        hollow = look | {"markerfacecolor": style.FREE, "label": None}
+        axes.plot(frame["value"][~whole], at[~whole], zorder=4, **hollow)
         axes.plot([], [], label="hollow: some runs are not feasible", **style.HOLLOW)
     if none.any():
         at_edge = {"transform": axes.get_yaxis_transform(), "clip_on": False, "zorder": 4}

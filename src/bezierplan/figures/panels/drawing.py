@@ -47,19 +47,17 @@ _LINE = {
     "note": {"color": style.BLACK, "linestyle": "-", "linewidth": 0.7},
 }
 _DOTS = {
-    "start": {"color": style.BLACK, "marker": "s", "markersize": 6},
-    "target": {"color": style.BLACK, "marker": "*", "markersize": 10},
-    "first": {"color": style.BLUE, "marker": "o", "markersize": 4.5},
-    "second": {"color": style.RED, "marker": "^", "markersize": 5},
-    "third": {"color": style.BLACK, "marker": "D", "markersize": 4},
-    "accent": {"color": style.RED, "marker": "X", "markersize": 6.5},
-    "muted": {"color": "0.6", "marker": "o", "markersize": 3.5},
+    "start": style.mark("s", 6, style.BLACK),
+    "target": style.mark("*", 10, style.BLACK),
+    "first": style.mark("o", 4.5, style.BLUE),
+    "second": style.mark("^", 5, style.RED),
+    "third": style.mark("D", 4, style.BLACK),
+    "accent": style.mark("X", 6.5, style.RED),
+    "muted": style.mark("o", 3.5, "0.6"),
 }
 
 
 class Options(TablePanel):
-    """Keys of a panel."""
-
     x_label: Line = Field(None, description="what the panel runs along, with its unit")
     y_label: Line = Field(None, description="what the panel's height shows, with its unit")
 
@@ -126,11 +124,8 @@ def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
             else Rectangle(at - np.array([each.width, each.height]) / 2, each.width, each.height)
             for at, each in zip(points, rows.itertuples())
         ]
-        axes.add_collection(
-            PatchCollection(
-                shapes, linewidth=0.5, zorder=zorder, **_FILL.get(role, _NO_FILL), **label
-            )
-        )
+        look = _FILL.get(role, _NO_FILL)
+        axes.add_collection(PatchCollection(shapes, linewidth=0.5, zorder=zorder, **look, **label))
     elif mark == "line":
         axes.plot(*points.T, zorder=zorder, **_LINE.get(role, _LINE["note"]), **label)
     elif mark == "arrow":
@@ -139,28 +134,19 @@ def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
         for tail, head in itertools.pairwise(points):
             axes.annotate("", xy=head, xytext=tail, arrowprops=shape, zorder=zorder)
     elif mark == "dots":
-        axes.plot(
-            *points.T, linestyle="", zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label
-        )
+        axes.plot(*points.T, zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label)
     else:
+        look = {"ha": "center", "va": "center_baseline", "zorder": zorder + 1, "in_layout": False}
         for at, words in zip(points, rows["text"]):
             # A csv file reads back a column of digits as numbers, not as words.
-            axes.text(
-                *at,
-                words if isinstance(words, str) else f"{words:g}",
-                ha="center",
-                va="center_baseline",
-                zorder=zorder + 1,
-                in_layout=False,
-            )
+            axes.text(*at, words if isinstance(words, str) else f"{words:g}", **look)
 
 
 def _fit(axes: Axes, frame: pd.DataFrame) -> None:
     """Show everything, with a small margin around it."""
-    half_width = frame["width"].fillna(0) / 2 + frame["radius"].fillna(0)
-    half_height = frame["height"].fillna(0) / 2 + frame["radius"].fillna(0)
-    low = np.array([(frame["x"] - half_width).min(), (frame["y"] - half_height).min()])
-    high = np.array([(frame["x"] + half_width).max(), (frame["y"] + half_height).max()])
+    places, reach = frame[["x", "y"]].to_numpy(), frame["radius"].fillna(0).to_numpy()[:, None]
+    half = frame[["width", "height"]].fillna(0).to_numpy() / 2 + reach
+    low, high = (places - half).min(axis=0), (places + half).max(axis=0)
     room = 0.04 * max(high - low)
     axes.set_xlim(low[0] - room, high[0] + room)
     axes.set_ylim(low[1] - room, high[1] + room)

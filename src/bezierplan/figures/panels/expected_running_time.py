@@ -38,8 +38,6 @@ _NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     named_rows: ClassVar[bool] = True
 
     cost: Literal["evaluations", "cpu_s"] = Field(
@@ -83,12 +81,6 @@ def data(results: Results, options: Options) -> pd.DataFrame:
             low, high = _interval(
                 groups, values, generator(f"expected running time/{cost}/{within}/{method}")
             )
-            counts = {
-                "problems": len(groups),
-                "reached": int(np.isfinite(values).sum()),
-                "runs": len(group),
-                "successes": int(group["done"].sum()),
-            }
             rows.append(
                 {
                     "method": method,
@@ -96,7 +88,10 @@ def data(results: Results, options: Options) -> pd.DataFrame:
                     "value": _middle(values),
                     "low95": low,
                     "high95": high,
-                    **counts,
+                    "problems": len(groups),
+                    "reached": int(np.isfinite(values).sum()),
+                    "runs": len(group),
+                    "successes": int(group["done"].sum()),
                 }
             )
     return pd.DataFrame(rows)
@@ -166,21 +161,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         heights = np.arange(len(methods)) + _APART * (number - (len(targets) - 1) / 2)
         known = np.isfinite(times["value"].to_numpy())
         ends = [times[name].clip(low / 2, never)[known] for name in ("low95", "high95")]
-        axes.hlines(
-            heights[known],
-            *ends,
-            color=look["color"],
-            linewidth=0.8,
-            zorder=2,
-        )
+        axes.hlines(heights[known], *ends, color=look["color"], linewidth=0.8, zorder=2)
         axes.plot([], [], **style.INTERVAL)
         mark = look | {"linestyle": "", "zorder": 3}
         axes.plot(times["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
-        axes.plot(
-            np.full((~known).sum(), never),
-            heights[~known],
-            **mark | {"markerfacecolor": style.FREE},
-        )
+        hollow = mark | {"markerfacecolor": style.FREE}
+        axes.plot(np.full((~known).sum(), never), heights[~known], **hollow)
     axes.axvline(never / 1.8, color="0.5", linewidth=0.6, linestyle=(0, (1, 2)), zorder=1)
     # So far from the last place that their labels do not touch.
     last = never / (3 * never / low) ** _CLEAR
@@ -196,36 +182,18 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.xaxis.set_major_formatter(
         FuncFormatter(lambda value, _: "never" if value == never else _power(thousand * value))
     )
-    axes.hlines(
-        np.arange(len(methods) - 1) + 0.5,
-        0,
-        1,
-        transform=axes.get_yaxis_transform(),
-        color="0.8",
-        linewidth=0.5,
-        zorder=0.5,
-    )
-    axes.set_yticks(range(len(methods)), [scene.labels.get(method, method) for method in methods])
-    axes.set_ylim(len(methods) - 0.5, -0.5)
-    axes.tick_params(axis="y", length=0)
-    axes.set_box_aspect(min(1.4, 0.14 + 0.12 * len(methods)))
-    axes.grid(visible=True, axis="x")
-    first = frame.iloc[0]
+    style.separate_rows(axes, len(methods))
     names = [scene.labels.get(method, method) for method in methods]
-    if first["problems"] > 1:
-        return Note(
-            "",
-            f"median over {first['problems']:g} problems; never: at least half of them are not "
-            "solved in any run",
-            _seen(frame, methods, names),
-        )
-    fewest, most = frame["runs"].min(), frame["runs"].max()
-    return Note(
-        "",
-        f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; "
-        "never: no run gets there",
-        _seen(frame, methods, names),
+    style.name_rows(axes, names)
+    axes.set_box_aspect(min(1.4, 0.14 + 0.12 * len(methods)))
+    problems, fewest, most = frame["problems"].iloc[0], frame["runs"].min(), frame["runs"].max()
+    told = (
+        f"median over {problems:g} problems; never: at least half of them are not solved in any run"
+        if problems > 1
+        else f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; "
+        "never: no run gets there"
     )
+    return Note("", told, _seen(frame, methods, names))
 
 
 def _seen(frame: pd.DataFrame, methods: list[str], names: list[str]) -> str:

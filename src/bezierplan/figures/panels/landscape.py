@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel, Sources
+from bezierplan.figures.panels import Note, RunsPanel, Sources, only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Function
 
@@ -26,35 +26,17 @@ _STEPS = 16
 _NUMBERS = (1, 2, 5)
 
 _LOOK = {
-    "minimum": {
-        "color": style.BLACK,
-        "marker": "o",
-        "markersize": 3.5,
-        "markerfacecolor": "#FFFFFF",
-        "label": "local minimum",
-    },
-    "lowest": {
-        "color": style.RED,
-        "marker": "X",
-        "markersize": 7,
-        "markeredgecolor": "#FFFFFF",
-        "label": "lowest value",
-    },
-    "fixed": {
-        "color": style.BLUE,
-        "marker": "o",
-        "markersize": 4.5,
-        "markerfacecolor": "#FFFFFF",
-        "label": "fixed control point",
-    },
+    "minimum": style.HOLLOW | {"label": "local minimum"},
+    "lowest": style.mark("X", 7, style.RED, markeredgecolor=style.FREE, label="lowest value"),
+    "fixed": style.mark(
+        "o", 4.5, style.BLUE, markerfacecolor=style.FREE, label="fixed control point"
+    ),
     "start": workspaces.START,
     "target": workspaces.TARGET,
 }
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     to_scale: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem",)
 
@@ -81,17 +63,9 @@ def data(source: tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame
     import pandas as pd
 
     results, table = source
-    names = list(results.runs["problem"].unique())
-    if len(names) != 1:
-        raise ValueError(
-            "a landscape is one of exactly one problem, "
-            f"not of {len(names)} {names}; see its `where`"
-        )
-    problem = results.problems[names[0]]
-    ends = pd.DataFrame(
-        [("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]
-    )
-    drawn = pd.concat([table, ends], ignore_index=True).assign(problem=problem.name)
+    problem = results.problems[only(results.runs, "problem")]
+    drawn = pd.concat([table, workspaces.ends(problem)], ignore_index=True)
+    drawn["problem"] = problem.name
     return drawn[["problem", "part", "x", "y", "objective"]]
 
 
@@ -122,7 +96,6 @@ def round_numbers(values: np.ndarray) -> list[float]:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     workspace = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
     x, y, values = nodes(frame)
     colours = scale_of(values)
@@ -134,9 +107,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     for part, look in _LOOK.items():
         places = frame[frame["part"] == part]
         if not places.empty:
-            axes.plot(
-                places["x"], places["y"], clip_on=False, **({"linestyle": "", "zorder": 4} | look)
-            )
+            axes.plot(places["x"], places["y"], clip_on=False, **{"zorder": 4} | look)
     bar = axes.figure.colorbar(colours, cax=axes.inset_axes([1.04, 0, 0.05, 1]))
     bar.set_ticks(round_numbers(values), labels=[f"{number:g}" for number in round_numbers(values)])
     bar.minorticks_off()

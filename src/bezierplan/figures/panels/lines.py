@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.figures import seen, style
-from bezierplan.figures.panels import Note, Sources, TablePanel, exactly_one
+from bezierplan.figures.panels import MayPrint, Note, Sources, TablePanel, exactly_one
 from bezierplan.schema.model import (
     Column,
     Experiment,
@@ -63,7 +63,7 @@ class OfMetric:
         return self.metric in metrics.METRICS and metrics.unit(self.metric, "") == "s"
 
 
-class Options(OfMetric, TablePanel):
+class Options(OfMetric, MayPrint, TablePanel):
     """Keys of a panel: of runs, or of a table."""
 
     experiment: Experiment = Field(None, description="the name of an experiment")
@@ -110,11 +110,6 @@ class Options(OfMetric, TablePanel):
             raise wrong("sorted_by: needs experiment and joined: false")
         return self
 
-    @property
-    def published_drawn(self) -> bool:
-        """Whether published numbers are drawn."""
-        return self.printed is not None
-
     def source(self, sources: Sources) -> Results | pd.DataFrame:
         """Runs, or the rows of a table."""
         return (
@@ -151,12 +146,10 @@ def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
     thin = single[[*keys, "repeat"]].assign(value=values, part="repeat", **constants(source.runs))
     parts = [frame, thin.sort_values(["repeat", *keys])]
     if printed is not None and source.published is not None:
-        table = source._replace(published=source.published[source.published["table"] == printed])
-        means = [(key, published(table, own, metric)) for key, own in source.runs.groupby(keys)]
         marked = [
             dict(zip(keys, key)) | {"part": "published", "value": value}
-            for key, values in means
-            for value in values
+            for key, own in source.runs.groupby(keys)
+            for value in published(source, own, metric, table=printed)
         ]
         parts.append(pd.DataFrame(marked, columns=[*keys, "part", "value"]))
     drawn = pd.concat(parts, ignore_index=True)
@@ -187,17 +180,9 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
         low, high = np.nan, np.nan
         if not metrics.METRICS[metric].of_group:
             low, high = statistics.interval(statistic, numbers, generator(name))
-        counts = {
-            "runs": len(group),
-            "feasible_runs": int(group["feasible"].sum()),
-            "n": len(numbers),
-        }
-        rows.append(
-            constants(runs)
-            | named
-            | counts
-            | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high}
-        )
+        value = statistics.statistic(statistic, numbers)
+        found = {"n": len(numbers), "value": value, "low95": low, "high95": high}
+        rows.append(constants(runs) | named | counts(group) | found)
     return pd.DataFrame(rows)
 
 
@@ -208,6 +193,11 @@ def constants(runs: pd.DataFrame) -> dict[str, Any]:
         for column in ("problem", "method")
         if runs[column].nunique() == 1
     }
+
+
+def counts(runs: pd.DataFrame) -> dict[str, int]:
+    """How many runs there are, and how many of them are feasible."""
+    return {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
 
 
 # Reference lines: the exact shortest length, and the best known path of the methods' own kind.
@@ -244,10 +234,14 @@ _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 
 
 def published(
-    results: Results, runs: pd.DataFrame, metric: str, statistic: str = "mean"
+    results: Results,
+    runs: pd.DataFrame,
+    metric: str,
+    statistic: str = "mean",
+    table: str | None = None,
 ) -> list[float]:
     """Values of a metric's statistic that the paper prints for the problem, method and settings of
-    runs; a row's empty keys match all runs.
+    runs, in any table or in one; a row's empty keys match all runs.
 
     A number that is of a part of the runs only, such as one of several problems, is none of theirs.
     One repeated in several tables counts once.
@@ -256,6 +250,8 @@ def published(
     if numbers is None:
         return []
     numbers = numbers[(numbers["metric"] == metric) & (numbers["statistic"] == statistic)]
+    if table is not None:
+        numbers = numbers[numbers["table"] == table]
     for column in numbers.columns.difference(_PRINTED):
         fits = (
             numbers[column].isin(runs[column].unique() if runs[column].nunique() == 1 else [])
@@ -295,7 +291,6 @@ def _range(low: float, high: float) -> str:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     hue, x = options.hue, options.x if options.sorted_by is None else "place"
     of_runs = options.experiment is not None
     statistic = options.statistic if of_runs else ""
@@ -383,15 +378,7 @@ def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, band
     if bands:
         interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"])
     else:
-        axes.vlines(
-            frame[x],
-            frame["low95"],
-            frame["high95"],
-            color=look["color"],
-            linewidth=0.8,
-            zorder=2,
-        )
-        axes.plot([], [], **style.INTERVAL)
+        _draw_bars(axes, frame[x], frame, look["color"])
     axes.plot(frame[x], frame["value"], zorder=3, **look)
     _draw_hollow(axes, frame[x], frame, look)
 
@@ -411,32 +398,22 @@ def _draw_hollow(axes: Axes, places: pd.Series, frame: pd.DataFrame, look: dict)
 def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dict) -> None:
     """Marks without a line, each with its interval, shifted so that groups are side by side."""
     places = frame[x] + aside
-    axes.vlines(
-        places,
-        frame["low95"],
-        frame["high95"],
-        color=look["color"],
-        linewidth=0.8,
-        zorder=2,
-    )
-    axes.plot([], [], **style.INTERVAL)
+    _draw_bars(axes, places, frame, look["color"])
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
     _draw_hollow(axes, places, frame, look)
 
 
+def _draw_bars(axes: Axes, places: pd.Series, frame: pd.DataFrame, colour: str) -> None:
+    """The interval of each statistic as a bar."""
+    axes.vlines(places, frame["low95"], frame["high95"], color=colour, linewidth=0.8, zorder=2)
+    axes.plot([], [], **style.INTERVAL)
+
+
 def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str) -> None:
     """A thin line for each single repeat, all alike: they show how far runs scatter."""
+    look = {"color": colour, "alpha": 0.6, "linewidth": 0.5, "linestyle": (0, (2, 1.5))}
     for _, own in frame.groupby("repeat"):
-        axes.plot(
-            own[x],
-            own["value"],
-            color=colour,
-            alpha=0.6,
-            linewidth=0.5,
-            linestyle=(0, (2, 1.5)),
-            zorder=1.8,
-            label="single runs",
-        )
+        axes.plot(own[x], own["value"], zorder=1.8, label="single runs", **look)
 
 
 def _joined(look: dict, points: int) -> dict:

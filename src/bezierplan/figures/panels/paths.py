@@ -14,9 +14,19 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, View, exactly_one
+from bezierplan.figures.panels import (
+    PICK,
+    MayPrint,
+    Note,
+    Pick,
+    RunsPanel,
+    Sources,
+    View,
+    exactly_one,
+    only,
+)
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.figures.panels.lines import axis_label, published
+from bezierplan.figures.panels.lines import axis_label, counts, published
 from bezierplan.geometry import curves
 from bezierplan.schema.checked import closest
 from bezierplan.schema.model import (
@@ -65,13 +75,7 @@ _NEAR_END = 0.25
 # Scale factor of marks in a narrow panel.
 NARROW_MARK = 0.6
 
-_CONTROL_POINT = {
-    "color": style.BLUE,
-    "marker": "o",
-    "markersize": 4.5,
-    "markerfacecolor": style.FREE,
-    "zorder": 5,
-}
+_CONTROL_POINT = style.mark("o", 4.5, style.BLUE, markerfacecolor=style.FREE, zorder=5)
 
 # In the order of the legend.
 _LOOK = {
@@ -82,17 +86,10 @@ _LOOK = {
         "linestyle": (0, (4, 2)),
         "label": "control points and polygon",
     },
-    "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
-    "nodes": {**_CONTROL_POINT, "linestyle": "", "label": "nodes"},
-    "occupied": {
-        **_CONTROL_POINT,
-        "linestyle": "",
-        "markersize": 7,
-        "markerfacecolor": style.AMBER,
-        "marker": "D",
-        "label": "control point in an occupied cell",
-        "zorder": 5.5,
-    },
+    "points": {**_CONTROL_POINT, "label": "control points"},
+    "nodes": {**_CONTROL_POINT, "label": "nodes"},
+    "occupied": style.mark("D", 7, style.BLUE, markerfacecolor=style.AMBER, zorder=5.5)
+    | {"label": "control point in an occupied cell"},
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "optimum": {
@@ -102,14 +99,7 @@ _LOOK = {
         "label": "shortest between cell centres",
         "zorder": 3.5,
     },
-    "collision": {
-        "color": style.BLACK,
-        "linestyle": "",
-        "marker": "X",
-        "markersize": 8,
-        "label": "first collision",
-        "zorder": 6,
-    },
+    "collision": style.mark("X", 8, style.BLACK, label="first collision", zorder=6),
     "start": workspaces.START,
     "target": workspaces.TARGET,
 }
@@ -118,13 +108,11 @@ _LOOK = {
 # Cells that differ from those of another problem.
 _CHANGED = {
     "appeared": {
-        "facecolor": "none",
         "edgecolor": style.AMBER,
         "hatch": "////",
         "label": "occupied since the change",
     },
     "vanished": {
-        "facecolor": "none",
         "edgecolor": style.BLUE,
         "linestyle": (0, (2, 1)),
         "hatch": "....",
@@ -144,21 +132,10 @@ def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, An
     from bezierplan.analysis.results import pick as pick_run
 
     runs = results.runs
-    for column in ("problem", "method"):
-        found = list(runs[column].unique())
-        if len(found) != 1:
-            raise ValueError(
-                f"a panel that shows one run needs runs of exactly one {column}, not of "
-                f"{len(found)} {found}; see its `where`"
-            )
-    having = (
-        slice(None)
-        if pick.having is None
-        else metrics.values(runs, pick.having, results.problems) > 0
-    )
-    run = pick_run(runs[having], pick.plain("having"))
-    names = {"problem": runs["problem"].iloc[0], "method": runs["method"].iloc[0]}
-    names |= {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
+    names = {column: only(runs, column) for column in ("problem", "method")} | counts(runs)
+    if pick.having is not None:
+        runs = runs[metrics.values(runs, pick.having, results.problems) > 0]
+    run = pick_run(runs, pick.plain("having"))
     if run is None:
         return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
     return run, names | {
@@ -202,7 +179,7 @@ class Explicit(Model):
     )
 
 
-class Options(RunsPanel):
+class Options(MayPrint, RunsPanel):
     """Keys of a panel: of picked runs, or of an explicit path."""
 
     to_scale: ClassVar[bool] = True
@@ -260,11 +237,6 @@ class Options(RunsPanel):
         min_length=4,
         max_length=4,
     )
-
-    @property
-    def published_drawn(self) -> bool:
-        """Whether published numbers are drawn."""
-        return self.printed is not None
 
     def source(self, sources: Sources) -> Results | None:
         """Runs; nothing for an explicit path."""
@@ -332,18 +304,16 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
             pick=options.pick.plain(),
             control="none",
         )
-        frames = [
-            data(results._replace(runs=runs), alone).assign(**{options.hue: value})
-            for value, runs in groups
-        ]
-        numbers = (
-            metrics.values(results.runs, options.measure, results.problems)
-            .groupby(results.runs["id"])
-            .first()
+        frame = pd.concat(
+            [
+                data(results._replace(runs=runs), alone).assign(**{options.hue: value})
+                for value, runs in groups
+            ],
+            ignore_index=True,
         )
-        return pd.concat(frames, ignore_index=True).assign(
-            measure=lambda frame: frame["run"].map(numbers)
-        )
+        numbers = metrics.values(results.runs, options.measure, results.problems)
+        by_run = numbers.groupby(results.runs["id"]).first()
+        return frame.assign(measure=frame["run"].map(by_run))
     run, names = picked(results, options.pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
@@ -352,7 +322,8 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     if options.bare:
         return table(drawn).assign(problem=problem.name)
     if options.printed is not None and results.published is not None:
-        names["printed"] = _shortest_printed(results, options.printed)
+        printed = published(results, results.runs, "length", "min", options.printed)
+        names["printed"] = next(iter(printed), np.nan)
     if options.band is not None:
         if not isinstance(problem.workspace, Grid):
             raise ValueError(f"band: {problem.name}: not a grid, and has no occupied cells")
@@ -439,14 +410,6 @@ def _clearance(results: Results, run: pd.Series | None) -> float:
     )
 
 
-def _shortest_printed(results: Results, name: str) -> float:
-    """The shortest length in a published table for the runs; NaN without one."""
-    table = results.published[results.published["table"] == name]
-    return next(
-        iter(published(results._replace(published=table), results.runs, "length", "min")), np.nan
-    )
-
-
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> np.ndarray:
     """Those of points (n, 2), in units, that lie in occupied cells: (k, 2)."""
     cells = [grid.cell_of(*point) for point in points]
@@ -488,9 +451,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if options.hue is not None:
         note = _draw_side_by_side(axes, frame, scene, options)
     else:
-        note = (
-            Note() if options.explicit is not None or options.bare else _note(frame, workspace.unit)
-        )
+        of_run = options.explicit is None and not options.bare
+        note = _note(frame, workspace.unit) if of_run else Note()
         draw_parts(axes, frame, narrow=scene.narrow, clip=options.view is not None)
     lines = frame.loc[frame["part"].isin(["path", "bound", "optimum"]), ["x", "y"]]
     for part, letter in zip(("start", "target"), options.letters or ()):
@@ -511,10 +473,9 @@ def _draw_band(axes: Axes, grid: Grid, width: float) -> None:
     rows, columns = np.nonzero(grid.occupied)
     x, y = grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows
     cells = shapely.union_all(shapely.box(x, y, x + grid.cell, y + grid.cell))
+    look = {"facecolor": style.LIGHT_BLUE, "edgecolor": "none", "zorder": 0.6}
     for part in shapely.get_parts(shapely.difference(shapely.buffer(cells, width), cells)):
-        axes.add_patch(
-            patch_from_polygon(part, facecolor=style.LIGHT_BLUE, edgecolor="none", zorder=0.6)
-        )
+        axes.add_patch(patch_from_polygon(part, **look))
 
 
 def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
@@ -529,9 +490,8 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
             for centre in centres
         ]
         if cells:
-            axes.add_collection(
-                PatchCollection(cells, zorder=1, linewidth=0.9, **look), autolim=False
-            )
+            shapes = PatchCollection(cells, facecolor="none", zorder=1, linewidth=0.9, **look)
+            axes.add_collection(shapes, autolim=False)
 
 
 def _write_letter(axes: Axes, point: np.ndarray, letter: str, lines: np.ndarray) -> None:
@@ -568,20 +528,11 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Opt
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
     for value, look, width in zip(values, style.lines(values, scene.looks), widths):
         rows = frame[frame[hue] == value]
-        draw_parts(
-            axes,
-            rows[rows["part"] == "collision"],
-            narrow=scene.narrow,
-            clip=options.view is not None,
-        )
-        path = rows[rows["part"] == "path"]
+        collision, path = (rows[rows["part"] == part] for part in ("collision", "path"))
+        draw_parts(axes, collision, narrow=scene.narrow, clip=options.view is not None)
         name = style.printed(value, hue, scene.labels)
-        axes.plot(
-            path["x"],
-            path["y"],
-            zorder=3,
-            **look | {"marker": "", "label": name, "linewidth": width},
-        )
+        line = look | {"marker": "", "label": name, "linewidth": width}
+        axes.plot(path["x"], path["y"], zorder=3, **line)
         clauses.append(
             f"{name} {_decimal(rows['measure'].iloc[0])}" if len(path) else f"{name} no path"
         )
@@ -607,13 +558,10 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> 
         if part == "path" and "optimum" in parts:
             look = look | {"linewidth": _WIDE_PATH}
         points = frame.loc[frame["part"] == part, ["x", "y"]]
+        if narrow and "markersize" in look:
+            look = look | {"markersize": NARROW_MARK * look["markersize"]}
         if not points.empty:
-            size = (
-                {"markersize": NARROW_MARK * look["markersize"]}
-                if narrow and "markersize" in look
-                else {}
-            )
-            axes.plot(points["x"], points["y"], clip_on=clip, **(look | size))
+            axes.plot(points["x"], points["y"], clip_on=clip, **look)
 
 
 def _note(frame: pd.DataFrame, unit: str) -> Note:

@@ -39,12 +39,9 @@ _AXES = {
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     cost: Literal["length", "evaluations", "cpu_s"] = Field(
         description="what is compared: length (of the median run), or the expected evaluations or "
-        "cpu_s to a path within a "
-        "share of the exact bound"
+        "cpu_s to a path within a share of the exact bound"
     )
     within: Positive = Field(
         None, description="with evaluations and cpu_s, that share, a number above 0, such as 0.05"
@@ -53,10 +50,8 @@ class Options(RunsPanel):
     @model_validator(mode="after")
     def _check_within(self) -> Options:
         if (self.cost == "length") == ("within" in self.model_fields_set):
-            is_length = self.cost == "length"
-            why = (
-                "is for evaluations and cpu_s alone" if is_length else f"cost {self.cost} needs it"
-            )
+            alone = self.cost == "length"
+            why = "is for evaluations and cpu_s alone" if alone else f"cost {self.cost} needs it"
             raise wrong(f"within: {why}")
         return self
 
@@ -98,7 +93,6 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     end = max(frame["ratio"].max(), 1.01) ** _ROOM
     methods = style.in_order(frame["method"], options.where)
     for number, (method, look) in enumerate(zip(methods, style.lines(methods, scene.looks))):
@@ -125,15 +119,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         frame.loc[(frame["method"] == method) & (frame["ratio"] == 1), "share"].max()
         for method in methods
     ]
-    at_one = seen.extremes(
-        "share of problems on which it is the best", dict(zip(names, np.nan_to_num(best)))
+    of_best = dict(zip(names, np.nan_to_num(best)))
+    at_one = seen.extremes("share of problems on which it is the best", of_best)
+    told = (
+        f"{words}; solved by the median run of any method"
+        if options.cost == "length"
+        else f"to within {100 * options.within:g} % of the exact shortest path; {words}, solved by "
+        "any method"
     )
-    if options.cost == "length":
-        return Note(
-            "", f"{words}; solved by the median run of any method: {counts['solved']:g}", at_one
-        )
-    target = f"to within {100 * options.within:g} % of the exact shortest path"
-    return Note("", f"{target}; {words}, solved by any method: {counts['solved']:g}", at_one)
+    return Note("", f"{told}: {counts['solved']:g}", at_one)
 
 
 def _name_ratios(axes: Axes, end: float) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import NARROW_MARK
 from bezierplan.schema.model import is_number, value
@@ -35,8 +35,6 @@ _FINE = 0.005
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     to_scale: ClassVar[bool] = True
     rerun: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
@@ -60,11 +58,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     from bezierplan.running import rides
 
     for column in ("problem", "method"):
-        if results.runs[column].nunique() != 1:
-            raise ValueError(
-                f"a snapshot needs runs of one {column}, not of {results.runs[column].nunique()}; "
-                "see the panel's `where`"
-            )
+        only(results.runs, column)
     run = picked(results.runs, options.pick.plain())
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
@@ -93,24 +87,19 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     if isinstance(world, MovingCircles):
         step = int(time)
         now, after = world.at(step), world.at(step + 1)
+        velocity = after - now
+        x, y = (now + (time - step) * velocity).T
         circles = {
-            "x": now[:, 0] + (time - step) * (after - now)[:, 0],
-            "y": now[:, 1] + (time - step) * (after - now)[:, 1],
+            "part": "circle",
+            "x": x,
+            "y": y,
+            "size": world.radii,
+            "obstacle": range(len(now)),
+            "x_velocity": velocity[:, 0],
+            "y_velocity": velocity[:, 1],
         }
-        velocities = {"x_velocity": (after - now)[:, 0], "y_velocity": (after - now)[:, 1]}
-        corners = pd.DataFrame({"part": "corner", "x": world.bounds[:2], "y": world.bounds[2:]})
-        parts = [
-            corners,
-            pd.DataFrame(
-                {
-                    "part": "circle",
-                    **circles,
-                    "size": world.radii,
-                    "obstacle": range(len(now)),
-                    **velocities,
-                }
-            ),
-        ]
+        corners = {"part": "corner", "x": world.bounds[:2], "y": world.bounds[2:]}
+        parts = [pd.DataFrame(corners), pd.DataFrame(circles)]
         width = world.bounds[1] - world.bounds[0]
     else:
         grid = world.workspace(time)
@@ -127,16 +116,10 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     if verdict.collision_at <= time:
         hit = between(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         parts.append(pd.DataFrame(hit, columns=["x", "y"]).assign(part="collision"))
-    parts.append(
-        pd.DataFrame(
-            [("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]
-        )
-    )
-    return pd.concat(parts, ignore_index=True)
+    return pd.concat([*parts, workspaces.ends(problem)], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     problem = scene.problems[options.experiment][frame["problem"].iloc[0]]
     workspaces.shade(axes, frame)
     workspaces.scale(axes, problem.workspace.unit)
@@ -144,11 +127,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if scene.narrow:
         axes.locator_params(nbins=4, integer=True)
     dropped = frame.loc[frame["part"] == "dropped", "number"].nunique()
-    plans = (
-        "no plan discarded"
-        if dropped == 0
-        else f"{dropped} plan{'s' if dropped > 1 else ''} discarded"
-    )
+    plans = f"{dropped or 'no'} plan{'s' if dropped > 1 else ''} discarded"
     return Note(f"step {frame['time'].iloc[0]:.0f}, {plans}", f"run {frame['run'].iloc[0]}")
 
 
@@ -169,15 +148,7 @@ def show(axes: Axes, frame: pd.DataFrame, *, narrow: bool = False) -> None:
             "zorder": 2.6,
         }
         axes.quiver(circles["x"], circles["y"], *arrows.T, **look)
-        axes.plot(
-            [],
-            [],
-            color=style.BLACK,
-            linestyle="",
-            marker=r"$\rightarrow$",
-            markersize=8,
-            label="velocity",
-        )
+        axes.plot([], [], label="velocity", **style.mark(r"$\rightarrow$", 8, style.BLACK))
     for _, rows in frame[frame["part"] == "dropped"].groupby("number"):
         axes.plot(
             rows["x"], rows["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan"
@@ -193,22 +164,8 @@ def show(axes: Axes, frame: pd.DataFrame, *, narrow: bool = False) -> None:
         "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "path driven"},
         "start": workspaces.START,
         "target": workspaces.TARGET,
-        "robot": {
-            "color": style.RED,
-            "linestyle": "",
-            "marker": "o",
-            "markersize": 5,
-            "zorder": 5,
-            "label": "robot",
-        },
-        "collision": {
-            "color": style.BLACK,
-            "linestyle": "",
-            "marker": "x",
-            "markersize": 8,
-            "zorder": 6,
-            "label": "first collision",
-        },
+        "robot": style.mark("o", 5, style.RED, zorder=5, label="robot"),
+        "collision": style.mark("x", 8, style.BLACK, zorder=6, label="first collision"),
     }
     for part, look in looks.items():
         rows = frame[frame["part"] == part]

@@ -55,8 +55,6 @@ Place = Annotated[list[Number], of_length(3, "[x, y, z]")]
 
 
 class Options(Panel):
-    """Keys of a panel."""
-
     plans: ClassVar[bool] = True
 
     workspace: Described = Field(description="the name of a workspace of kind `spheres`")
@@ -134,30 +132,19 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
             raise ValueError(
                 f"run {run}: a free path of length {length:.12g}, below the bound {bound:.12g}"
             )
-        rows.append(
-            {
-                "part": "run",
-                "run": run,
-                "length": length,
-                "claimed_feasible": plan.claimed_feasible,
-                "feasible": feasible,
-            }
-        )
+        claimed = plan.claimed_feasible
+        rows.append(("run", run, length, claimed, feasible))
         paths[run] = plan.path
-    table = pd.DataFrame(rows)
+    of_runs = ["run", "length", "claimed_feasible", "feasible"]
+    table = pd.DataFrame(rows, columns=["part", *of_runs])
     parts = [
         _places("corner", np.reshape(workspace.bounds, (3, 2)).T),
         _places("sphere", workspace.centres).assign(
             size=workspace.radii, obstacle=range(len(workspace.radii))
         ),
-        *(
-            _places(part, np.array(points))
-            for part, points in (
-                ("start", [start]),
-                ("target", [target]),
-                ("line", [start, target]),
-            )
-        ),
+        _places("start", np.array([start])),
+        _places("target", np.array([target])),
+        _places("line", np.array([start, target])),
         table,
     ]
     free = table[table["feasible"]]
@@ -171,20 +158,7 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
             ),
             _places("control", path.points).assign(run=best),
         ]
-    columns = [
-        "part",
-        "x",
-        "y",
-        "z",
-        "size",
-        "obstacle",
-        "run",
-        "length",
-        "claimed_feasible",
-        "feasible",
-        "along",
-        "clearance",
-    ]
+    columns = ["part", "x", "y", "z", "size", "obstacle", *of_runs, "along", "clearance"]
     drawn = pd.concat(parts, ignore_index=True).reindex(columns=columns)
     return drawn.assign(
         method=options.method, straight_line=np.linalg.norm(np.subtract(target, start)), bound=bound
@@ -211,7 +185,6 @@ def _clearance(points: np.ndarray, workspace: Spheres) -> np.ndarray:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     unit = scene.workspaces[options.workspace].unit
     if options.clearance:
         return _draw_clearance(axes, frame[frame["part"] == "path"], unit)

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel, Sources, landscape
+from bezierplan.figures.panels import Note, RunsPanel, Sources, landscape, only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import steps
 from bezierplan.planners import planner_module
@@ -36,19 +36,10 @@ _MARGIN = 0.03
 _CLOSE = 1.2
 
 _NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
-_FIRST = {
-    "color": style.BLUE,
-    "linestyle": "",
-    "marker": "o",
-    "markersize": 7,
-    "markerfacecolor": "none",
-    "markeredgewidth": 1.3,
-}
+_FIRST = style.mark("o", 7, style.BLUE, markerfacecolor="none", markeredgewidth=1.3)
 
 
 class Options(RunsPanel):
-    """Keys of a panel."""
-
     to_scale: ClassVar[bool] = True
     rerun: ClassVar[bool] = True
     tracks: ClassVar[bool] = True
@@ -98,29 +89,19 @@ def data(source: Results | tuple[Results, pd.DataFrame], options: Options) -> pd
     from bezierplan.analysis.results import Results, pick
 
     results, table = (source, None) if isinstance(source, Results) else source
-    for column in ("problem", "method"):
-        found = list(results.runs[column].unique())
-        if len(found) != 1:
-            raise ValueError(
-                f"a panel of tracks needs runs of exactly one {column}, not of {len(found)} "
-                f"{found}; see its `where`"
-            )
-    problem = results.problems[results.runs["problem"].iloc[0]]
+    problem = results.problems[only(results.runs, "problem")]
+    method = only(results.runs, "method")
     feasible = results.runs[results.runs["feasible"]]
     groups = metrics.values(feasible, options.by, results.problems)
-    parts = [
-        pd.DataFrame(
-            [("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]
-        )
-    ]
+    parts = [workspaces.ends(problem)]
     for group in _commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
-        parts.append(_part(run, _tracked(run, results.jobs[run["method"]], problem), options.point))
+        parts.append(_part(run, _tracked(run, results.jobs[method], problem), options.point))
     if table is not None:
         parts.append(table[table["part"] == "node"])
     names = {
         "problem": problem.name,
-        "method": results.runs["method"].iloc[0],
+        "method": method,
         "candidates": len(feasible),
         "groups": groups.nunique(),
     }
@@ -177,7 +158,6 @@ def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    """Draw the rows of `data`."""
     workspace = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
     if (frame["part"] == "node").any():
         x, y, values = landscape.nodes(frame)
@@ -242,13 +222,7 @@ def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:
     axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, zorder=5, **look)
     first, last = way.iloc[0], way.iloc[-1]
     axes.plot(first["x"], first["y"], label="first position", zorder=6, clip_on=False, **_FIRST)
-    cross = {
-        "color": look["color"],
-        "linestyle": "",
-        "marker": "X",
-        "markersize": 7,
-        "markeredgecolor": style.FREE,
-    }
+    cross = style.mark("X", 7, look["color"], markeredgecolor=style.FREE)
     axes.plot(last["x"], last["y"], label="last position", zorder=6, clip_on=False, **cross)
     inwards = np.sign(
         [first["x"] - np.mean(axes.get_xlim()), first["y"] - np.mean(axes.get_ylim())]
@@ -269,10 +243,5 @@ def _draw_paths(axes: Axes, paths: pd.DataFrame, look: dict) -> None:
     for iteration, own in paths.groupby("iteration"):
         last = iteration == paths["iteration"].max()
         thin = {"linewidth": 0.9, "linestyle": (0, (1, 1)), "label": "path after iteration 0"}
-        axes.plot(
-            own["x"],
-            own["y"],
-            zorder=5 if last else 4,
-            clip_on=True,
-            **(look | ({"linewidth": 1.7} if last else thin)),
-        )
+        own_look = look | ({"linewidth": 1.7} if last else thin)
+        axes.plot(own["x"], own["y"], zorder=5 if last else 4, clip_on=True, **own_look)

@@ -17,7 +17,7 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells
 from bezierplan.workspaces.polygons import Polygons
-from bezierplan.workspaces.problem import Workspace
+from bezierplan.workspaces.problem import Problem, Workspace
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,22 +44,8 @@ _OUTLINE = {
     "zorder": 3,
 }
 
-START = {
-    "color": style.BLACK,
-    "linestyle": "",
-    "marker": "s",
-    "markersize": 7,
-    "label": "start",
-    "zorder": 4.5,
-}
-TARGET = {
-    "color": style.BLACK,
-    "linestyle": "",
-    "marker": "*",
-    "markersize": 12,
-    "label": "target",
-    "zorder": 4.5,
-}
+START = style.mark("s", 7, style.BLACK, label="start", zorder=4.5)
+TARGET = style.mark("*", 12, style.BLACK, label="target", zorder=4.5)
 
 # A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes
 # suffice.
@@ -79,8 +65,6 @@ _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
 class Options(Panel):
-    """Keys of a panel."""
-
     to_scale: ClassVar[bool] = True
 
     workspace: Described = Field(description="the name of a workspace")
@@ -138,6 +122,14 @@ def parts(workspace: Workspace) -> pd.DataFrame:
     return _table(workspace.bounds, _shapes(workspace))
 
 
+def ends(problem: Problem) -> pd.DataFrame:
+    """Start and target of a problem: rows with part, x and y."""
+    import pandas as pd
+
+    places = [("start", *problem.start), ("target", *problem.target)]
+    return pd.DataFrame(places, columns=["part", "x", "y"])
+
+
 def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
     return _discs(workspace) if isinstance(workspace, Circles) else _rings(workspace)
 
@@ -191,15 +183,7 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
     import pandas as pd
 
     rings = [
-        pd.DataFrame(
-            {
-                "part": "ring",
-                "x": points[:, 0],
-                "y": points[:, 1],
-                "obstacle": obstacle,
-                "ring": ring,
-            }
-        )
+        pd.DataFrame(points, columns=["x", "y"]).assign(part="ring", obstacle=obstacle, ring=ring)
         for obstacle, outline in enumerate(workspace.obstacles)
         for ring, points in enumerate(outline)
     ]
@@ -245,12 +229,9 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
     cells = frame[frame["part"].isin(_CELLS)]
-    if (
-        "height" not in frame
-        and len(cells)
-        and np.ptp(corners["x"]) * np.ptp(corners["y"])
-        > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
-    ):
+    area = np.ptp(corners["x"]) * np.ptp(corners["y"])
+    are_many = len(cells) and area > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
+    if are_many and "height" not in frame:
         _draw_image(axes, cells, corners)
     else:
         for part, look in _CELLS.items():
@@ -271,10 +252,8 @@ def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
     corners = (
         cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
     )
-    axes.add_collection(
-        PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look),
-        autolim=False,
-    )
+    shapes = PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look)
+    axes.add_collection(shapes, autolim=False)
 
 
 def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
@@ -284,23 +263,17 @@ def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
 
     side = cells["size"].iloc[0]
     (left, right), (bottom, top) = corners["x"], corners["y"]
-    image = np.full(
-        (round((top - bottom) / side), round((right - left) / side), 3),
-        to_rgb(_CELLS["free"]["facecolor"]),
-    )
+    shape = round((top - bottom) / side), round((right - left) / side), 3
+    image = np.full(shape, to_rgb(_CELLS["free"]["facecolor"]))
     for part in ("occupied", "surplus"):
         own = cells[cells["part"] == part]
-        image[
-            ((own["y"] - bottom) // side).astype(int), ((own["x"] - left) // side).astype(int)
-        ] = to_rgb(_CELLS[part]["facecolor"])
+        row, column = ((own["y"] - bottom) // side), ((own["x"] - left) // side)
+        image[row.astype(int), column.astype(int)] = to_rgb(_CELLS[part]["facecolor"])
         if len(own):
-            # For the legend.
-            axes.add_collection(
-                PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part]), autolim=False
-            )
-    axes.imshow(
-        image, extent=(left, right, bottom, top), origin="lower", aspect="equal", zorder=0.5
-    )
+            legend = PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part])
+            axes.add_collection(legend, autolim=False)
+    extent = left, right, bottom, top
+    axes.imshow(image, extent=extent, origin="lower", aspect="equal", zorder=0.5)
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:

@@ -12,22 +12,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import Field
 
-from bezierplan.analysis.claims.effects import (
-    BETWEEN_GROUPS,
-    Comparison,
-    Finding,
-    counted,
-    drawn_effects,
-    effect,
-    interval,
-    is_negligible,
-    least_detectable,
-    margin_of,
-    no_difference,
-    points,
-    too_few,
-    units,
-)
+from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower
 from bezierplan.schema.model import Flag, listed
 
@@ -36,8 +22,6 @@ if TYPE_CHECKING:
 
 
 class Options(Comparing):
-    """Keys of a check."""
-
     secondary: Literal[True] = Field(None, description=SECONDARY)
     paired: Flag = Field(None, description=PAIRED)
     groups: listed(Group, least=2) = Field(
@@ -55,16 +39,16 @@ def _range(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
     two.
     """
     if len(cells) == 2:
-        return BETWEEN_GROUPS.of(check, points, cells)
+        return effects.BETWEEN_GROUPS.of(check, points, cells)
     return np.ptp(points, axis=-1) / (points.mean(axis=-1) if check.relative else 1)
 
 
 def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    return BETWEEN_GROUPS.gradient(check, ours, cells) if len(cells) == 2 else None
+    return effects.BETWEEN_GROUPS.gradient(check, ours, cells) if len(cells) == 2 else None
 
 
-EFFECT = BETWEEN_GROUPS._replace(
-    of=_range, gradient=_gradient, claimed=lambda check, effects, margin: np.abs(effects) >= margin
+EFFECT = effects.BETWEEN_GROUPS._replace(
+    of=_range, gradient=_gradient, claimed=lambda check, values, margin: np.abs(values) >= margin
 )
 
 
@@ -80,18 +64,18 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Test whether the cells differ at all."""
     from scipy import stats
 
-    ours = float(effect(check, points(comparison, "mean"), comparison.cells))
-    n, reason = units(comparison), too_few(comparison)
+    ours = effects.of_ours(check, comparison)
+    n, reason = effects.units(comparison), effects.too_few(comparison)
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
     if len(comparison.cells) == 2:
         found = lower.find(_of_pair(check), comparison, name)
         return found._replace(toward=abs(found.toward))
     (stratum,) = comparison.strata.values()
-    groups = counted(stratum, comparison.paired)
+    groups = effects.counted(stratum, comparison.paired)
     total = sum(map(len, groups))
-    low, high = interval(drawn_effects(check, comparison, name))
-    margin = margin_of(check, comparison)
+    low, high = effects.interval(effects.drawn_effects(check, comparison, name))
+    margin = effects.margin_of(check, comparison)
     if comparison.paired:
         same = all(np.ptp(values) == 0 for values in zip(*groups))
         tested = None if same else stats.friedmanchisquare(*groups)
@@ -99,19 +83,12 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     else:
         tested = None if np.ptp(np.concatenate(groups)) == 0 else stats.kruskal(*groups)
         size_name, largest = "epsilon squared", total - 1
+    size, p = (float(tested.statistic / largest), float(tested.pvalue)) if tested else (0.0, 1.0)
     return Finding(
-        *(
-            ours,
-            size_name,
-            float(tested.statistic / largest) if tested else 0.0,
-            low,
-            high,
-            n,
-            float(tested.pvalue) if tested else 1.0,
-        ),
+        *(ours, size_name, size, low, high, n, p),
         toward=int(ours >= margin),
         margin=margin,
-        negligible=is_negligible(low, high, margin, n),
-        least_detectable=least_detectable(low, high, n),
-        reason=no_difference(low, high, n),
+        negligible=effects.is_negligible(low, high, margin, n),
+        least_detectable=effects.least_detectable(low, high, n),
+        reason=effects.no_difference(low, high, n),
     )

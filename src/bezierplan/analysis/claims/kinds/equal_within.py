@@ -14,22 +14,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.effects import (
-    BETWEEN_GROUPS,
-    Comparison,
-    Finding,
-    by_draws,
-    drawn_effects,
-    effect,
-    interval,
-    margin_of,
-    pairs_in_words,
-    point_statistic,
-    points,
-    too_few,
-    units,
-    why_none,
-)
+from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.claims.kinds import (
     GROUPS,
     POOL,
@@ -48,8 +34,6 @@ if TYPE_CHECKING:
 
 
 class Options(Comparing):
-    """Keys of a check."""
-
     against: ClassVar[bool] = True
 
     secondary: Literal[True] = Field(None, description=SECONDARY)
@@ -69,30 +53,30 @@ class Options(Comparing):
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """Each group paired with each of the others."""
-    return pairs_in_words(itertools.product(check.groups, check.than), "as")
+    return effects.pairs_in_words(itertools.product(check.groups, check.than), "as")
 
 
-def claimed(check: Options, effects: np.ndarray, margin: float) -> np.ndarray:
+def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
     """Whether the effect, less the target, lies within the margin."""
-    return np.abs(effects - check.target) <= margin
+    return np.abs(values - check.target) <= margin
 
 
-EFFECT = BETWEEN_GROUPS._replace(claimed=claimed)
+EFFECT = effects.BETWEEN_GROUPS._replace(claimed=claimed)
 
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Two one-sided tests of whether two cells' difference, less the target, lies within the
     margin; p of being outside where it is.
     """
-    ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
-    n, reason = units(comparison), too_few(comparison)
+    ours = effects.of_ours(check, comparison)
+    n, reason = effects.units(comparison), effects.too_few(comparison)
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if point_statistic(check) in WITHOUT_INTERVAL:
-        return by_draws(check, comparison, name)
-    margin = margin_of(check, comparison)
-    draws = drawn_effects(check, comparison, name)
-    low, high = interval(draws)
+    if effects.point_statistic(check) in WITHOUT_INTERVAL:
+        return effects.by_draws(check, comparison, name)
+    margin = effects.margin_of(check, comparison)
+    draws = effects.drawn_effects(check, comparison, name)
+    low, high = effects.interval(draws)
     toward = 1 if bool(claimed(check, ours, margin)) else -1
     beyond = draws - check.target
     if math.isnan(low):
@@ -100,11 +84,7 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     elif toward > 0:
         p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
     else:
-        p = min(
-            1.0,
-            2
-            * float(
-                np.mean(beyond <= margin) if ours > check.target else np.mean(beyond >= -margin)
-            ),
-        )
-    return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=why_none(ours))
+        inside = beyond <= margin if ours > check.target else beyond >= -margin
+        p = min(1.0, 2 * float(np.mean(inside)))
+    reason = effects.why_none(ours)
+    return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=reason)

@@ -27,12 +27,17 @@ from bezierplan.schema.model import (
 )
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from bezierplan.analysis.claims.claim import Claim
+    from bezierplan.analysis.results import Results
+
+    Experiments = dict[str, Results]
+    Published = dict[str, pd.DataFrame]
+    Judged = tuple[str, float, tuple[float, float] | None, int]
 
 
 class Options(Check):
-    """Keys of a check."""
-
     name: Function = Field(
         description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`"
     )

@@ -25,30 +25,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.effects import (
-    ALPHA,
-    BETWEEN_GROUPS,
-    SIDES,
-    Comparison,
-    Finding,
-    by_draws,
-    counted,
-    drawn_effects,
-    effect,
-    finite,
-    interval,
-    is_negligible,
-    least_detectable,
-    margin_of,
-    no_difference,
-    pairs_in_words,
-    point_statistic,
-    points,
-    too_few,
-    two_sided,
-    units,
-    why_none,
-)
+from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.claims.kinds import (
     FAILURES,
     GROUPS,
@@ -74,12 +52,10 @@ from bezierplan.schema.model import Flag, Metric, Positive, listed, wrong
 if TYPE_CHECKING:
     import pandas as pd
 
-EFFECT = BETWEEN_GROUPS
+EFFECT = effects.BETWEEN_GROUPS
 
 
 class Options(Comparing):
-    """Keys of a check."""
-
     against: ClassVar[bool] = True
 
     secondary: Literal[True] = Field(None, description=SECONDARY)
@@ -117,34 +93,36 @@ class Options(Comparing):
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """Each pair, or each group paired with each of the others."""
     pairs = check.pairs or itertools.product(check.groups, check.than)
-    return pairs_in_words(pairs, f"{check.direction} than")
+    return effects.pairs_in_words(pairs, f"{check.direction} than")
 
 
 def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     """Test whether the first cell is lower (higher) than the second."""
-    ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
-    n, reason = units(comparison), too_few(comparison)
+    ours = effects.of_ours(check, comparison)
+    n, reason = effects.units(comparison), effects.too_few(comparison)
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if point_statistic(check) in WITHOUT_INTERVAL:
-        finding = by_draws(check, comparison, name)
+    if effects.point_statistic(check) in WITHOUT_INTERVAL:
+        finding = effects.by_draws(check, comparison, name)
         return finding if abs(ours) >= finding.margin else finding._replace(mark="?")
-    side, least = SIDES[check.side], check.least_claimed
-    margin = margin_of(check, comparison)
-    draws = drawn_effects(check, comparison, name)
-    low, high = interval(draws)
+    side, least = effects.SIDES[check.side], check.least_claimed
+    margin = effects.margin_of(check, comparison)
+    draws = effects.drawn_effects(check, comparison, name)
+    low, high = effects.interval(draws)
     toward = np.sign(side * ours - least)
     if not least and abs(ours) < margin:
         toward = 0
     (stratum, *others) = comparison.strata.values()
-    group, reference = counted(stratum, comparison.paired)
+    group, reference = effects.counted(stratum, comparison.paired)
     named = check.statistic_named
     if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
-        p = two_sided(side * draws - least)
+        p = effects.two_sided(side * draws - least)
     elif comparison.boolean:
         p = _boolean_test(group, reference, comparison.paired)
     elif named == "mean":
-        p = _t_test(*_shifted(check, *finite(stratum, comparison.paired)), comparison.paired)
+        p = _t_test(
+            *_shifted(check, *effects.finite(stratum, comparison.paired)), comparison.paired
+        )
     else:
         p, ranked = rank_test(*_shifted(check, group, reference), comparison.paired)
         # The means must differ in the direction of the ranks, unless some values have no mean.
@@ -154,10 +132,12 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
         p = math.nan
     size_name, size = _effect_size(check, comparison, side, ours)
     finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
-    reason = why_none(p) or ("" if toward else no_difference(low, high, n))
-    negligible = not infinite and is_negligible(low, high, margin, n, side * least)
+    reason = effects.why_none(p) or ("" if toward else effects.no_difference(low, high, n))
+    negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
     finding = finding._replace(
-        negligible=negligible, least_detectable=least_detectable(low, high, n), reason=reason
+        negligible=negligible,
+        least_detectable=effects.least_detectable(low, high, n),
+        reason=reason,
     )
     return _without_p(finding) if ours and _are_constant(comparison) else finding
 
@@ -167,7 +147,7 @@ def _are_constant(comparison: Comparison) -> bool:
     cells = [
         values
         for stratum in comparison.strata.values()
-        for values in counted(stratum, comparison.paired)
+        for values in effects.counted(stratum, comparison.paired)
     ]
     return not comparison.boolean and all(
         np.isfinite(values).all() and np.ptp(values) == 0 for values in cells
@@ -178,7 +158,7 @@ def _without_p(finding: Finding) -> Finding:
     """The finding on two constants that differ, with the mark that its p gives, and no p: nothing
     varies by chance.
     """
-    side = {1: "+", -1: "-"}.get(finding.toward if finding.p < ALPHA else 0)
+    side = {1: "+", -1: "-"}.get(finding.toward if finding.p < effects.ALPHA else 0)
     mark = side or ("0" if finding.negligible else "?")
     reason = finding.reason or "both are constant, so there is no p"
     return finding._replace(mark=mark, p=math.nan, reason=reason)
@@ -210,7 +190,7 @@ def _shifted(
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, reference)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, reference = (np.where(np.isinf(values), worst, values) for values in (group, reference))
-    move = SIDES[check.side] * check.least_claimed
+    move = effects.SIDES[check.side] * check.least_claimed
     return group, reference * (1 + move) if check.relative else reference + move
 
 
@@ -234,7 +214,7 @@ def _effect_size(
     """Name and value: odds ratio of booleans; A12, the share of pairs won in the claimed direction;
     or the difference itself.
     """
-    pairs = [counted(stratum, comparison.paired) for stratum in comparison.strata.values()]
+    pairs = [effects.counted(stratum, comparison.paired) for stratum in comparison.strata.values()]
     if comparison.boolean and len(pairs) == 1:
         ((group, other),) = pairs
         if comparison.paired:
@@ -244,7 +224,7 @@ def _effect_size(
             odds = np.array([a * d, b * c], dtype=float)
         with np.errstate(divide="ignore", invalid="ignore"):
             return "odds ratio", float(odds[0] / odds[1])
-    if point_statistic(check) not in ("mean", "median"):
+    if effects.point_statistic(check) not in ("mean", "median"):
         return "difference", ours
     if comparison.paired:
         won = [np.mean((group > other) + 0.5 * (group == other)) for group, other in pairs]

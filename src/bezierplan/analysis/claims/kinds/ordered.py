@@ -32,8 +32,6 @@ find = lower.find
 
 
 class Options(Comparing):
-    """Keys of a check."""
-
     against: ClassVar[bool] = True
 
     secondary: Literal[True] = Field(None, description=SECONDARY)

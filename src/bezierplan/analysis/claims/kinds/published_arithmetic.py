@@ -25,8 +25,6 @@ _NOT_KEYS = ("value", "n", "unit")
 
 
 class Options(Check):
-    """Keys of a check."""
-
     of_printed: ClassVar[bool] = True
 
     secondary: Literal[True] = Field(None, description=SECONDARY)

@@ -14,14 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.effects import (
-    LEAST_WITHOUT_EXAMPLE,
-    SIDES,
-    Comparison,
-    Effect,
-    Finding,
-    counted,
-)
+from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.effects import Comparison, Effect, Finding
 from bezierplan.analysis.claims.kinds import FAILURES, POOL, SECONDARY, Columns, OfRuns
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
@@ -63,8 +57,6 @@ class Event(Model):
 
 
 class Options(OfRuns):
-    """Keys of a check."""
-
     secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     event: Event = Field(
@@ -113,32 +105,20 @@ class Options(OfRuns):
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """One cell, of all runs."""
-    yield (
-        " ".join(
-            map(
-                str,
-                [
-                    *(check.limit or ()),
-                    "in",
-                    *([check.direction] if check.direction else []),
-                    check.threshold,
-                ],
-            )
-        ),
-        [""],
-    )
+    side = [check.direction] if check.direction else []
+    yield " ".join(map(str, [*(check.limit or ()), "in", *side, check.threshold])), [""]
 
 
-def claimed(check: Options, effects: np.ndarray, margin: float) -> np.ndarray:
+def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
     """Whether the share is on the claimed side of the threshold."""
     match check.threshold:
         case "all":
-            return effects == 1
+            return values == 1
         case "none":
-            return effects == 0
+            return values == 0
         case "some":
-            return effects > 0
-    return SIDES[check.direction] * (effects - check.threshold) >= 0
+            return values > 0
+    return effects.SIDES[check.direction] * (values - check.threshold) >= 0
 
 
 EFFECT = Effect(
@@ -155,15 +135,14 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     from scipy import stats
 
     happened = np.concatenate(
-        [counted(stratum, False)[0] for stratum in comparison.strata.values()]
+        [effects.counted(stratum, False)[0] for stratum in comparison.strata.values()]
     )
     n, k = len(happened), int(happened.sum())
     if not n:
         return Finding(mark="?", reason="no run counts")
     if not np.isin(happened, (0.0, 1.0)).all():
         raise ValueError(
-            f"{name}: {check['metric']} has values other than true and false; "
-            "its check needs an event"
+            f"{name}: {check.metric} has values other than true and false; its check needs an event"
         )
     finding = Finding(k / n, "share", k / n, n=n)
     holds = bool(claimed(check, np.array(k / n), math.nan))
@@ -174,21 +153,22 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     if isinstance(check.threshold, str):
         # For `some`, one example decides and many misses are needed to refute it; for `all` and
         # `none` it is the other way round.
-        decided = holds == (check.threshold == "some") or n >= LEAST_WITHOUT_EXAMPLE
+        decided = holds == (check.threshold == "some") or n >= effects.LEAST_WITHOUT_EXAMPLE
         mark = ("+" if holds else "-") if decided else "?"
         return finding._replace(
-            mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs"
+            mark=mark, reason="" if decided else f"fewer than {effects.LEAST_WITHOUT_EXAMPLE} runs"
         )
     if n < LEAST_RUNS:
         return finding._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
     threshold = check.threshold
     if len(comparison.strata) >= LEAST_RUNS:
-        return _share_of_conditions(finding, comparison, threshold, SIDES[check.direction])
+        return _share_of_conditions(finding, comparison, threshold, effects.SIDES[check.direction])
     # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
     p = min(
         1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold)))
     )
-    return finding._replace(p=p, toward=int(np.sign(SIDES[check.direction] * (k / n - threshold))))
+    toward = effects.SIDES[check.direction] * np.sign(k / n - threshold)
+    return finding._replace(p=p, toward=int(toward))
 
 
 def _share_of_conditions(
@@ -199,33 +179,13 @@ def _share_of_conditions(
     """
     from scipy import stats
 
-    shares = np.array(
-        [
-            np.nanmean(stratum)
-            for stratum in comparison.strata.values()
-            if not np.isnan(stratum).all()
-        ]
-    )
+    known = [each for each in comparison.strata.values() if not np.isnan(each).all()]
+    shares = np.array([np.nanmean(stratum) for stratum in known])
     mean = float(shares.mean())
     toward = int(np.sign(side * (mean - threshold)))
+    finding = finding._replace(effect=mean, effect_size=mean, n=len(shares), toward=toward)
     if not np.ptp(shares):
-        return finding._replace(
-            effect=mean,
-            effect_size=mean,
-            low=mean,
-            high=mean,
-            n=len(shares),
-            p=0.0 if toward else 1.0,
-            toward=toward,
-        )
+        return finding._replace(low=mean, high=mean, p=0.0 if toward else 1.0)
     test = stats.ttest_1samp(shares, threshold)
     low, high = (float(np.clip(end, 0, 1)) for end in test.confidence_interval(0.95))
-    return finding._replace(
-        effect=mean,
-        effect_size=mean,
-        low=low,
-        high=high,
-        n=len(shares),
-        p=float(test.pvalue),
-        toward=toward,
-    )
+    return finding._replace(low=low, high=high, p=float(test.pvalue))

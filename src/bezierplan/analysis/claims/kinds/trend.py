@@ -15,24 +15,8 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.claims.effects import (
-    SIDES,
-    Comparison,
-    Effect,
-    Finding,
-    drawn_effects,
-    effect,
-    interval,
-    is_negligible,
-    least_detectable,
-    margin_of,
-    no_difference,
-    on_claimed_side,
-    point_statistic,
-    points,
-    two_sided,
-    why_none,
-)
+from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.effects import Comparison, Effect, Finding
 from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
@@ -44,8 +28,6 @@ if TYPE_CHECKING:
 
 
 class Options(OfRuns):
-    """Keys of a check."""
-
     cells_key: ClassVar[str | None] = "x"
 
     paired: Flag = Field(None, description=PAIRED)
@@ -89,7 +71,7 @@ def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | No
     return _weights(np.array(cells, dtype=float)) / reference if reference else None
 
 
-EFFECT = Effect(_change, _gradient, on_claimed_side, reference=0)
+EFFECT = Effect(_change, _gradient, effects.on_claimed_side, reference=0)
 
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:
@@ -99,16 +81,13 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     x = np.array(comparison.cells, dtype=float)
     (stratum,) = comparison.strata.values()
     slopes = _slopes(x, stratum)
-    n, statistic = len(slopes), point_statistic(check)
+    n, statistic = len(slopes), effects.point_statistic(check)
     if n < LEAST_RUNS:
-        return Finding(
-            n=n,
-            mark="?",
-            reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}",
-        )
+        reason = f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}"
+        return Finding(n=n, mark="?", reason=reason)
     # A unit counts wherever it has a value, even if not at every x.
     unpaired = comparison._replace(paired=False)
-    ours = points(unpaired, statistic)
+    ours = effects.points(unpaired, statistic)
     if statistic == "mean":
         slope = float(slopes.mean())
         changes = slopes * np.ptp(x)
@@ -122,22 +101,22 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         p = signed_rank_test(slopes)
     else:
         slope = float(_weights(x) @ ours / np.ptp(x))
-        change = float(effect(check, ours, comparison.cells))
-        draws = drawn_effects(check, comparison, name)
-        p = two_sided(draws)
-    low, high = interval(draws)
-    margin = margin_of(check, unpaired)
+        change = float(effects.effect(check, ours, comparison.cells))
+        draws = effects.drawn_effects(check, comparison, name)
+        p = effects.two_sided(draws)
+    low, high = effects.interval(draws)
+    margin = effects.margin_of(check, unpaired)
     known = np.isfinite(ours)
     linear = known.sum() >= 3 and np.ptp(ours[known]) > 0
     return Finding(
         *(change, "slope", slope, low, high, n, p),
         toward=0
         if abs(change) < margin
-        else int(np.sign(SIDES[check.direction] * np.nan_to_num(change))),
+        else int(np.sign(effects.SIDES[check.direction] * np.nan_to_num(change))),
         margin=margin,
-        negligible=is_negligible(low, high, margin, n),
-        least_detectable=least_detectable(low, high, n),
-        reason=why_none(change) or no_difference(low, high, n),
+        negligible=effects.is_negligible(low, high, margin, n),
+        least_detectable=effects.least_detectable(low, high, n),
+        reason=effects.why_none(change) or effects.no_difference(low, high, n),
         rho=float(stats.spearmanr(x[known], ours[known]).statistic) if linear else math.nan,
         r_squared=float(np.corrcoef(x[known], ours[known])[0, 1] ** 2) if linear else math.nan,
     )

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
 
 class Options(Check):
-    """Keys of a check."""
-
     reason: Line = Field(description="why nothing here can test it, one line")
 
 
