@@ -383,7 +383,7 @@ def _most_likely(best: pd.Series, default: pd.Series) -> str:
     """Which experiment the numbers are most likely from, and how much more likely than from the
     default.
     """
-    tried = f"{best['tried']:,}"
+    tried = f"{int(best['tried']):,}"
     if best["impossible"]:
         return f"Under each of {tried} interpretations some printed number is impossible."
     if best["interpretation"] == DEFAULT:
