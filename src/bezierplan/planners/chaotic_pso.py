@@ -14,7 +14,7 @@ number that the chaotic sequence replaces is drawn and discarded.
 import logging
 import math
 from enum import IntEnum
-from functools import cache
+from functools import cache, lru_cache
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -310,7 +310,8 @@ def search(
         shares[0] = known
     x = low + (high - low) * shares
     if settings.straight_line_particle:
-        x[0] = _straight_line(problem, Curve(settings.curve).name, settings.control_points)
+        ends = tuple(problem.start), tuple(problem.target)
+        x[0] = _straight_line(*ends, Curve(settings.curve).name, settings.control_points)
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
     return Swarm(
         *_swarm(
@@ -360,9 +361,12 @@ def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
     return points
 
 
-def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndarray:
+@lru_cache(maxsize=256)
+def _straight_line(
+    start: tuple[float, ...], target: tuple[float, ...], curve: str, control_points: int
+) -> np.ndarray:
     """The particle (d n,) whose curve is the straight line, traversed at constant speed."""
-    start, way = np.array(problem.start), np.subtract(problem.target, problem.start)
+    way = np.subtract(target, start)
     points = np.empty((control_points + 2, len(start)))
     if curve == "ferguson":
         points[::2] = start + np.outer(np.linspace(0, 1, control_points // 2 + 1), way)

@@ -29,6 +29,7 @@ NEUTRAL = {
         "running.digest",
         "running.effort",
         "running.kernel_cache",
+        "running.kernel_parts",
         "running.log",
     )
 }

@@ -189,22 +189,16 @@ def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[...
     with the settings by name.
     """
 
+    # A name that no class has is left to the first, which refuses it.
+    place = {name: k for k, each in enumerate(classes) for name in each._fields}
+
     def decorate(plan: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(plan)
         def planned(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
-            parts = [
-                {name: value for name, value in values.items() if name in each._fields}
-                for each in classes[1:]
-            ]
-            rest = {
-                name: value
-                for name, value in values.items()
-                if not any(name in part for part in parts)
-            }
-            tuples = [
-                filled(each, part) for each, part in zip(classes, [rest, *parts], strict=True)
-            ]
-            return plan(problem, rng, *tuples, *further)
+            parts: list[dict[str, Any]] = [{} for _ in classes]
+            for name, value in values.items():
+                parts[place.get(name, 0)][name] = value
+            return plan(problem, rng, *map(filled, classes, parts), *further)
 
         signature = inspect.signature(plan)
         kept = list(signature.parameters.values())
