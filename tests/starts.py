@@ -7,6 +7,7 @@ import cProfile
 import importlib
 import multiprocessing
 import os
+import sys
 import tempfile
 from functools import partial
 from pathlib import Path
@@ -73,12 +74,13 @@ def _run(
     from snakemake.cli import main
 
     os.chdir(folder)
+    sys.argv = ["snakemake", *map(str, words)]  # which the workflow reads
     for number, file in enumerate(printed, start=1):
         os.dup2(os.open(file, os.O_WRONLY | os.O_CREAT), number)
     for name, value in constants.items():
         module, _, constant = name.rpartition(".")
         setattr(importlib.import_module(module), constant, value)
-    command = partial(main, list(map(str, words)))
+    command = partial(main, sys.argv[1:])
     if calls is None:
         command()
     else:

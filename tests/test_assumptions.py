@@ -27,19 +27,28 @@ FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
 
 
+def built(study, experiment, name):
+    """A problem of an experiment, without the others."""
+    every = problems_job(study, experiment, "smoke")
+    alone = every.problems[name]
+    home = alone["workspace"]
+    described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})
+    return problems.build_all(described, study.folder)[name]
+
+
 def found(study, experiment, method):
     """What a few runs of a method find on the last problem of an experiment, where obstacles are in
     the way.
     """
     described = job(study, experiment, method, "smoke", 0)
     name = list(described.problems)[-1]
-    made = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
-    blocked = region(made[name].workspace)
+    problem = built(study, experiment, name)
+    blocked = region(problem.workspace)
     rows = []
     condition = next(conditions([name], described.vary))
     for repeat in range(REPEATS):
-        plan = execution.run(described, condition, repeat, made[name])
-        row = execution.row(described, condition, repeat, plan, made[name], blocked)
+        plan = execution.run(described, condition, repeat, problem)
+        row = execution.row(described, condition, repeat, plan, problem, blocked)
         rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 
