@@ -40,15 +40,22 @@ configuration.set_hypothesis_home_dir(ROOT / ".cache" / "hypothesis")
 LONGEST = (
     "test_workflow.py",
     "test_cluster.py",
-    "test_readme.py",
     "test_page_browser.py",
-    "test_bounds.py",
-    "test_own_study.py",
+    "test_readme.py",
+    "test_truth.py",
+    "test_figures.py",
     "test_hostile_faults.py",
     "test_claims_each_way.py",
-    "test_archive.py",
+    "test_bounds.py",
+    "test_docs_site.py",
+    "test_forks.py",
+    "test_own_study.py",
+    "test_module.py",
     "test_claims.py",
-    "test_figures.py",
+    "test_exact_properties.py",
+    "test_contract.py",
+    "test_assumptions.py",
+    "test_archive.py",
 )
 
 
@@ -61,11 +68,8 @@ def pytest_xdist_auto_num_workers() -> int:
 
 def pytest_collection_modifyitems(items: list) -> None:
     """The longest files first, the others in their order."""
-    items.sort(
-        key=lambda item: (
-            LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST)
-        )
-    )
+    places = {name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path.name, len(LONGEST)))
 
 
 def pytest_collection_finish() -> None:

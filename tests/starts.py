@@ -4,8 +4,10 @@ start takes those of its own tree.
 """
 
 import cProfile
+import importlib
 import multiprocessing
 import os
+import sys
 import tempfile
 from functools import partial
 from pathlib import Path
@@ -42,13 +44,19 @@ if _METHOD == "forkserver":
     _STARTS.set_forkserver_preload(_MODULES)
 
 
-def snakemake(folder: Path, *words: str, calls: Path | None = None) -> CompletedProcess:
+def snakemake(
+    folder: Path,
+    *words: str,
+    calls: Path | None = None,
+    constants: dict[str, object] | None = None,
+) -> CompletedProcess:
     """Run `python -m snakemake` with some words in a folder; its exit code and what it printed, as
     text. Its calls of functions are counted in a file, if one is given, as cProfile writes it.
+    constants: those of this tree's modules that get another value beforehand, by dotted name.
     """
     with tempfile.TemporaryDirectory() as kept:
         printed = [Path(kept, name) for name in ("output", "errors")]
-        start = _STARTS.Process(target=_run, args=(folder, words, printed, calls))
+        start = _STARTS.Process(target=_run, args=(folder, words, printed, calls, constants or {}))
         with patch.dict(os.environ, _ONE_THREAD):
             start.start()
         start.join()
@@ -56,13 +64,23 @@ def snakemake(folder: Path, *words: str, calls: Path | None = None) -> Completed
     return CompletedProcess(words, start.exitcode, output, errors)
 
 
-def _run(folder: Path, words: tuple[str, ...], printed: list[Path], calls: Path | None) -> None:
+def _run(
+    folder: Path,
+    words: tuple[str, ...],
+    printed: list[Path],
+    calls: Path | None,
+    constants: dict[str, object],
+) -> None:
     from snakemake.cli import main
 
     os.chdir(folder)
+    sys.argv = ["snakemake", *map(str, words)]  # which the workflow reads
     for number, file in enumerate(printed, start=1):
         os.dup2(os.open(file, os.O_WRONLY | os.O_CREAT), number)
-    command = partial(main, list(map(str, words)))
+    for name, value in constants.items():
+        module, _, constant = name.rpartition(".")
+        setattr(importlib.import_module(module), constant, value)
+    command = partial(main, sys.argv[1:])
     if calls is None:
         command()
     else:

@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import pandas as pd
 import pytest
+import starts
 from snakemake.iocontainers import OutputFiles
 
 from bezierplan.running import log
@@ -143,6 +144,8 @@ def test_damaged_compiled_code_is_compiled_again(tmp_path):
         assert all(file.read_bytes() != content for file in files), (which, content)
 
 
+# A start with the settings of the default profile.
+OF_DEFAULT = ("--workflow-profile", ROOT / "profiles/default", "--cores", "1")
 SNAKEFILE = """
 rule one:
     output: "results/a.txt"
@@ -153,15 +156,7 @@ rule one:
 def test_second_workflow_in_a_folder_ends_at_once_and_the_first_goes_on(tmp_path):
     """With the settings of the default profile, none of which weakens Snakemake's lock."""
     (tmp_path / "Snakefile").write_text(SNAKEFILE)
-    command = [
-        sys.executable,
-        "-m",
-        "snakemake",
-        "--workflow-profile",
-        ROOT / "profiles/default",
-        "--cores",
-        "1",
-    ]
+    command = [sys.executable, "-m", "snakemake", *OF_DEFAULT]
     with subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as first:
@@ -169,7 +164,7 @@ def test_second_workflow_in_a_folder_ends_at_once_and_the_first_goes_on(tmp_path
         while not list((tmp_path / ".snakemake").glob("locks/*")):
             assert time.monotonic() < deadline
             time.sleep(0.1)
-        second = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        second = starts.snakemake(tmp_path, *OF_DEFAULT)
         (tmp_path / "go").touch()
         assert first.wait(120) == 0
     assert second.returncode == 1
@@ -203,16 +198,7 @@ def test_reason_of_a_failed_job_is_the_last_line_and_a_lock_is_explained_in_one(
         f"open(snakemake.log[0], 'w').write('Traceback\\\\n2026 CRITICAL {reason}')\nraise "
         "SystemExit(1)\n"
     )
-    command = [
-        sys.executable,
-        "-m",
-        "snakemake",
-        "--workflow-profile",
-        ROOT / "profiles/default",
-        "--cores",
-        "1",
-    ]
-    failed = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    failed = starts.snakemake(tmp_path, *OF_DEFAULT)
     assert failed.returncode == 1
     assert failed.stderr.strip().splitlines()[-1] == reason
     assert "RuleException" not in failed.stderr
@@ -220,6 +206,6 @@ def test_reason_of_a_failed_job_is_the_last_line_and_a_lock_is_explained_in_one(
     locks = tmp_path / ".snakemake" / "locks"
     locks.mkdir(exist_ok=True)
     (locks / "0.output.lock").write_text("results/a.txt\n")
-    locked = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    locked = starts.snakemake(tmp_path, *OF_DEFAULT)
     (line,) = [line for line in locked.stderr.splitlines() if "LockException" in line]
     assert "`snakemake --unlock`" in line

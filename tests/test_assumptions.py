@@ -31,19 +31,28 @@ REPEATS = 3
 UNDER = {("elhoseny2017", "O15q_100"): {"prm": {"neighbours": 1}}}
 
 
+def built(study, experiment, name):
+    """A problem of an experiment, without the others."""
+    every = problems_job(study, experiment, "smoke")
+    alone = every.problems[name]
+    home = alone["workspace"]
+    described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})
+    return problems.build_all(described, study.folder)[name]
+
+
 def found(study, experiment, method, place=-1):
     """What a few runs of a method find on one problem of an experiment, by default the last, where
     obstacles are in the way.
     """
     described = job(study, experiment, method, "smoke", 0)
     name = list(described.problems)[place]
-    made = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
-    blocked = region(made[name].workspace)
+    problem = built(study, experiment, name)
+    blocked = region(problem.workspace)
     rows = []
     condition = next(conditions([name], described.vary))
     for repeat in range(REPEATS):
-        plan = execution.run(described, condition, repeat, made[name])
-        row = execution.row(described, condition, repeat, plan, made[name], blocked)
+        plan = execution.run(described, condition, repeat, problem)
+        row = execution.row(described, condition, repeat, plan, problem, blocked)
         rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 

@@ -72,7 +72,7 @@ def folder(tmp_path_factory):
         "around,length,median,2,m,4.2\n",
     }.items():
         (folder / name).write_text(text)
-    for words in (["paths_smoke"], ["paths_all"], ["paths_all", "--report", "report.html"]):
+    for words in (["paths_smoke", "paths_all"], ["paths_all", "--report", "report.html"]):
         done = starts.snakemake(folder, *words, "--cores", "2", "--workflow-profile", "none")
         assert done.returncode == 0, done.stderr + done.stdout
     return folder

@@ -205,41 +205,44 @@ def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
     )
 
 
-@pytest.mark.parametrize(
-    ("question", "addresses", "answer"),
-    [
-        ("How can I replay a run?", ["page-paths"], "Path viewer"),
-        ("What should I use instead?", ["page-use"], "What should I use?"),
-        (
-            "What are the published and the reproduced mean objective of a?",
-            ["one/table1/a/objective/mean"],
-            "10.51 → 10.71 inconclusive",
-        ),
-        (
-            "Are the paths of a lower than those of b?",
-            ["one/C1", "one/C2", "one/C3"],
-            "Method a is the best (C1).",
-        ),
-        ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best (C2)."),
-        (
-            "What does inconclusive mean?",
-            ["page-word/inconclusive", "one/table1/a/objective/mean"],
-            "the interval is too wide",
-        ),
-        ("Which claims of one hold", ["one/C1"], "claim, supported"),
-        ("the path of a's worst feasible run", ["one/first/p/a/1"], "worst feasible run"),
-    ],
-)
-def test_question_in_plain_words_finds_its_answer_in_one_step(
-    visit, small, question, addresses, answer
-):
+# A question, the addresses of its answers, and the words of the first.
+QUESTIONS = [
+    ("How can I replay a run?", ["page-paths"], "Path viewer"),
+    ("What should I use instead?", ["page-use"], "What should I use?"),
+    (
+        "What are the published and the reproduced mean objective of a?",
+        ["one/table1/a/objective/mean"],
+        "10.51 → 10.71 inconclusive",
+    ),
+    (
+        "Are the paths of a lower than those of b?",
+        ["one/C1", "one/C2", "one/C3"],
+        "Method a is the best (C1).",
+    ),
+    ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best (C2)."),
+    (
+        "What does inconclusive mean?",
+        ["page-word/inconclusive", "one/table1/a/objective/mean"],
+        "the interval is too wide",
+    ),
+    ("Which claims of one hold", ["one/C1"], "claim, supported"),
+    ("the path of a's worst feasible run", ["one/first/p/a/1"], "worst feasible run"),
+]
+
+
+def test_questions_in_plain_words_find_their_answers_in_one_step(visit, small, subtests):
+    """One after the other, as a reader asks them: to open the page for each takes most of the
+    time.
+    """
     tab = visit(small)
-    tab.locator("#page-query").fill(question)
     hits = tab.locator("#page-hits a")
-    for hit, address in enumerate(addresses):
-        expect(hits.nth(hit)).to_have_attribute("href", f"#{address}")
-    expect(hits.first).to_contain_text(answer)
-    expect(hits).to_have_count(len(addresses))
+    for question, addresses, answer in QUESTIONS:
+        with subtests.test(question=question):
+            tab.locator("#page-query").fill(question)
+            for hit, address in enumerate(addresses):
+                expect(hits.nth(hit)).to_have_attribute("href", f"#{address}")
+            expect(hits.first).to_contain_text(answer)
+            expect(hits).to_have_count(len(addresses))
 
 
 def charted(tab, name):

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import starts
 
 from bezierplan.schema.checked import Fault
 from bezierplan.study import checks as study_checks
@@ -81,15 +82,13 @@ def test_a_target_of_one_study_starts_beside_a_fault_in_another(tmp_path):
     """Everything together does not."""
     shutil.copytree(SONG2016, tmp_path / "bad")
     (tmp_path / "bad" / "claims.yaml").write_text("claims: many\n")
-    command = [
-        *(sys.executable, "-m", "snakemake", "--snakefile", str(SONG2016.parents[2] / "Snakefile")),
+    words = [
+        *("--snakefile", str(SONG2016.parents[2] / "Snakefile")),
         *("--workflow-profile", "none", "--cores", "1", "--dry-run"),
         *("--config", "studies=[song2016, ./bad]"),
     ]
     codes = [
-        subprocess.run(
-            [*command, *targets], cwd=tmp_path, capture_output=True, check=False
-        ).returncode
+        starts.snakemake(tmp_path, *words, *targets).returncode
         for targets in (["--", "song2016_table1"], [])
     ]
     assert codes == [0, 2]

@@ -7,12 +7,12 @@ import select
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
+import starts
 
 from bezierplan.running import watchdog
 
@@ -125,7 +125,7 @@ DEEDS = {
     "crashes": ("os.kill(os.getpid(), signal.SIGSEGV)", "its process was ended by signal SIGSEGV"),
     "forks": ("os.fork() or os.execvp('sleep', ['sleep', '4321.25'])", watchdog.LEFT),
     "detaches": ("subprocess.Popen(['sleep', '4321.25'], start_new_session=True)", watchdog.LEFT),
-    "loops": ("never_ends(1)", "not done within the time limit of 4 s; it is ended"),
+    "loops": ("never_ends(1)", "not done within the time limit of 2 s; it is ended"),
 }
 
 # Who also lies to a robot that drives, and every run that is refused for a lie: experiment, problem
@@ -157,7 +157,7 @@ experiments:
   roads:
     problems: [across]
     methods: [{names}]
-    time_limit: 4
+    time_limit: 2
     repeats: {{smoke: 1, full: 1, extended: 1}}
     chunk: {{smoke: 1, full: 1, extended: 1}}
   plain:
@@ -201,33 +201,15 @@ def written(home, planners):
     (home / "artefacts.yaml").write_text(ARTEFACTS)
 
 
-def snakemake(folder, *words, limit=60.0, stderr=subprocess.PIPE):
-    """Make something of the study `liars` in a folder. limit: seconds that the import of a planner
-    may take.
-    """
-    call = (
-        "from bezierplan.running import interface; from snakemake.cli import main; "
-        f"interface.LIMIT = {limit}; main()"
-    )
+def words_of(folder, *words):
+    """What Snakemake is started with to make something of the study `liars` in a folder."""
     common = ["-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
-    command = [
-        sys.executable,
-        "-c",
-        call,
-        *common,
-        *words,
-        "--config",
-        f"studies=[{folder / 'liars'}]",
-    ]
-    return subprocess.run(
-        command,
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=stderr,
-        text=True,
-        check=False,
-        timeout=300,
-    )
+    return [*common, *words, "--config", f"studies=[{folder / 'liars'}]"]
+
+
+def snakemake(folder, *words, **options):
+    """Make something of the study `liars` in a folder."""
+    return starts.snakemake(folder, *words_of(folder, *words), **options)
 
 
 @pytest.fixture(scope="module")
@@ -298,12 +280,14 @@ def test_messages_of_the_workflow_are_written_with_their_ends(tmp_path):
     """What a job says between a message and its end would stand on the message's line."""
     written(tmp_path / "liars", {"honest": ("", "answer"), "exits": (DEEDS["exits"][0], "answer")})
     reading, writing = os.pipe2(os.O_DIRECT)
-    with ThreadPoolExecutor(1) as pool:
-        ended = pool.submit(snakemake, tmp_path, f"{TABLES}/all.csv", stderr=writing)
-        ended.add_done_callback(lambda _: os.close(writing))
+    command = [sys.executable, "-m", "snakemake", *words_of(tmp_path, f"{TABLES}/all.csv")]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=writing
+    ) as workflow:
+        os.close(writing)
         writes = list(iter(lambda: os.read(reading, select.PIPE_BUF), b""))
     os.close(reading)
-    assert ended.result().returncode == 1
+    assert workflow.returncode == 1
     assert any(b"ended itself with exit status 0" in each for each in writes)
     assert [
         each for each in writes if not each.endswith(b"\n") and len(each) < select.PIPE_BUF
@@ -362,7 +346,7 @@ AT_START = {
     "loops": (
         "while True: pass",
         "",
-        "when it is imported: not done within the time limit of 2 s; it is ended",
+        "when it is imported: not done within the time limit of 1 s; it is ended",
     ),
     "asked exits": (
         "",
@@ -372,7 +356,7 @@ AT_START = {
     "asked loops": (
         "",
         "while True: pass",
-        "serves of its planner: not done within the time limit of 2 s; it is ended",
+        "serves of its planner: not done within the time limit of 1 s; it is ended",
     ),
 }
 
@@ -386,7 +370,8 @@ def test_a_file_that_ends_or_stalls_the_start_is_told_before_any_job(case, tmp_p
         f"{file.read_text()}\ndef serves(problem):\n    {when_asked or 'pass'}\n\n\n{at_import}\n"
     )
     begun = time.monotonic()
-    done = snakemake(tmp_path, f"{TABLES}/honest.csv", limit=2.0)
+    limit = {"bezierplan.running.interface.LIMIT": 1.0}
+    done = snakemake(tmp_path, f"{TABLES}/honest.csv", constants=limit)
     assert done.returncode == 2
     (line,) = (done.stdout + done.stderr).splitlines()
     assert line.endswith(told)

@@ -20,6 +20,8 @@ import starts
 import trees
 import yaml
 
+from bezierplan.commands.digest import run_tables, table_digest
+
 ROOT = Path(__file__).parents[1]
 GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single", "random_search")
 METHODS = (*GENETIC, "shortest_path", "straight_line", "rounded")
@@ -66,12 +68,7 @@ def snakemake(tree, *words, check=True, **options):
 
 def digests(tree):
     """Digest of each run table of the tree's results at full scale, by name."""
-    command = [sys.executable, "-m", "bezierplan", "digest", "results/full"]
-    environment = os.environ | {"PYTHONPATH": str(tree / "src")}
-    printed = subprocess.run(
-        command, cwd=tree, env=environment, capture_output=True, text=True, check=True
-    ).stdout
-    return {name: digest for digest, name in map(str.split, printed.splitlines())}
+    return {name: table_digest(files) for name, files in run_tables(tree / "results/full").items()}
 
 
 def planned(tree, *words):
@@ -155,18 +152,75 @@ def finished(tmp_path_factory):
     return shutil.copytree(tree, tree.parent / "snapshot", symlinks=True)
 
 
-def copied(finished):
-    """The finished tree, to be edited. It lies in the same place for every test, so that compiled
-    kernels are found again.
+def changes(tree):
+    """The files and links of a tree, each with the time of its last change, which nothing sets
+    back.
+    """
+    found = {}
+    for folder, folders, files in os.walk(tree):
+        here = Path(folder)
+        for file in map(here.joinpath, (*files, *folders)):
+            if file.is_symlink() or not file.is_dir():
+                found[file.relative_to(tree)] = file.lstat().st_ctime_ns
+    return found
+
+
+@pytest.fixture(scope="module")
+def put_back(finished):
+    """Makes the finished tree what it was before a test, and returns it. Only what has changed is
+    copied: all of it takes as long as a dry run. It lies in the same place for every test, so that
+    compiled kernels are found again.
     """
     place = finished.parent / "tree"
-    shutil.rmtree(place, ignore_errors=True)
-    return Path(shutil.copytree(finished, place, symlinks=True))
+    kept = changes(place)
+
+    def restored():
+        found = changes(place)
+        for name in sorted(found.keys() - kept.keys(), reverse=True):
+            (place / name).unlink()
+        changed = [name for name in sorted(kept) if kept[name] != found.get(name)]
+        for name in changed:
+            file = place / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            shutil.rmtree(file) if file.is_dir() and not file.is_symlink() else file.unlink(
+                missing_ok=True
+            )
+            shutil.copy2(finished / name, file, follow_symlinks=False)
+            kept[name] = file.lstat().st_ctime_ns
+        return place
+
+    return restored
 
 
 @pytest.fixture
-def tree(finished):
-    return copied(finished)
+def tree(put_back):
+    """The finished tree, to be edited."""
+    return put_back()
+
+
+def test_a_tree_is_put_back_whatever_was_done_to_it(put_back, finished):
+    """A file that is edited without another size or date, new and missing ones, and a folder in the
+    place of a link.
+    """
+    tree = put_back()
+    edited, missing, new = (
+        tree / name for name in ("Snakefile", "results/full/summary.md", "results/new")
+    )
+    dates = edited.stat()
+    edited.write_text(edited.read_text().swapcase())
+    os.utime(edited, ns=(dates.st_atime_ns, dates.st_mtime_ns))
+    missing.unlink()
+    new.touch()
+    (tree / ".cache").unlink()
+    (tree / ".cache/kernels").mkdir(parents=True)
+    (tree / ".cache/kernels/new").touch()
+    assert put_back() == tree
+    assert edited.read_text() == (finished / "Snakefile").read_text()
+    assert edited.stat().st_mtime_ns == dates.st_mtime_ns
+    assert missing.read_text() == (finished / "results/full/summary.md").read_text()
+    assert not new.exists()
+    assert (tree / ".cache").is_symlink()
+    assert changes(tree).keys() == changes(finished).keys()
 
 
 def test_nothing_is_left_to_do(tree):

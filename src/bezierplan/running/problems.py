@@ -167,7 +167,7 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
         for name, each in described.workspaces.items()
         if hasattr(kinds[name], "load")
     }
-    problems = {}
+    problems, of_fixed = {}, remembered()
     for name, description in described.problems.items():
         home = description["workspace"]
         arguments = described.workspaces[home], description, f"{described.study}/{home}"
@@ -183,7 +183,10 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
             description = description | scenario(
                 described.workspaces[home], description["scenario"], workspace, folder
             )
-        problems[name] = build(name, description, workspace)
+        # Start and target are looked up in the region of the same map, as are those of all problems
+        # on a map from a file; drawn maps are as many as problems, and so are not kept.
+        regions = of_fixed if home in fixed else remembered()
+        problems[name] = build(name, description, workspace, regions)
     return problems
 
 
