@@ -67,11 +67,11 @@ def planned(capsys, *words):
     return {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
 
 
-def refused(capsys, *words):
+def refused(capsys, *words, status=2):
     with pytest.raises(SystemExit) as found:
         main(["plan", *map(str, words)])
     told = capsys.readouterr().err
-    assert found.value.code == 2
+    assert found.value.code == status
     assert told.count("\n") == 1
     return told
 
@@ -300,10 +300,6 @@ REFUSED = {
         (*WALL, "--robot-radius", "inf"),
         "--robot-radius: inf; expected 0 or a number of at least 1e-06",
     ),
-    "strict": (
-        (*WALL, "--settings", "{turning_radius: 9}", "--strict"),
-        "--settings: turning_radius: 9 m asked, ",
-    ),
     "1e300": (
         (*WALL, "--settings", "{turning_radius: 1e300}"),
         "turning_radius: 1e+300; expected a number from 0 to 100000",
@@ -336,6 +332,12 @@ REFUSED = {
         "--step: 1: only for --out with a file that ends in .csv, .geojson",
     ),
 }
+
+
+def test_strict_ends_with_status_1_where_a_turning_radius_has_no_room(capsys, tmp_path):
+    words = (*WALL, "--settings", "{turning_radius: 9}", "--strict")
+    told = refused(capsys, one_wall("geojson", tmp_path)[0], *words, status=1)
+    assert told.startswith("--settings: turning_radius: 9 m asked, ")
 
 
 @pytest.mark.parametrize("name", REFUSED)
