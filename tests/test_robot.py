@@ -356,3 +356,15 @@ def test_what_is_kept_of_a_turning_radius_is_printed(capsys, tmp_path):
     kept, searched = kept.split(" m kept: no more in a search of ")
     assert 0 < float(kept) < 9
     assert int(searched.removesuffix(" paths and places").replace(",", "")) > 1000
+
+
+@pytest.mark.parametrize("smooth", ["arcs", "continuous"])
+def test_a_way_point_in_front_of_a_wall_is_passed_with_another_heading(smooth):
+    """The shortest way there arrives straight at the wall, where no turn has room."""
+    room = bp.Grid(np.zeros((10, 10), dtype=bool), 1.0, "m")
+    problem, wall = bp.Problem("room", room, (1.0, 5.0), (1.0, 8.0)), (9.5, 5.0)
+    found = bp.plan(problem, via=[wall], start_heading=0.0, turning_radius=1.0, smooth=smooth)
+    assert found.feasible
+    assert not found.corners
+    assert found.curvature_bound < 1.001
+    assert list(wall) in found.path.points.tolist()

@@ -399,6 +399,8 @@ def _plan(arguments: Namespace) -> None:
                 _write(arguments, judged)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(arguments.out, error) from None
+        except ValueError as told:  # such as a speed for a path with corners
+            raise NoPath(str(told)) from None
     for name, text in _told(judged, task, solution, kept):
         print(f"{name:16}{text}")
     if judged.path is None:
