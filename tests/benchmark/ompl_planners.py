@@ -204,7 +204,7 @@ def _information(
     kind: type[base.MotionValidator],
     is_free: SegmentTest | DubinsTest,
 ) -> base.SpaceInformation:
-    """A space within the bounds of a problem's map, with a test of motions, which is that of states as
+    """A space within the bounds of a map, with a test of motions, which is that of states as
     well.
     """
     space.setBounds(_bounds(problem))
