@@ -1,14 +1,18 @@
-"""Edges of polygons by place: the certified check asks the same of near edges as of all."""
+"""Edges by place: the certified check asks the same of near edges as of all."""
 
 import math
+import time
 
 import numpy as np
 import pytest
 
+from bezierplan.geometry import checker
 from bezierplan.geometry.bins import Bins
 from bezierplan.geometry.checker.certificates import depth_at, is_blocked, is_free
 from bezierplan.geometry.checker.hulls import TOLERANCE
-from bezierplan.geometry.region import PolygonRegion, region
+from bezierplan.geometry.region import PolygonRegion, Region, region
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 
 SIDE = 10.0
@@ -30,7 +34,7 @@ def field(seed: int, obstacles: int) -> PolygonRegion:
     return region(Polygons((0.0, SIDE, 0.0, SIDE), tuple(rings), "m"))
 
 
-def of_all_edges(blocked: PolygonRegion) -> PolygonRegion:
+def of_all_edges(blocked: Region) -> Region:
     """The region with one bin that holds every edge."""
     low, count = blocked.edges.reshape(-1, 2).min(axis=0), len(blocked.edges)
     return blocked._replace(bins=Bins(low, 1e9, 1, 1, np.array([0, count]), np.arange(count)))
@@ -77,3 +81,43 @@ def test_a_hull_is_free_as_by_all_edges(seed):
         answers.append(is_free(points, blocked))
         assert answers[-1] == is_free(points, whole), points
     assert 0 < sum(answers) < len(answers)
+
+
+def cells(seed: int) -> Region:
+    rng = np.random.default_rng(seed)
+    return region(Grid(rng.random((30, 40)) < [0.01, 0.1, 0.3][seed % 3], SIDE / 40, "m", (0, 0)))
+
+
+def discs(seed: int) -> Region:
+    rng = np.random.default_rng(seed)
+    home = Circles((0.0, SIDE, 0.0, SIDE), SIDE * rng.random((5, 2)), rng.uniform(0.1, 1, 5), "m")
+    return region(home)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("kind", [lambda seed: field(seed, 8), cells, discs])
+def test_depth_and_clearance_are_bit_for_bit_those_by_all_edges(kind, seed):
+    blocked, rng = kind(seed), np.random.default_rng(200 + seed)
+    whole, verdicts = of_all_edges(blocked), []
+    for _ in range(400):
+        points = rng.uniform(-0.1, SIDE + 0.1, 2) + rng.choice([0.01, 0.2, 2]) * rng.normal(
+            size=(7, 2)
+        )
+        pieces = np.stack([points[:4], points[3:]])
+        verdicts.append(checker.check(pieces, blocked))
+        np.testing.assert_equal(verdicts[-1], checker.check(pieces, whole))
+    assert 0 < sum(verdict.feasible for verdict in verdicts) < len(verdicts)
+
+
+def test_a_map_of_two_million_random_cells_is_checked_in_milliseconds():
+    """With all its edges this took 20 s."""
+    occupied = np.random.default_rng(0).random((1500, 1500)) < 0.2
+    occupied[:3] = occupied[:, :3] = False
+    blocked = region(Grid(occupied, 0.05, "m", (0, 0)))
+    around = np.array([[[0.05, 74.95], [0.05, 0.05]], [[0.05, 0.05], [74.95, 0.05]]])
+    across = np.array([[[0.05, 0.05], [74.0, 74.0]]])
+    verdicts = [checker.check(pieces, blocked) for pieces in (around, across)]  # compiles
+    begin = time.process_time()
+    assert [checker.check(pieces, blocked) for pieces in (around, across)] == verdicts
+    assert time.process_time() - begin < 2.0
+    assert [verdict.feasible for verdict in verdicts] == [True, False]

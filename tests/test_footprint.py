@@ -334,6 +334,8 @@ def test_the_command_tells_for_which_disc_it_planned(capsys, tmp_path):
     assert told["planned for"].startswith("a disc of 0.")
     assert told["feasible"] == "yes"
     assert told["clearance"].endswith(" cell of the footprint")
-    main([*words, "--footprint", "[[3, 0.2], [-3, 0.2], [-3, -0.2], [3, -0.2]]"])
+    with pytest.raises(SystemExit) as found:
+        main([*words, "--footprint", "[[3, 0.2], [-3, 0.2], [-3, -0.2], [3, -0.2]]"])
+    assert found.value.code == 1
     told = {row[:16].strip(): row[16:] for row in capsys.readouterr().out.splitlines()}
     assert told["feasible"].startswith("no: the footprint enters an obstacle at ")

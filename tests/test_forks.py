@@ -63,6 +63,19 @@ def test_start_comes_before_the_first_job_and_once(forks, tmp_path):
     assert int(told.read_text()) == started == forks.process
 
 
+def test_script_prints_into_nothing_where_the_stream_is_closed(tmp_path):
+    """The next file that is opened has the number of the closed stream."""
+    (tmp_path / "start.py").write_text(
+        "import sys\n"
+        "from bezierplan.running.forks import Forks\n"
+        "victim = open('victim', 'w')\n"
+        "assert sys.stdout is None and victim.fileno() == 1\n"
+        "assert Forks(sys.executable, open).succeeds('prints.py', 'print(1, flush=True)', None)\n"
+    )
+    subprocess.run(["sh", "-c", f"exec '{sys.executable}' start.py >&-"], cwd=tmp_path, check=True)
+    assert not (tmp_path / "victim").read_text()
+
+
 def test_script_runs_in_the_folder_of_its_workflow(started, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert started.succeeds("folder.py", "import os; open('told', 'w').write(os.getcwd())", None)

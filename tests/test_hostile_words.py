@@ -2,9 +2,12 @@
 work.
 """
 
+import subprocess
+
 import pytest
 
 from bezierplan.__main__ import main
+from bezierplan.commands import run
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 
@@ -33,6 +36,10 @@ WORDS = {
         "unrecognized arguments: --scale",
     ),
     "cores of Snakemake in words": (["run", "x", "--cores", "nan"], "--cores: "),
+    "a configuration without a name": (
+        ["run", "x", "--config", "{studies: [x]}"],
+        "--config: Invalid config definition: Config entries have to be defined as name=value",
+    ),
     "a limit of Snakemake in words": (["run", "x", "--retries", "many"], "--retries"),
 }
 
@@ -50,6 +57,29 @@ def test_words_that_cannot_be_meant_end_in_one_line(case, tmp_path, monkeypatch,
     assert told in line
     assert line.isprintable()
     assert [file.name for file in tmp_path.iterdir()] == ["a_file"]
+
+
+def test_without_a_word_about_cores_the_workflow_starts(monkeypatch):
+    """They are the profile's."""
+    started = []
+    ended = subprocess.CompletedProcess([], 3)
+    monkeypatch.setattr(run.subprocess, "run", lambda words, **_: started.append(words) or ended)
+    with pytest.raises(SystemExit) as found:
+        main(["run", "mystudy"])
+    assert found.value.code == 3
+    assert started == [run.command(["mystudy"])]
+
+
+def test_a_home_that_is_a_file(tmp_path, monkeypatch, capsys):
+    home = tmp_path / "a_file"
+    home.touch()
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "x"])
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"{home}/.cache/snakemake: cannot be made (Not a directory), ")
 
 
 @pytest.mark.parametrize("cores", [0, -3])

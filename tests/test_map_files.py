@@ -161,6 +161,12 @@ def test_an_image_without_a_yaml_file(tmp_path):
     assert grid.occupied.tolist() == [[False] * 4, [False, True, True, False], [False] * 4]
     assert grid.bounds == (0.0, 2.0, 0.0, 1.5)
     assert bp.read_map(tmp_path / "room.PNG", resolution=0.5, unknown="free").occupied.sum() == 1
+    large = np.kron(PIXELS, np.ones((16, 16), dtype=np.uint8))  # whole blocks of a JPEG
+    for name in ("room.jpg", "room.JPEG", "room.tif", "room.tiff", "room.bmp", "room.pgm"):
+        Image.fromarray(large).save(tmp_path / name)
+        read = bp.read_map(tmp_path / name, resolution=0.5 / 16)
+        assert np.array_equal(read.occupied[::16, ::16], grid.occupied)
+        assert read.bounds == grid.bounds
     with pytest.raises(
         ValueError,
         match=r"resolution: missing; "

@@ -29,11 +29,11 @@ def planned(capsys, *words):
     return {line[:16].strip().replace("shortest path", "shortest"): line[16:] for line in lines}
 
 
-def refused(capsys, *words):
+def refused(capsys, *words, status=2):
     with pytest.raises(SystemExit) as found:
         main(["plan", *map(str, words)])
     told = capsys.readouterr().err
-    assert found.value.code == 2
+    assert found.value.code == status
     assert told.count("\n") == 1
     return told
 
@@ -88,10 +88,31 @@ def test_files_that_are_written(capsys, tmp_path):
     assert "</svg>" in (tmp_path / "path.svg").read_text()
 
 
-def test_a_path_that_collides_is_told_with_the_place(capsys):
-    found = planned(capsys, GAPS, *ENDS, "--planner", "straight_line")
-    assert found["feasible"].startswith("no: enters an obstacle at 4.75,10, ")
-    assert found["length"].endswith(" % below the shortest path")
+def test_a_path_that_collides_is_told_with_the_place_and_by_the_status(capsys, tmp_path):
+    with pytest.raises(SystemExit) as found:
+        main(
+            ["plan", GAPS, *ENDS, "--planner", "straight_line", "--out", str(tmp_path / "path.csv")]
+        )
+    assert found.value.code == 1
+    told = capsys.readouterr()
+    assert re.search(r"^feasible +no: enters an obstacle at 4\.75,10, ", told.out, re.MULTILINE)
+    assert re.search(r"^length .* % below the shortest path$", told.out, re.MULTILINE)
+    assert told.err == "--planner: straight_line: its path is not feasible\n"
+    assert (tmp_path / "path.csv").is_file()
+
+
+def test_without_a_path_the_status_is_1(capsys, tmp_path):
+    (tmp_path / "none.py").write_text(
+        "import numpy as np\nfrom bezierplan.planners import Plan\n\n\n"
+        "def plan(problem, rng):\n"
+        "    return Plan(None, 0.0, False, 1, np.zeros(1), 'tired', {})\n"
+    )
+    words = [GAPS, *ENDS, "--planner", tmp_path / "none.py"]
+    told = f"--planner: {tmp_path / 'none.py'}: found no path"
+    assert refused(capsys, *words, status=1) == told + "\n"
+    out = tmp_path / "path.csv"
+    assert refused(capsys, *words, "--out", out, status=1) == f"{told}; {out} is not written\n"
+    assert not out.exists()
 
 
 def test_a_planner_takes_its_settings_from_its_study_and_a_seed_decides(capsys):
@@ -288,7 +309,8 @@ def test_a_large_map_shows_free_and_occupied_cells_apart(capsys, tmp_path):
 
 def test_a_target_that_cannot_be_reached_is_told(capsys, tmp_path):
     (tmp_path / "room.txt").write_text("..#.\n..#.\n")
-    told = refused(capsys, tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "3.5,0.5")
+    words = ["--start", "0.5,0.5", "--target", "3.5,0.5"]
+    told = refused(capsys, tmp_path / "room.txt", *words, status=1)
     assert (
         told
         == "--target: 3.5,0.5: no free way leads there from the start; expected one that can be "

@@ -67,11 +67,11 @@ def planned(capsys, *words):
     return {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
 
 
-def refused(capsys, *words):
+def refused(capsys, *words, status=2):
     with pytest.raises(SystemExit) as found:
         main(["plan", *map(str, words)])
     told = capsys.readouterr().err
-    assert found.value.code == 2
+    assert found.value.code == status
     assert told.count("\n") == 1
     return told
 
@@ -300,10 +300,6 @@ REFUSED = {
         (*WALL, "--robot-radius", "inf"),
         "--robot-radius: inf; expected 0 or a number of at least 1e-06",
     ),
-    "strict": (
-        (*WALL, "--settings", "{turning_radius: 9}", "--strict"),
-        "--settings: turning_radius: 9 m asked, ",
-    ),
     "1e300": (
         (*WALL, "--settings", "{turning_radius: 1e300}"),
         "turning_radius: 1e+300; expected a number from 0 to 100000",
@@ -338,6 +334,12 @@ REFUSED = {
 }
 
 
+def test_strict_ends_with_status_1_where_a_turning_radius_has_no_room(capsys, tmp_path):
+    words = (*WALL, "--settings", "{turning_radius: 9}", "--strict")
+    told = refused(capsys, one_wall("geojson", tmp_path)[0], *words, status=1)
+    assert told.startswith("--settings: turning_radius: 9 m asked, ")
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_is_told_in_one_line(capsys, tmp_path, name):
     words, told = REFUSED[name]
@@ -354,3 +356,15 @@ def test_what_is_kept_of_a_turning_radius_is_printed(capsys, tmp_path):
     kept, searched = kept.split(" m kept: no more in a search of ")
     assert 0 < float(kept) < 9
     assert int(searched.removesuffix(" paths and places").replace(",", "")) > 1000
+
+
+@pytest.mark.parametrize("smooth", ["arcs", "continuous"])
+def test_a_way_point_in_front_of_a_wall_is_passed_with_another_heading(smooth):
+    """The shortest way there arrives straight at the wall, where no turn has room."""
+    room = bp.Grid(np.zeros((10, 10), dtype=bool), 1.0, "m")
+    problem, wall = bp.Problem("room", room, (1.0, 5.0), (1.0, 8.0)), (9.5, 5.0)
+    found = bp.plan(problem, via=[wall], start_heading=0.0, turning_radius=1.0, smooth=smooth)
+    assert found.feasible
+    assert not found.corners
+    assert found.curvature_bound < 1.001
+    assert list(wall) in found.path.points.tolist()

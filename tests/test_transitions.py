@@ -134,7 +134,7 @@ def test_where_there_is_no_line_the_jump_is_told_and_strict_refuses_it(capsys, t
     assert told["curvature"].endswith("/ cell where transitions have no room")
     with pytest.raises(SystemExit) as found:
         main([*words, "--smooth", "continuous", "--strict"])
-    assert found.value.code == 2
+    assert found.value.code == 1
     error = capsys.readouterr().err
     assert error.startswith("--smooth: continuous: the curvature jumps by 0.98")
     assert error.count("\n") == 1

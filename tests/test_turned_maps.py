@@ -340,7 +340,8 @@ def test_words_about_places_at_the_command_line_are_of_the_world(tmp_path, capsy
         "    return Plan(Path('polyline', ends), 1.0, True, 1, np.array([1.0]), 'done', {})\n"
     )
     across = [*words_of(home, tmp_path)[:2], "--start=-4,3", "--target=-4,7"]
-    main([*across, "--planner", str(own)])
+    with pytest.raises(SystemExit):
+        main([*across, "--planner", str(own)])
     assert "no: enters an obstacle at -4,5, at most" in capsys.readouterr().out
 
 

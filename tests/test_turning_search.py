@@ -129,8 +129,12 @@ def test_it_is_told_how_far_was_searched(capsys):
     assert re.fullmatch(
         r"30 m asked, 3\.\d+ m kept: no more in a search of [\d,]+ paths and places", told
     )
-    told = planned(capsys, "--target", "18,10,0", *wide[2:])["path"]
-    assert re.fullmatch(r"none \(none found in a search of [\d,]+ places\)", told)
+    with pytest.raises(SystemExit) as found:
+        planned(capsys, "--target", "18,10,0", *wide[2:])
+    assert found.value.code == 1
+    told = capsys.readouterr()
+    assert re.search(r"^path +none \(none found in a search of [\d,]+ places\)$", told.out, re.M)
+    assert told.err == "--planner: dubins_search: found no path\n"
 
 
 def test_an_offset_without_room_is_told(capsys):
@@ -139,8 +143,9 @@ def test_an_offset_without_room_is_told(capsys):
     assert "offset" not in planned(capsys, *asked, "{turning_radius: 1}")
     told = planned(capsys, *asked, "{offset: 5}")["offset"]
     assert re.fullmatch(r"5 m asked, 1\.\d+ m kept at a corner: no room", told)
-    with pytest.raises(SystemExit):
+    with pytest.raises(SystemExit) as found:
         planned(capsys, *asked, "{offset: 5}", "--strict")
+    assert found.value.code == 1
     assert re.fullmatch(
         r"--settings: offset: 5 m asked, 1\.\d+ m kept; "
         r"expected one that can be kept, or not strict\n",
@@ -216,16 +221,18 @@ def test_the_map_itself_is_never_overwritten(capsys, tmp_path):
     assert file.read_bytes() == before
 
 
-def test_nor_is_the_image_of_a_map(capsys, tmp_path):
+def test_nor_is_the_image_of_a_map(capsys, tmp_path, caplog):
     Image.new("L", (20, 20), 254).save(tmp_path / "room.png")
     file = tmp_path / "room.yaml"
-    file.write_text("image: room.png\nresolution: 0.5\norigin: [0, 0, 0]\n", encoding="utf-8")
+    file.write_text("image: room.png\nresolution: 0.5\norigin: [0, 0, -nan]\n", encoding="utf-8")
     before = (tmp_path / "room.png").read_bytes()
     for out in ("room.png", "room.yaml"):
         words = ["--start", "1,1", "--target", "9,9", "--out", str(tmp_path / out)]
         with pytest.raises(SystemExit):
             main(["plan", str(file), *words])
         assert "is the map itself" in capsys.readouterr().err
+        assert len(caplog.messages) == 1  # of the yaw: the file is looked into twice
+        caplog.clear()
     assert (tmp_path / "room.png").read_bytes() == before
 
 

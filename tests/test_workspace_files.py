@@ -123,7 +123,7 @@ POLYGON_FAULTS = {
         "ring 0: expected at least four positions",
     ),
     "rings missing": (polygon([SQUARE[0]]), "ring 0: expected at least four positions"),
-    "no ring": (polygon([]), "coordinates: expected a list of rings"),
+    "no ring": (polygon([], "border"), "coordinates: expected a list of rings"),
     "in space at times": (
         polygon([[[4, 4], [6, 4, 1], [6, 6], [4, 4]]]),
         r"ring 0: position \[6, 4, 1\]; expected \[x, y\]",
@@ -150,7 +150,7 @@ POLYGON_FAULTS = {
         "geometry: LineString; expected a Polygon",
     ),
     "no parts": (
-        feature({}, {"type": "MultiPolygon", "coordinates": []}),
+        feature({"role": "border"}, {"type": "MultiPolygon", "coordinates": []}),
         "coordinates: expected a list of polygons",
     ),
     "a bbox of words": (
@@ -169,7 +169,10 @@ POLYGON_FAULTS = {
         json.dumps({"features": [], "bbox": [5, 0, 1, 1]}),
         "bounds: .*; expected .x low",
     ),
-    "no geometry": (feature({"role": "obstacle"}, None), "geometry: None; expected a Polygon"),
+    "a border without a geometry": (
+        feature({"role": "border"}, None),
+        "geometry: None; expected a Polygon",
+    ),
     "not finite": (geojson([[[1, 1], [3, 1], [float("nan"), 3], [1, 1]]]), "is not a coordinate"),
     "beyond floats": (polygon([[[1, 1], [3, 1], [10**400, 3], [1, 1]]]), "too large"),
     "too large": (
@@ -281,6 +284,24 @@ def test_files_of_gis_programs_are_read_as_they_are(form, caplog):
         if form == "heights"
         else []
     )
+
+
+@pytest.mark.parametrize(
+    "nothing",
+    [
+        None,
+        {"type": "Polygon", "coordinates": []},
+        {"type": "MultiPolygon", "coordinates": []},
+        {"type": "GeometryCollection", "geometries": []},
+    ],
+)
+def test_rows_of_a_table_without_a_geometry_are_skipped_with_a_word(nothing, caplog):
+    rows = [{"type": "Feature", "properties": None, "geometry": nothing}] * 2
+    file = json.dumps({"features": [*rows, {"geometry": SHAPE}], "bbox": [0, 0, 10, 10]})
+    assert [rings[0].tolist() for rings in polygons_from_geojson(file, "m").obstacles] == [
+        SQUARE[:-1]
+    ]
+    assert caplog.messages == ["feature 0 (obstacle) and 1 more: without a geometry, and skipped"]
 
 
 def test_a_margin_around_obstacles_takes_the_place_of_a_border():

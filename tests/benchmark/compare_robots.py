@@ -132,7 +132,9 @@ def turning(name: str) -> pd.DataFrame:
             planner, at.problem, TURNING_RADIUS, HEADINGS, is_free, TURNING_TIMES
         ):
             pieces = (
-                [] if poses is None else dubins_search._chain(poses, TURNING_RADIUS, 1, at.blocked)
+                []
+                if poses is None
+                else dubins_search.chain_of(poses, TURNING_RADIUS, 1, at.blocked)
             )
             yield seconds, curves.length_of(pieces) if len(pieces) else math.inf
 

@@ -107,12 +107,7 @@ def turning_attempts(
     """
     begin = time.process_time()
     space = base.DubinsStateSpace(radius)
-    space.setBounds(_bounds(problem))
-    information = base.SpaceInformation(space)
-    motions = DubinsMotions(information, is_free)
-    information.setMotionValidator(motions)
-    information.setStateValidityChecker(lambda state: motions.checkMotion(state, state))
-    information.setup()
+    information = _information(space, problem, DubinsMotions, is_free)
     definition = base.ProblemDefinition(information)
     ends = []
     for (x, y), heading in zip((problem.start, problem.target), headings):
@@ -172,12 +167,7 @@ def attempts(
     """
     begin = time.process_time()
     space = base.RealVectorStateSpace(2)
-    space.setBounds(_bounds(problem))
-    information = base.SpaceInformation(space)
-    motions = Motions(information, is_free)
-    information.setMotionValidator(motions)
-    information.setStateValidityChecker(lambda state: motions.checkMotion(state, state))
-    information.setup()
+    information = _information(space, problem, Motions, is_free)
     objective = base.PathLengthOptimizationObjective(information)
     definition = base.ProblemDefinition(information)
     definition.setStartAndGoalStates(_state(space, problem.start), _state(space, problem.target))
@@ -206,6 +196,24 @@ def attempts(
         simplified = geometric.PathGeometric(path)
         simplifier.simplifyMax(simplified)
         yield searched + time.process_time() - before, _points(simplified)
+
+
+def _information(
+    space: base.StateSpace,
+    problem: Problem,
+    kind: type[base.MotionValidator],
+    is_free: SegmentTest | DubinsTest,
+) -> base.SpaceInformation:
+    """A space within the bounds of a map, with a test of motions, which is that of states as
+    well.
+    """
+    space.setBounds(_bounds(problem))
+    information = base.SpaceInformation(space)
+    motions = kind(information, is_free)
+    information.setMotionValidator(motions)
+    information.setStateValidityChecker(lambda state: motions.checkMotion(state, state))
+    information.setup()
+    return information
 
 
 def _bounds(problem: Problem) -> base.RealVectorBounds:

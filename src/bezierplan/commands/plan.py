@@ -2,6 +2,7 @@
 
 import math
 import re
+import sys
 import tempfile
 import time
 from argparse import Action, ArgumentParser, Namespace, RawDescriptionHelpFormatter
@@ -61,7 +62,9 @@ _FROM_MAPS = (
 MANUAL = f"""
 Plans one path on a map and checks it by exact geometry. Prints its length, its excess over the
 exact shortest path, its largest curvature, its clearance from the map's own obstacles and border,
-whether it is feasible and if not where it enters an obstacle, and the CPU time of the planner.
+whether it is feasible and if not where it enters an obstacle, and the CPU time of the planner. The
+exit status is 0 for a feasible path, 1 if there is or was found none that is as asked, and 2 for
+wrong input.
 
 the robot:
   --robot-radius R  every path keeps the distance R from the obstacles and the border of the map, on
@@ -100,8 +103,8 @@ maps:
   .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as
              occupied, or with --unknown free as free. On a map that is turned, by the yaw of its
              origin, places and headings are those of the world
-  .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner
-             is at 0,0
+  .png .pgm  an image alone, also .bmp, .jpg and .tif, with --resolution; dark pixels are occupied,
+             and the lower left corner is at 0,0
   .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the
              length of a user unit (default: 1)
   .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
@@ -127,9 +130,9 @@ examples:
     python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
         --start 2,10 --target 18,10 --settings '{turning_radius: 0.3}' --out path.svg
 
-  The same problem by the genetic algorithm of song2016, on cells of 0.5 m, as points:
+  The same problem by the genetic algorithm of elhoseny2017, on cells of 0.5 m, as points:
     python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson \\
-        --start 2,10 --target 18,10 --like song2016/smooth --cell 0.5 --out path.csv
+        --start 2,10 --target 18,10 --like elhoseny2017/mga_c --cell 0.5 --out path.csv
 
   The path of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points
   0.1 m apart:
@@ -137,6 +140,10 @@ examples:
         --start 2,10 --target 18,10 --robot-radius 0.4 --settings '{turning_radius: 0.5}' \\
         --strict --step 0.1 --out robot.csv
 """
+
+
+class NoPath(Fault):
+    """There is no path as asked, or none was found; the input is right, so the status is 1."""
 
 
 class _Once(Action):
@@ -173,7 +180,9 @@ def _joined(words: list[str]) -> list[str]:
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Plan, print, and write the requested files. Raises ValueError for wrong input."""
+    """Plan, print, and write the requested files; without a feasible path the process ends with
+    status 1. Raises ValueError for wrong input.
+    """
     parser.register("action", None, _Once)
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.description, parser.epilog = MANUAL.strip(), EXAMPLES.strip()
@@ -308,7 +317,11 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         metavar="A",
         help="largest acceleration along the path, which then begins and ends at rest",
     )
-    _plan(parser.parse_args(_joined(words)))
+    try:
+        _plan(parser.parse_args(_joined(words)))
+    except NoPath as told:
+        print(told, file=sys.stderr)
+        sys.exit(1)
 
 
 def _plan(arguments: Namespace) -> None:
@@ -363,30 +376,38 @@ def _plan(arguments: Namespace) -> None:
         )
     kept = legs.kept(planner, solution.plan, settings)
     if arguments.strict:
-        with _as_options():
-            footprints.check_held(outline, judged.feasible)
-            legs.check_continuous(
-                arguments.smooth,
-                judged.curvature_jump,
-                judged.curvature_bound,
-                home.unit,
-            )
-            legs.check_kept(settings["turning_radius"], kept, home.unit)
-            legs.check_offset(
-                settings.get("offset"),
-                solution.plan.extra.get("least_offset", math.nan),
-                home.unit,
-            )
+        try:
+            with _as_options():
+                footprints.check_held(outline, judged.feasible)
+                legs.check_continuous(
+                    arguments.smooth,
+                    judged.curvature_jump,
+                    judged.curvature_bound,
+                    home.unit,
+                )
+                legs.check_kept(settings["turning_radius"], kept, home.unit)
+                legs.check_offset(
+                    settings.get("offset"),
+                    solution.plan.extra.get("least_offset", math.nan),
+                    home.unit,
+                )
+        except ValueError as told:
+            raise NoPath(str(told)) from None
     if arguments.out and judged.path:  # what cannot be written is told alone
         try:
             with _as_options():
                 _write(arguments, judged)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(arguments.out, error) from None
+        except ValueError as told:  # such as a speed for a path with corners
+            raise NoPath(str(told)) from None
     for name, text in _told(judged, task, solution, kept):
         print(f"{name:16}{text}")
-    if arguments.out and judged.path is None:
-        raise Fault(f"--out: {arguments.out}: not written, {planner} found no path")
+    if judged.path is None:
+        unwritten = f"; {arguments.out} is not written" if arguments.out else ""
+        raise NoPath(f"--planner: {planner}: found no path{unwritten}")
+    if not judged.feasible:
+        raise NoPath(f"--planner: {planner}: its path is not feasible")
 
 
 def _for_disc_within(home: Workspace, outline: Footprint) -> Workspace:
@@ -424,7 +445,7 @@ class _Solution(NamedTuple):
 
 
 def _solution(task: _Task, problem: Placed) -> _Solution:
-    """The planner's answer to a problem. Raises Fault without a free way, and if the planner
+    """The planner's answer to a problem. Raises NoPath without a free way, and Fault if the planner
     fails.
     """
     home, settings = problem.near.workspace, legs.inward(task.settings, problem.frame)
@@ -433,7 +454,7 @@ def _solution(task: _Task, problem: Placed) -> _Solution:
     bound = legs.whole(bounds)
     if not np.isfinite(bound.length):
         x, y = problem.world.target
-        raise Fault(
+        raise NoPath(
             f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
             "that can be reached"
         )

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from bezierplan.commands import SNAKEMAKE
 from bezierplan.places import TREE
+from bezierplan.running import forks
 from bezierplan.schema.checked import Fault
 
 MANUAL = """
@@ -40,18 +41,41 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
             "shows examples"
         )
     # Here its absence is told as that of the extra.
-    from snakemake.cli import get_argument_parser, parse_cores
+    from snakemake.cli import get_argument_parser, parse_config
+    from snakemake.common import get_appdirs
     from snakemake.exceptions import CliException
 
     started = command(words)
     theirs = get_argument_parser()
     theirs.error = parser.error  # in one line, where Snakemake prints all its options
+    # What Snakemake tells in a traceback, before it reads a workflow.
     try:
-        parse_cores(theirs.parse_args(started[3:]).cores)
+        given = theirs.parse_args(started[3:])
     except CliException as fault:
         raise Fault(f"--cores: {fault}") from None
-    ended = subprocess.run(started, check=False)
+    try:
+        parse_config(given.config)
+    except ValueError as fault:
+        raise Fault(f"--config: {fault}") from None
+    _check_cache(Path(get_appdirs().user_cache_dir))
+    ended = subprocess.run(
+        started,
+        stdout=forks.stream_for(sys.stdout),
+        stderr=forks.stream_for(sys.stderr),
+        check=False,
+    )
     sys.exit(ended.returncode)
+
+
+def _check_cache(folder: Path) -> None:
+    """Raise Fault if Snakemake cannot keep a cache in a folder."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise Fault(
+            f"{folder}: cannot be made ({fault.strerror}), and Snakemake keeps its cache there; "
+            "expected HOME, or XDG_CACHE_HOME, to be a folder that can be written"
+        ) from None
 
 
 def command(words: list[str]) -> list[str]:

@@ -46,6 +46,8 @@ class GridRegion(NamedTuple):
     contacts : (m, 3) array
         x and y in units of the inner vertices at which two occupied cells share only a corner, and
         the sign of the slope of the diagonal through their two free cells.
+    bins : Bins
+        The edges by place.
     """
 
     cell: float
@@ -54,6 +56,7 @@ class GridRegion(NamedTuple):
     counts: np.ndarray
     edges: np.ndarray
     contacts: np.ndarray
+    bins: "Bins"
 
 
 class CircleRegion(NamedTuple):
@@ -69,12 +72,15 @@ class CircleRegion(NamedTuple):
         Lowest and highest x, lowest and highest y, in units.
     edges : (4, 4) array
         The border as x, y, x, y in units.
+    bins : Bins
+        The edges by place.
     """
 
     centres: np.ndarray
     radii: np.ndarray
     bounds: np.ndarray
     edges: np.ndarray
+    bins: "Bins"
 
 
 class PolygonRegion(NamedTuple):
@@ -219,6 +225,8 @@ def occupied_around(cells: np.ndarray) -> np.ndarray:
 
 
 def _grid_region(grid: Grid) -> GridRegion:
+    from bezierplan.geometry.bins import bins_of
+
     cells = walled(grid.occupied)
     blocked = np.empty((2 * cells.shape[0] - 1, 2 * cells.shape[1] - 1), dtype=bool)
     blocked[::2, ::2] = cells
@@ -246,6 +254,7 @@ def _grid_region(grid: Grid) -> GridRegion:
         _prefix_sums(blocked),
         edges,
         contacts,
+        bins_of(edges),
     )
 
 
@@ -277,12 +286,16 @@ def _runs(boundary: np.ndarray) -> np.ndarray:
 
 
 def _circle_region(circles: Circles) -> CircleRegion:
+    from bezierplan.geometry.bins import bins_of
+
+    edges = border_edges(circles.bounds)
     # Copies: a region shares no memory with the workspace that a planner holds.
     return CircleRegion(
         np.array(circles.centres, dtype=float).reshape(-1, 2),
         np.array(circles.radii, dtype=float),
         np.array(circles.bounds, dtype=float),
-        border_edges(circles.bounds),
+        edges,
+        bins_of(edges),
     )
 
 

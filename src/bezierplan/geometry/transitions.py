@@ -10,6 +10,7 @@ shifted, it stays as it is.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -52,12 +53,13 @@ class _Part(NamedTuple):
     sweep: float
 
 
-def eased(path: Path, blocked: Region) -> Path:
+def eased(path: Path, blocked: Region, passed: Sequence[tuple[float, float]] = ()) -> Path:
     """A `cubic_chain` of lines and arcs with transitions between them, which is free where it was.
-    blocked: the region of the map.
+    blocked: the region of the map. passed: joints of the chain that stay where they are, so an arc
+    with one is not shifted.
     """
     parts = _parts(bezier_pieces(path))
-    share = np.ones(len(parts))
+    share = np.array([0.0 if _has_joint(part, passed) else 1.0 for part in parts])
     while True:
         angles = [_angle(parts, number, share[number]) for number in range(len(parts))]
         chains = [_turn(part, angle) for part, angle in zip(parts, angles)]
@@ -79,6 +81,11 @@ def eased(path: Path, blocked: Region) -> Path:
     return Path("cubic_chain", np.concatenate([chain[0, :1], chain[:, 1:].reshape(-1, 2)]))
 
 
+def _has_joint(part: _Part, places: Sequence[tuple[float, float]]) -> bool:
+    joints = part.pieces[:, [0, -1]].reshape(-1, 2).tolist()
+    return any(list(place) in joints for place in places)
+
+
 def _parts(pieces: np.ndarray) -> list[_Part]:
     """Lines and arcs, of as many pieces as there are in a row."""
     parts: list[_Part] = []
@@ -92,7 +99,8 @@ def _parts(pieces: np.ndarray) -> list[_Part]:
             and math.dist(last.centre, part.centre) <= _SAME_CENTRE * part.radius
         )
         if last and same:
-            parts[-1] = last._replace(
+            longest = last if last.sweep >= part.sweep else part  # whose centre is most exact
+            parts[-1] = longest._replace(
                 pieces=np.concatenate([last.pieces, part.pieces]), sweep=last.sweep + part.sweep
             )
         else:

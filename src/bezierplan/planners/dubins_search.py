@@ -167,7 +167,7 @@ def searched(
     radius = settings.turning_radius
     places = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     ends = np.column_stack([places, [settings.start_heading, settings.target_heading]])
-    direct = _chain(ends, radius, 1, blocked)
+    direct = chain_of(ends, radius, 1, blocked)
     if len(direct):
         return _answer(problem, direct, 0, "direct", blocked)
     lattice = ahead() if ahead else lattice_of(problem, bound, blocked)
@@ -375,7 +375,7 @@ def _free_word(a, b, radius, most, blocked, words, pieces):
 
 
 @compiled
-def _chain(poses, radius, most, blocked):
+def chain_of(poses, radius, most, blocked):
     """The pieces (n, 4, 2) of free words from pose to pose; none if one of them is missing."""
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
     chain = np.empty(((len(poses) - 1) * MOST_PIECES, 4, 2))
@@ -513,7 +513,7 @@ def _pulled_tight(
         return best
     for first in (ends[0], poses[0]):
         poses = np.vstack([first, poses[1:]])
-        best = _chain(poses, radius, WORDS, blocked)
+        best = chain_of(poses, radius, WORDS, blocked)
         if len(best):
             return _tighter(best, poses, radius, blocked)
     return best
@@ -527,7 +527,7 @@ def _tighter(best: np.ndarray, poses: np.ndarray, radius: float, blocked: Region
         if not len(few):
             break
         _move(few, radius, blocked)
-        pieces = _chain(few, radius, WORDS, blocked)
+        pieces = chain_of(few, radius, WORDS, blocked)
         gain = length - _length(pieces)
         if gain > 0:
             best, length = pieces, length - gain

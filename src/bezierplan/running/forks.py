@@ -21,7 +21,7 @@ import sys
 import threading
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, TextIO
 
 from bezierplan.running.watchdog import end_with_parent
 
@@ -147,8 +147,19 @@ class Forks:
         self._control, theirs = socket.socketpair()
         with theirs:
             self.process = subprocess.Popen(
-                [self._interpreter, "-m", __name__], stdin=theirs, env=os.environ | ONE_THREAD
+                [self._interpreter, "-m", __name__],
+                stdin=theirs,
+                stdout=stream_for(sys.stdout),
+                stderr=stream_for(sys.stderr),
+                env=os.environ | ONE_THREAD,
             ).pid
+
+
+def stream_for(stream: TextIO | None) -> int | None:
+    """What a process that is started writes to: this process's stream, or nothing if that is
+    closed, for its number is then that of the next file which is opened.
+    """
+    return subprocess.DEVNULL if stream is None else None
 
 
 def serve(control: socket.socket) -> None:

@@ -38,6 +38,10 @@ _STRAIGHT = 1e-8
 # A radius that is smaller by less, as a share, is the same.
 _SAME = 1e-9
 
+# Headings at a way point, relative to that of the shortest path from there, which are tried where
+# the one in which the robot arrives leads nowhere.
+_BESIDE = tuple(share * math.pi / 4 for share in (0, 1, -1, 2, -2))
+
 # An offset is kept up to this share.
 _OFF_CIRCLE = 1e-3
 
@@ -185,7 +189,7 @@ def _solved(
         if planner == ROUNDED:
             wide["offset"] = settings["offset"] + transitions.SHIFT * radius
         arcs = _solved(planner, parts, bounds, blocked, wide, SMOOTH[0])
-        return _eased(planner, arcs, blocked)
+        return _eased(planner, arcs, parts, blocked)
     if planner == DRIVEN:
         return joined(_driven(parts, bounds, blocked, settings))
     rounded = joined(
@@ -214,11 +218,11 @@ def _solved(
     )
 
 
-def _eased(planner: str, plan: Plan, blocked: Region) -> Plan:
+def _eased(planner: str, plan: Plan, parts: Sequence[Problem], blocked: Region) -> Plan:
     """The same path with transitions, and what is told of it."""
     if plan.path is None:
         return plan
-    path = transitions.eased(plan.path, blocked)
+    path = transitions.eased(plan.path, blocked, [part.start for part in parts[1:]])
     length, extra = curves.length(path), plan.extra
     if planner == ROUNDED and 0 < extra["least_radius"] < math.inf:
         extra = extra | {"least_radius": 1 / largest_curvature(curves.bezier_pieces(path)).bound}
@@ -231,18 +235,37 @@ def _driven(
     blocked: Region,
     settings: dict[str, Any],
 ) -> list[Plan]:
-    """A search on each leg, begun as the last one ends, up to the first that finds nothing."""
-    answers: list[Plan] = []
-    heading = settings["start_heading"]
-    for number, (part, bound) in enumerate(zip(parts, bounds), start=1):
-        last = settings["target_heading"] if number == len(parts) else None
-        ends = {"start_heading": heading, "target_heading": last}
+    """A search on each leg, which begins with the heading in which the one before ends; up to the
+    first one that finds nothing.
+
+    The leg before may end where there is no way on, as in front of a wall. Then it is searched
+    again with other headings at its end: that of the shortest path from there, and beside it.
+    """
+
+    def leg(number: int, start: float | None, end: float | None) -> Plan:
+        ends = {"start_heading": start, "target_heading": end}
         given = filled(dubins_search.Settings, settings | ends)
-        answers.append(dubins_search.searched(part, given, bound, blocked))
-        if answers[-1].path is None:
+        return dubins_search.searched(parts[number], given, bounds[number], blocked)
+
+    answers: list[Plan] = []
+    starts = [settings["start_heading"]]  # of each leg
+    for number, bound in enumerate(bounds):
+        last = settings["target_heading"] if number == len(parts) - 1 else None
+        answer = leg(number, starts[number], last)
+        if answer.path is None and answers:
+            x, y = (bound.points[1] - bound.points[0]).tolist()
+            for beside in _BESIDE:
+                towards = math.remainder(math.atan2(y, x) + beside, math.tau)
+                other = leg(number - 1, starts[number - 1], towards)
+                onward = leg(number, towards, last) if other.path else other
+                if onward.path:
+                    answers[-1], starts[number], answer = other, towards, onward
+                    break
+        answers.append(answer)
+        if answer.path is None:
             break
-        along = np.diff(answers[-1].path.points[-2:], axis=0)[0]
-        heading = math.atan2(along[1], along[0])
+        along = np.diff(answer.path.points[-2:], axis=0)[0]
+        starts.append(math.atan2(along[1], along[0]))
     return answers
 
 

@@ -6,7 +6,7 @@ GeometryCollection of these. What has no `properties.role` is an obstacle. The b
 with the role `border`, of any shape; without one, the bounding box of all obstacles with a margin,
 or the file's `bbox`. What lies outside of it is blocked, so obstacles are cut there. Features with
 the role `start` or `target` are ignored: problems define them. A third coordinate, the height, is
-dropped.
+dropped, and an obstacle without a geometry (null or empty, RFC 7946, 3.1 and 3.2) is skipped.
 """
 
 import json
@@ -55,8 +55,8 @@ def polygons_from_geojson(
     """Polygons from the text of a GeoJSON file.
 
     margin: between obstacles and border, in units, of a file without a border of its own. largest:
-    size of a coordinate. Warns of heights that are dropped, and of obstacles that are cut at the
-    border.
+    size of a coordinate. Warns of heights that are dropped, of obstacles without a geometry, and of
+    obstacles that are cut at the border.
 
     Raises ValueError, naming the feature, for text that is not GeoJSON, an unknown role, a geometry
     without an area, a ring that is not closed, positions that are not [x, y], coordinates out of
@@ -69,6 +69,9 @@ def polygons_from_geojson(
         for number, feature in enumerate(_features(content))
         for shape in _shapes(number, feature)
     ]
+    if empty := [shape.name for shape in shapes if not shape.rings]:
+        logger.warning("%s: without a geometry, and skipped", _first_of(empty))
+        shapes = [shape for shape in shapes if shape.rings]
     if sum(len(ring) for shape in shapes for ring in shape.rings) > MOST_POSITIONS:
         raise ValueError(f"more than {MOST_POSITIONS:,} positions; expected at most so many")
     shapes = _flat(shapes)
@@ -153,7 +156,9 @@ _GEOMETRIES = ("Polygon", "MultiPolygon", "GeometryCollection")
 
 
 def _shapes(number: int, feature: Any) -> Iterator[Shape]:
-    """The polygons of a feature; none for a role that is not part of a workspace."""
+    """The polygons of a feature; none for a role that is not part of a workspace, and one without
+    rings for an obstacle without a geometry.
+    """
     if not isinstance(feature, dict):
         raise ValueError(
             f"feature {number}: {str(feature)[:60]}; expected a feature with a geometry"
@@ -167,9 +172,24 @@ def _shapes(number: int, feature: Any) -> Iterator[Shape]:
         raise ValueError(
             f"feature {number}: properties: role: {role!r}: unknown{closest(str(role), ROLES)}"
         )
-    if role in ("border", "obstacle"):
-        for rings in _polygons(feature.get("geometry"), f"feature {number} ({role})"):
-            yield Shape(role, f"feature {number} ({role})", rings)
+    name = f"feature {number} ({role})"
+    if role == "obstacle" and _is_empty(feature):
+        yield Shape(role, name, ())
+    elif role in ("border", "obstacle"):
+        for rings in _polygons(feature.get("geometry"), name):
+            yield Shape(role, name, rings)
+
+
+def _is_empty(feature: dict[str, Any]) -> bool:
+    """Whether a feature says that it has no geometry, as GIS programs write a row without one. A
+    key that is missing says nothing.
+    """
+    geometry = feature.get("geometry", "missing")
+    return geometry is None or (
+        isinstance(geometry, dict)
+        and geometry.get("type") in _GEOMETRIES
+        and [] in (geometry.get("coordinates"), geometry.get("geometries"))
+    )
 
 
 def _polygons(geometry: Any, name: str) -> Iterator[Rings]:
@@ -346,8 +366,7 @@ def within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
     covered = shapely.covers(frame, shapes)
     over = [polygon.name for polygon, inside in zip(obstacles, covered) if not inside]
     if over:
-        first = over[0] if len(over) == 1 else f"{over[0]} and {len(over) - 1} more"
-        logger.warning("%s: beyond the border, and cut there", first)
+        logger.warning("%s: beyond the border, and cut there", _first_of(over))
     kept: list[Rings] = []
     for polygon, shape, inside in zip(obstacles, shapes, covered):
         parts = (
@@ -361,6 +380,10 @@ def within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
         )
         kept += [polygon.rings] if inside else map(rings_of, parts)
     return kept
+
+
+def _first_of(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
 
 
 def _check_thickness(name: str, rings: Rings, shape: Any) -> None:

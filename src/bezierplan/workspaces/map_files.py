@@ -15,7 +15,7 @@ from bezierplan.workspaces.limits import FARTHEST, LARGEST, check_thickness
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.text_file import number, read_text
 
-IMAGES = (".png", ".pgm", ".bmp")
+IMAGES = (".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff")
 KINDS = {
     ".geojson": "polygons",
     ".json": "polygons",

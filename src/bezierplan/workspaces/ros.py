@@ -90,8 +90,17 @@ def read(
     Raises ValueError, naming the key and what is expected.
     """
     content = _content(file)
-    yaw = content["origin"][2]
+    *corner, yaw = content["origin"]
+    if math.isnan(yaw):
+        logger.warning(
+            "%s: origin: yaw %s counts as 0; "
+            "map_saver writes it for an orientation that is not valid",
+            file.name,
+            yaw,
+        )
+        yaw = 0.0
     _expect(turned or yaw == 0, "origin", f"yaw {yaw}", "a yaw of 0: a map that is not turned")
+    content["origin"] = [*corner, yaw]
     grid = _grid(image_of(file, folder, content), content, unit, most_pixels, unknown)
     check_numbers(np.array(grid.bounds), "origin, resolution: the border", largest)
     robot.check_radius(robot_radius)
@@ -161,7 +170,7 @@ def _is_file_in(folder: Path, file: Path) -> bool:
 
 
 def _content(file: Path) -> dict[str, Any]:
-    """The keys of a map_server YAML file, checked."""
+    """The keys of a map_server YAML file, checked; of its yaw, nan is kept."""
     content = checked.parse(read_text(file), file.name)
     if not isinstance(content, dict) or "image" not in content:
         raise ValueError(
@@ -200,19 +209,15 @@ def _content(file: Path) -> dict[str, Any]:
         origin,
         "[x, y, yaw]",
     )
-    if str(origin[2]).lower().lstrip("-+.") == "nan":
-        logger.warning(
-            "%s: origin: yaw %s counts as 0; "
-            "map_saver writes it for an orientation that is not valid",
-            file.name,
-            origin[2],
-        )
-        origin = [*origin[:2], 0.0]
-    _expect(_is_number(origin[2]), "origin", f"yaw {_told(origin[2])}", "a number of radians")
-    yaw = math.remainder(origin[2], math.tau)
+    yaw = origin[2]
+    if str(yaw).lower().lstrip("-+.") == "nan":
+        yaw = math.nan
+    else:
+        _expect(_is_number(yaw), "origin", f"yaw {_told(yaw)}", "a number of radians")
+        yaw = math.remainder(yaw, math.tau)
     return content | {
         "negate": negate,
-        "origin": [*origin[:2], yaw if abs(yaw) > SMALLEST_YAW else 0.0],
+        "origin": [*origin[:2], 0.0 if abs(yaw) <= SMALLEST_YAW else yaw],
     }
 
 

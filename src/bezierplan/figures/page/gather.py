@@ -263,7 +263,10 @@ def _claims(
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
         compared = (
-            checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)]
+            checks[
+                (checks["id"] == identity)
+                & (checks["variant"].astype(object).fillna("") == variant)
+            ]
             if checks is not None
             else pd.DataFrame()
         )

@@ -137,9 +137,10 @@ def check(
             intervals,
         )
     if isinstance(region, CircleRegion):
-        clearance = least_clearance(pieces, region.edges, region.centres, region.radii)
+        centres, radii = region.centres, region.radii
     else:
-        clearance = least_clearance(pieces, region.edges, np.empty((0, 2)), np.empty(0))
+        centres, radii = np.empty((0, 2)), np.empty(0)
+    clearance = least_clearance(pieces, region.edges, region.bins, centres, radii)
     return Check(True, math.nan, 0.0, clearance, CLEARANCE_TOLERANCE, intervals)
 
 

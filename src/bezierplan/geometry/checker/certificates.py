@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numba.extending import overload
 
-from bezierplan.geometry.bins import columns_between, rows_between, rows_near
+from bezierplan.geometry.bins import Bins, columns_between, rows_between, rows_near
 from bezierplan.geometry.checker.hulls import (
     BINOMIAL,
     LARGEST_COORDINATE,
@@ -33,6 +33,9 @@ _WIDEST_RANGE = 12
 # An edge at this distance from a hull cannot be passed within the tolerance of its ends, so it is
 # irrelevant to the hull.
 _APART = 4 * TOLERANCE
+
+# Share of a bin's side by which an edge's bins may miss its own, by rounding.
+_RING_MARGIN = 0.01
 
 # --------------------------------------------------------------------------------------------------
 # The questions. numba compiles the answer for a kind of region in their place, by the overloads
@@ -145,7 +148,7 @@ def _is_free_in_grid(points, region):
 
 
 def _depth_in_grid(x, y, region):
-    return _distance_to_edges(x, y, region.edges) if is_blocked(x, y, region) else 0.0
+    return distance_to_edges(x, y, region.edges, region.bins) if is_blocked(x, y, region) else 0.0
 
 
 # --------------------------------------------------------------------------------------------------
@@ -153,10 +156,42 @@ def _depth_in_grid(x, y, region):
 
 
 @allocation_free
-def _distance_to_edges(x: float, y: float, edges: np.ndarray) -> float:
+def distance_to_edges(x: float, y: float, edges: np.ndarray, bins: Bins) -> float:
+    """Distance of a point from the nearest edge."""
+    return _largest_distance_to_edges(x, y, x, y, edges, bins)
+
+
+@allocation_free
+def _largest_distance_to_edges(
+    x: float, y: float, other_x: float, other_y: float, edges: np.ndarray, bins: Bins
+) -> float:
+    """The least of all edges' larger distance from two points.
+
+    Bins are looked at in square rings around the first point. What lies beyond a ring is at least
+    as far from the point, or from the place among the bins that is nearest to it, as the ring is
+    wide.
+    """
+    middle_column, _ = columns_between(x, x, bins)
+    middle_row, _ = rows_near(y, y, bins)
+    middle_column, middle_row = min(middle_column, bins.columns - 1), min(middle_row, bins.rows - 1)
     least = math.inf
-    for ax, ay, bx, by in edges:
-        least = min(least, distance_to_segment(x, y, ax, ay, bx, by))
+    for ring in range(max(bins.columns, bins.rows)):
+        if least <= (ring - 1 - _RING_MARGIN) * bins.side:
+            break
+        left, right = max(middle_column - ring, 0), min(middle_column + ring, bins.columns - 1)
+        for column in range(left, right + 1):
+            # Of the columns in between, only both ends are in the ring.
+            step = 1 if abs(column - middle_column) == ring else 2 * ring
+            for row in range(middle_row - ring, middle_row + ring + 1, step):
+                if not 0 <= row < bins.rows:
+                    continue
+                number = column * bins.rows + row
+                for k in range(bins.first[number], bins.first[number + 1]):
+                    ax, ay, bx, by = edges[bins.members[k]]
+                    first = distance_to_segment(x, y, ax, ay, bx, by)
+                    if first < least:
+                        other = distance_to_segment(other_x, other_y, ax, ay, bx, by)
+                        least = min(least, max(first, other))
     return least
 
 
@@ -164,14 +199,10 @@ def _depth_bound_by_edges(points, region):
     """No blocked point is deeper than its distance from any edge, which along a chord is greatest
     at one of its ends.
     """
-    least = math.inf
-    for ax, ay, bx, by in region.edges:
-        first = distance_to_segment(points[0, 0], points[0, 1], ax, ay, bx, by)
-        if first < least:
-            least = min(
-                least, max(first, distance_to_segment(points[-1, 0], points[-1, 1], ax, ay, bx, by))
-            )
-    return least + bulge_of(points)
+    largest = _largest_distance_to_edges(
+        points[0, 0], points[0, 1], points[-1, 0], points[-1, 1], region.edges, region.bins
+    )
+    return largest + bulge_of(points)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -267,7 +298,7 @@ def _depth_in_polygons(x, y, region):
     for ax, ay, bx, by in region.edges:
         if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
             inside_free = not inside_free
-    return 0.0 if inside_free else _distance_to_edges(x, y, region.edges)
+    return 0.0 if inside_free else distance_to_edges(x, y, region.edges, region.bins)
 
 
 def _is_blocked_in_polygons(x, y, region):

@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 
+from bezierplan.geometry.bins import Bins, columns_between, rows_near
 from bezierplan.geometry.checker.certificates import (
     depth_at,
     depth_bound,
+    distance_to_edges,
     is_free,
     least_distance_to_centre,
 )
@@ -60,24 +62,36 @@ def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> fl
 
 @compiled
 def least_clearance(
-    pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray
+    pieces: np.ndarray, edges: np.ndarray, bins: Bins, centres: np.ndarray, radii: np.ndarray
 ) -> float:
-    """Minimum distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by
-    branch and bound.
+    """Minimum distance of a free path to edges (n, 4), with their bins, and discs, to
+    `CLEARANCE_TOLERANCE`, by branch and bound.
 
     The curve is no nearer to an edge than its chord is, minus the largest deviation of the curve
-    from its chord. Obstacles farther away than the minimum distance found are dropped for both
-    halves: they are swapped to positions beyond those that the halves examine.
+    from its chord. A piece is compared with all discs, and with the edges in bins that are no
+    farther away than the minimum distance found. Obstacles that are farther away are dropped for
+    both halves: they are swapped to positions beyond those that the halves examine.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     considered = np.empty(STACK, dtype=np.int64)
-    obstacles = np.arange(len(edges) + len(radii))
+    obstacles = np.empty(len(edges) + len(radii), dtype=np.int64)
+    piece_of = np.full(len(edges), -1)
+    discs = np.arange(len(edges), len(edges) + len(radii))
     least = math.inf
     for piece in range(len(pieces)):
         copy_points(pieces[piece], stack[0])
-        considered[0] = len(obstacles)
         for x, y in (pieces[piece, 0], pieces[piece, -1]):
-            least = min(least, _clearance_of_point(x, y, obstacles, edges, centres, radii))
+            least = min(
+                least,
+                distance_to_edges(x, y, edges, bins),
+                _clearance_of_point(x, y, discs, edges, centres, radii),
+            )
+        reach = least + bulge_of(stack[0])
+        count = _edges_within(reach, pieces[piece], bins, piece, piece_of, obstacles)
+        for disc in discs:
+            obstacles[count] = disc
+            count += 1
+        considered[0] = count
         top = 0
         while top >= 0:
             points = stack[top]
@@ -103,6 +117,36 @@ def least_clearance(
                 considered[top] = considered[top + 1] = near
                 top += 1
     return least
+
+
+@allocation_free
+def _edges_within(
+    reach: float,
+    points: np.ndarray,
+    bins: Bins,
+    piece: int,
+    piece_of: np.ndarray,
+    edges: np.ndarray,
+) -> int:
+    """The number of edges in the bins within reach of a piece's chord, a few more rather than less;
+    their numbers go into `edges`.
+
+    piece_of: the last piece to which an edge was near, which keeps it from being counted twice.
+    """
+    count = 0
+    reach += CLEARANCE_TOLERANCE
+    x, end_x, y, end_y = points[0, 0], points[-1, 0], points[0, 1], points[-1, 1]
+    first, last = columns_between(min(x, end_x) - reach, max(x, end_x) + reach, bins)
+    low, high = rows_near(min(y, end_y) - reach, max(y, end_y) + reach, bins)
+    for column in range(first, last + 1):
+        for number in range(column * bins.rows + low, column * bins.rows + high + 1):
+            for k in range(bins.first[number], bins.first[number + 1]):
+                edge = bins.members[k]
+                if piece_of[edge] != piece:
+                    piece_of[edge] = piece
+                    edges[count] = edge
+                    count += 1
+    return count
 
 
 @allocation_free
