@@ -31,20 +31,6 @@ def constant(x):
 @compiled
 def wrong(x):
     return x + "a"
-
-@compiled
-def factorial(n):
-    return 1 if n == 0 else n * factorial(n - 1)
-
-@compiled
-def checked(x):
-    if x < 0:
-        raise ValueError("negative", x)
-    return x
-
-@compiled
-def checks(x):
-    return checked(x) + factorial(3)
 """
 
 START = """
@@ -62,8 +48,7 @@ while not Path("go").exists():
 """
 CALL = """
 answer = mine.outer(20)
-compiled = (mine.outer, mine.inner.part)
-print(answer, *(sum(kernel.stats.cache_misses.values()) for kernel in compiled))
+print(answer, *(sum(kernel.stats.cache_misses.values()) for kernel in (mine.outer, mine.inner)))
 """
 REPORT = """
 class Report(event.Listener):
@@ -122,44 +107,9 @@ def test_one_of_two_processes_compiles(start, tmp_path):
 
 def test_a_constant_compiles_nothing_twice(start, tmp_path):
     """numba alone would compile the inner kernel for any integer and for this one."""
-    process = start("print(mine.constant(20), len(mine.inner.part.signatures))")
+    process = start("print(mine.constant(20), len(mine.inner.signatures))")
     (tmp_path / "go").touch()
     assert process.communicate(timeout=120)[0].split() == ["23", "1"]
-
-
-def test_parts_of_a_kernel_work_as_alone_compiled_or_loaded(start, tmp_path):
-    """One calls itself, the other raises an exception that holds an object of Python. Of neither is
-    there a form for Python.
-    """
-    code = """
-print(mine.checks(1), mine.factorial.signatures, mine.checked.signatures)
-try:
-    mine.checks(-1)
-except ValueError as error:
-    print(error.args)
-print(mine.factorial(4), mine.checked(5))
-"""
-    (tmp_path / "go").touch()
-    for _ in range(2):
-        assert start(code).communicate(timeout=120)[0].splitlines() == [
-            "7 [] []",
-            "('negative', -1)",
-            "24 5",
-        ]
-
-
-def test_parts_are_no_machine_code_and_are_not_wrapped_for_python(start, tmp_path):
-    code = """
-mine.outer(20)
-for kernel in (mine.outer, mine.inner.part):
-    [form] = kernel.overloads.values()
-    engine, wrapper = form.codegen._engine, form.fndesc.llvm_cpython_wrapper_name
-    compiled = engine.is_symbol_defined(form.fndesc.llvm_func_name)
-    print(compiled, wrapper in form.library.get_llvm_str())
-"""
-    (tmp_path / "go").touch()
-    answers = start(code).communicate(timeout=120)[0].splitlines()
-    assert answers == ["True True", "False False"]
 
 
 def test_a_process_that_is_killed_while_it_compiles_holds_up_nobody(start, tmp_path):

@@ -29,7 +29,6 @@ NEUTRAL = {
         "running.digest",
         "running.effort",
         "running.kernel_cache",
-        "running.kernel_parts",
         "running.log",
     )
 }

@@ -30,9 +30,8 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
 
-from bezierplan.running import effort, kernel_parts
+from bezierplan.running import effort
 from bezierplan.running.digest import kernel_folder
-from bezierplan.running.kernel_parts import PartCompiler
 
 # Seconds between two looks at whether another process still compiles, and how long a process waits
 # that holds a lock itself. A kernel calls kernels of modules that its own imports, so locks are
@@ -112,30 +111,12 @@ class _Implementation(CompileResultCacheImpl):
         self._filename_base = self.get_filename_base(name, "")
 
 
-class _PartImplementation(_Implementation):
-    """The same for a kernel as part of others, in files of its own."""
-
-    def __init__(self, py_func: FunctionType, folder: Path) -> None:
-        super().__init__(py_func, folder)
-        self._filename_base += ".part"
-
-    def reduce(self, cres: Any) -> tuple:
-        """What is kept."""
-        return kernel_parts.to_file(cres)
-
-    def rebuild(self, target_context: Any, payload: tuple) -> Any:
-        """What was kept."""
-        return kernel_parts.from_file(target_context, payload)
-
-
 class KernelCache(FunctionCache):
     """The compiled forms of one kernel, in the folder of its module."""
 
-    def __init__(
-        self, py_func: FunctionType, folder: Path, implementation: type[_Implementation]
-    ) -> None:
+    def __init__(self, py_func: FunctionType, folder: Path) -> None:
         self._name, self._py_func = repr(py_func), py_func
-        self._impl = implementation(py_func, folder)
+        self._impl = _Implementation(py_func, folder)
         self._cache_path = str(folder)
         self._cache_file = _File(self._cache_path, self._impl.filename_base, folder.name)
         self.enable()
@@ -157,18 +138,16 @@ def _can_be_written(folder: Path) -> bool:
     return False
 
 
-class _Kept(CPUDispatcher):
+class Kernel(CPUDispatcher):
     """A compiled function that is kept in this cache. Where no folder can be written, each process
     compiles it.
     """
-
-    _implementation: type[_Implementation] = _Implementation
 
     def enable_caching(self) -> None:
         """Keep compiled forms of this kernel."""
         folder = kernel_folder(self.py_func.__module__, inspect.getfile(self.py_func))
         if _can_be_written(folder):
-            self._cache = KernelCache(self.py_func, folder, self._implementation)
+            self._cache = KernelCache(self.py_func, folder)
 
     def compile(self, sig: Any) -> Any:
         """Load the kernel, or compile and keep it, for one process at a time where it has to
@@ -187,49 +166,6 @@ class _Kept(CPUDispatcher):
                     return super().compile(sig)
             with effort.spending("compiling"), _alone(Path(self._cache.cache_path)):
                 return super().compile(sig)
-
-
-class _Part(_Kept):
-    """A kernel as other kernels call it."""
-
-    def __init__(self, py_func: FunctionType, *args: Any, **options: Any) -> None:
-        super().__init__(py_func, *args, **options, pipeline_class=PartCompiler)
-
-    _implementation = _PartImplementation
-
-    def add_overload(self, part: Any) -> None:
-        """Keep a compiled form, without a function that Python could call."""
-        self.overloads[tuple(part.signature.args)] = part
-
-
-class Kernel(_Kept):
-    """A kernel as Python calls it.
-
-    part: the same for other kernels.
-    """
-
-    def __init__(self, py_func: FunctionType, *args: Any, **options: Any) -> None:
-        super().__init__(py_func, *args, **options)
-        self.part = _Part(py_func, *args, **options)
-        # A kernel that calls itself calls its part, which numba must know to be on the way.
-        self.part._compiling_counter = self._compiling_counter
-
-    @property
-    def _numba_type_(self) -> Any:
-        """What numba takes this for where another kernel calls it."""
-        return self.part._numba_type_
-
-    def enable_caching(self) -> None:
-        """Keep compiled forms of this kernel, and of it as a part."""
-        super().enable_caching()
-        self.part.enable_caching()
-
-    def add_overload(self, kernel: Any) -> None:
-        """Keep a compiled form."""
-        super().add_overload(kernel)
-        # The objects of Python that its parts need; numba gives them to a kernel that it loads.
-        for environment in kernel._find_referenced_environments():
-            kernel.codegen.set_env(environment.env_name, environment)
 
 
 @contextmanager
