@@ -101,6 +101,23 @@ def test_a_path_that_collides_is_told_with_the_place_and_by_the_status(capsys, t
     assert (tmp_path / "path.csv").is_file()
 
 
+def test_a_planner_that_leaves_the_folder_does_not_take_the_file_along(
+    capsys, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "leaves.py").write_text(
+        "import os\nfrom bezierplan.planners import straight_line\n\n\n"
+        "def plan(problem, rng):\n"
+        '    os.chdir("elsewhere")\n'
+        "    return straight_line.plan(problem, rng)\n"
+    )
+    (tmp_path / "room.txt").write_text("....\n")
+    ends = ["--start", "0.5,0.5", "--target", "3.5,0.5"]
+    planned(capsys, "room.txt", *ends, "--planner", "leaves.py", "--out", "path.csv")
+    assert (tmp_path / "path.csv").is_file()
+
+
 def test_without_a_path_the_status_is_1(capsys, tmp_path):
     (tmp_path / "none.py").write_text(
         "import numpy as np\nfrom bezierplan.planners import Plan\n\n\n"

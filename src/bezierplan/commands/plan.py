@@ -7,7 +7,7 @@ import tempfile
 import time
 from argparse import Action, ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from pathlib import Path as File
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -608,7 +608,11 @@ def _answer(
     """
     loan = lend({problem.name: problem})[problem.name]
     try:
-        with watchdog.watching(None) as watch, watchdog.executing(f"--planner: {planner}", watch):
+        with (
+            chdir("."),  # a planner that leaves this folder would take --out along
+            watchdog.watching(None) as watch,
+            watchdog.executing(f"--planner: {planner}", watch),
+        ):
             begin = time.process_time()
             given = module.plan(loan.problem, np.random.default_rng(seed), **settings)
             seconds = time.process_time() - begin
