@@ -63,7 +63,7 @@ TURNING_RADIUS = 0.4
 HEADINGS = (math.pi, math.pi)
 
 WITHIN = 0.02
-SEEDS, TIMES = 20, 0.64 / 2.0 ** np.arange(9, -1, -1)
+SEEDS, TIMES = 50, 0.64 / 2.0 ** np.arange(9, -1, -1)
 TURNING_SEEDS, TURNING_TIMES = 5, 4.0 / 2.0 ** np.arange(8, -1, -1)
 
 OURS = "ours"
