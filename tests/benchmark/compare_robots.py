@@ -1,9 +1,10 @@
 """OMPL beside the baselines for a robot with a width, and for one with a turning radius: the third
 part of `make compare`.
 
-On the six maps of polygons of elhoseny2017: CPU time of one core until a path that the checker
-accepts is within 2 % of the shortest, the median of the seeds, and how many times that of ours.
-Budgets double, so OMPL's times are known to a factor of two; ours are of one run.
+On the six maps of polygons of elhoseny2017, or on maps of any kind that `plan` reads, each given as
+FILE X,Y X,Y RADIUS TURNING_RADIUS (start, target): CPU time of one core until a path that the
+checker accepts is within 2 % of the shortest, the median of the seeds, and how many times that of
+ours. Budgets double, so OMPL's times are known to a factor of two; ours are of one run.
 
 * A disc: the map grows by its radius. `rounded_shortest_path` is set beside OMPL's planners with
   its simplifier, as in compare_planners.py; its time includes that of the exact shortest path, with
@@ -50,16 +51,27 @@ ROOT = File(__file__).resolve().parents[2]
 MAPS = ROOT / "config" / "studies" / "elhoseny2017" / "workspaces"
 FOLDER = ROOT / "results" / "comparison"
 
-ENDS = {
-    "back_and_forth": ((1.0, 1.25), (1.0, 8.75)),
-    "bugtrap1": ((12.6, 14.4), (22.4, 24.2)),
-    "complex2": ((1.0, 1.0), (19.0, 19.0)),
-    "gaps": ((2.0, 10.0), (18.0, 10.0)),
-    "hidden_U": ((10.0, 3.0), (10.0, 27.0)),
-    "square_spiral": ((2.5, 2.5), (12.5, 7.5)),
-}
-RADIUS = 0.2
-TURNING_RADIUS = 0.4
+
+class Course(NamedTuple):
+    """A map file, start and target (2,), the robot's radius and its turning radius, in the map's
+    unit.
+    """
+
+    file: File
+    start: tuple[float, ...]
+    target: tuple[float, ...]
+    radius: float = 0.2
+    turning_radius: float = 0.4
+
+
+COURSES = (
+    Course(MAPS / "back_and_forth.geojson", (1.0, 1.25), (1.0, 8.75)),
+    Course(MAPS / "bugtrap1.geojson", (12.6, 14.4), (22.4, 24.2)),
+    Course(MAPS / "complex2.geojson", (1.0, 1.0), (19.0, 19.0)),
+    Course(MAPS / "gaps.geojson", (2.0, 10.0), (18.0, 10.0)),
+    Course(MAPS / "hidden_U.geojson", (10.0, 3.0), (10.0, 27.0)),
+    Course(MAPS / "square_spiral.geojson", (2.5, 2.5), (12.5, 7.5)),
+)
 HEADINGS = (math.pi, math.pi)
 
 WITHIN = 0.02
@@ -79,10 +91,9 @@ class Arena(NamedTuple):
     blocked: Region
 
 
-def arena(name: str, radius: float) -> Arena:
-    file = MAPS / f"{name}.geojson"
-    workspace = map_files.read(file, map_files.described(file), radius)
-    problem = Problem(name, workspace, *ENDS[name])
+def arena(course: Course, radius: float) -> Arena:
+    workspace = map_files.read(course.file, map_files.described(course.file), radius)
+    problem = Problem(course.file.stem, workspace, course.start, course.target)
     return Arena(problem, region(workspace))
 
 
@@ -99,9 +110,9 @@ def ours(at: Arena, planner: str, settings: dict) -> Iterator[Attempt]:
     yield seconds, length_of(at, plan.path) if plan.path else math.inf
 
 
-def disc(name: str) -> pd.DataFrame:
+def disc(course: Course) -> pd.DataFrame:
     """Attempts of all planners for a disc, as `anytime` takes them."""
-    at = arena(name, RADIUS)
+    at = arena(course, course.radius)
     bound = shortest_paths.shortest_path(at.problem, blocked=at.blocked).length
     is_free = ompl_planners.segment_test(at.blocked)
     settings = legs.preset(legs.ROUNDED, at.problem.workspace)
@@ -114,28 +125,24 @@ def disc(name: str) -> pd.DataFrame:
     rivals |= {
         planner: lambda planner=planner: with_ompl(planner) for planner in ompl_planners.PLANNERS
     }
-    return attempts_of(f"{name}, disc", rivals, SEEDS, bound)
+    return attempts_of(f"{course.file.stem}, disc", rivals, SEEDS, bound)
 
 
-def turning(name: str) -> pd.DataFrame:
+def turning(course: Course) -> pd.DataFrame:
     """Attempts of all planners with a turning radius."""
-    at = arena(name, 0.0)
-    is_free = ompl_planners.dubins_test(at.blocked, TURNING_RADIUS)
+    at, radius = arena(course, 0.0), course.turning_radius
+    is_free = ompl_planners.dubins_test(at.blocked, radius)
     settings = {
-        "turning_radius": TURNING_RADIUS,
+        "turning_radius": radius,
         "start_heading": HEADINGS[0],
         "target_heading": HEADINGS[1],
     }
 
     def with_ompl(planner: str) -> Iterator[Attempt]:
         for seconds, poses in ompl_planners.turning_attempts(
-            planner, at.problem, TURNING_RADIUS, HEADINGS, is_free, TURNING_TIMES
+            planner, at.problem, radius, HEADINGS, is_free, TURNING_TIMES
         ):
-            pieces = (
-                []
-                if poses is None
-                else dubins_search.chain_of(poses, TURNING_RADIUS, 1, at.blocked)
-            )
+            pieces = [] if poses is None else dubins_search.chain_of(poses, radius, 1, at.blocked)
             yield seconds, curves.length_of(pieces) if len(pieces) else math.inf
 
     rivals = {OURS: lambda: ours(at, legs.DRIVEN, settings)}
@@ -143,7 +150,7 @@ def turning(name: str) -> pd.DataFrame:
         planner: lambda planner=planner: with_ompl(planner)
         for planner in ompl_planners.TURNING_PLANNERS
     }
-    return attempts_of(f"{name}, turning", rivals, TURNING_SEEDS, None)
+    return attempts_of(f"{course.file.stem}, turning", rivals, TURNING_SEEDS, None)
 
 
 def attempts_of(problem: str, rivals: dict, seeds: int, bound: float | None) -> pd.DataFrame:
@@ -179,7 +186,25 @@ def printed(table: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
+def courses(words: list[str]) -> list[Course]:
+    """The courses that the command line names; without words those of elhoseny2017."""
+    if len(words) % 5:
+        sys.exit("compare_robots: expected FILE X,Y X,Y RADIUS TURNING_RADIUS for each map")
+    named = [words[first : first + 5] for first in range(0, len(words), 5)]
+    return [
+        Course(
+            File(file),
+            tuple(map(float, start.split(","))),
+            tuple(map(float, target.split(","))),
+            float(radius),
+            float(turning_radius),
+        )
+        for file, start, target, radius, turning_radius in named
+    ] or list(COURSES)
+
+
 def main() -> None:
+    entered = courses(sys.argv[1:])
     FOLDER.mkdir(parents=True, exist_ok=True)
     ompl_planners.start(seed=1)
     print(
@@ -188,8 +213,8 @@ def main() -> None:
     )
     found = []
     for contest in (disc, turning):
-        for name in ENDS:
-            found.append(contest(name))
+        for course in entered:
+            found.append(contest(course))
             print(printed(time_table(found[-1], (WITHIN,))), flush=True)
     attempts = pd.concat(found, ignore_index=True)
     sheet.write_data(attempts, FOLDER / "robots.csv")

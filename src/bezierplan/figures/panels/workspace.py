@@ -215,6 +215,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
 def scale(axes: Axes, unit: str) -> None:
     """Label the two coordinates of a workspace, with ticks at edges of cells of side 1."""
     axes.locator_params(nbins=8, steps=[1, 2, 4, 5, 10])
+    if np.abs([axes.get_xlim(), axes.get_ylim()]).max() >= 1e5:
+        # Projected coordinates: long numbers, written in full, so few of them.
+        axes.ticklabel_format(style="plain", useOffset=False)
+        axes.locator_params(axis="x", nbins=2)
     axes.set_xlabel(f"x ({unit})")
     axes.set_ylabel(f"y ({unit})")
 
