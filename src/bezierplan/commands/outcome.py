@@ -31,8 +31,8 @@ LIKELY = (
     "Which experiment was it? All details that a paper leaves open were varied together; these "
     "interpretations make its printed numbers most likely. docs/outcome/summary.md names their "
     "choices, and the numbers that no interpretation explains. *with new seeds*: judged again by "
-    "runs that did not choose the interpretation. *by chance*: expected if printed numbers of one "
-    "kind are permuted within their table."
+    "runs that did not choose the interpretation, as is its likelihood over the default's. *by "
+    "chance*: expected if printed numbers of one kind are permuted within their table."
 )
 BASELINE_COMPARISON = "baseline_comparison.csv"
 NUMBERS_FULL = "numbers_papers_size.csv"
