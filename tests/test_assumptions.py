@@ -15,7 +15,6 @@ from bezierplan.running.chunk import conditions
 from bezierplan.study import choices
 from bezierplan.study.alternatives import (
     alternatives,
-    assumption_of,
     methods_changed,
     methods_of_claims,
     tried,
@@ -99,8 +98,8 @@ def test_alternative_changes_what_a_run_finds(key, name):
 
 def _places(study, name):
     """Places of the problems on which an alternative is tried."""
-    identity, value = alternatives(study)[name]
-    setting = assumption_of(study, identity).setting
+    assumption, value = alternatives(study)[name]
+    setting = assumption.setting
     own = {
         study.problems[list(study.experiments[home(study, method)].problems)[-1]].settings.get(
             setting

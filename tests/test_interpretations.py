@@ -628,12 +628,12 @@ PLANTED = [("song2016", 0), ("ma2020", 0), ("meledje", 0), ("meledje", 1), ("ma2
 def test_a_planted_interpretation_is_found(studies, key, number):
     job = choices.search_job(studies[key])
     surface = planted.Surface(f"{key}/{number}", job.choices, job.parts)
-    assert planted.found_by(surface, 100) >= -planted.NEAR
+    assert planted.found_by(surface, job.most) >= -planted.NEAR
 
 
 @pytest.mark.parametrize(
     ("study", "found"),
-    [("song2016", 2), ("elhoseny2017", 1), ("ma2020", 2), ("tharwat2018", 2), ("meledje", 2)],
+    [("song2016", 2), ("elhoseny2017", 2), ("ma2020", 2), ("tharwat2018", 1), ("meledje", 2)],
 )
 def test_nine_of_ten_planted_interpretations_are_found(study, found):
     """By as many interpretations as each study tries, two surfaces a study."""
