@@ -9,7 +9,6 @@ import functools
 import os
 import re
 import shlex
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -52,23 +51,11 @@ def test_commands_that_are_not_executed_as_printed_stand_in_the_readme():
     assert DRY.keys() | ON_CLUSTER <= set(COMMANDS)
 
 
-def adopt(tree):
-    """Copy the runs and figures of song2016 that `make test` has made, which take most of the time
-    of `make smoke`.
-    """
-    made = "results/smoke/song2016", ".snakemake/metadata"
-    if all((ROOT / name).is_dir() for name in made):
-        for name in made:
-            others = shutil.ignore_patterns("tables", "claims.csv", "logs")
-            shutil.copytree(ROOT / name, tree / name, ignore=others)
-
-
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
     """A copy of the tree after `make smoke`; a blank in the path."""
     tree = trees.copy(tmp_path_factory.mktemp("readme") / "a clone")
     (tree / ".venv").symlink_to(ROOT / ".venv")
-    adopt(tree)
     executed(tree, "make smoke")
     return tree
 
