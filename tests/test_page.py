@@ -39,6 +39,7 @@ from bezierplan.figures.page import (
     search,
 )
 from bezierplan.figures.page.page_job import ExperimentShown, FigureShown
+from bezierplan.figures.panels import paths
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
@@ -714,10 +715,22 @@ def test_drawn_path_stays_within_its_tolerance(points, kind):
     import shapely
 
     path = Curve(kind, np.array(points) / 1000)
-    drawn = runs._flattened(path, 0.05)
+    drawn = runs._simplified(paths.steps(path), 0.05)
     exact = curves.sample_matrix(kind, len(points), 301) @ path.points
     # The straight steps from which points are left out are themselves within 0.01 of the curve.
     assert shapely.distance(shapely.points(exact), shapely.LineString(drawn)).max() <= 0.05 + 0.01
+
+
+def test_a_shortest_path_is_kept_with_as_few_points_as_show_it():
+    workspace = from_lines(["..."] * 3, 1.0, "cell")
+    arc = np.linspace(0, np.pi / 2, 1001)
+    points = 0.2 + 2.6 * np.column_stack([np.sin(arc), 1 - np.cos(arc)])
+    bound = pd.Series({"bound": 4.1, "bound_path": points.ravel()})
+    start, target = tuple(points[0]), tuple(points[-1])
+    kept = runs._problem("one", Problem("one", workspace, start, target), None, bound).bound_path
+    assert 4 < len(kept) < 100
+    assert kept[:2] == pytest.approx(start, abs=1e-4)
+    assert kept[-2:] == pytest.approx(target, abs=1e-4)
 
 
 def test_the_answer_counts_claims_that_would_show_again_and_keep_their_verdict():

@@ -20,7 +20,7 @@ from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
 from bezierplan.workspaces import files, grid
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import MovingCircles, World
 
 # An experiment with more problems than this is shown as a whole only. Failed runs shown of a
@@ -150,14 +150,14 @@ def _problem(
     workspace: str, problem: Problem, world: World | None, bound: pd.Series
 ) -> content.Problem:
     size = _size(problem.workspace.bounds)
-    path = np.asarray(bound["bound_path"], dtype=float)
+    path = np.reshape(bound["bound_path"], (-1, 2)).astype(float)
     return content.Problem(
         workspace=workspace,
         world=None if world is None else _world(world),
         start=problem.start,
         target=problem.target,
         bound=float(bound["bound"]) if np.isfinite(bound["bound"]) else None,
-        bound_path=_rounded(path.reshape(-1, 2), size),
+        bound_path=_rounded(_simplified(path, _FLAT * size), size),
     )
 
 
@@ -219,6 +219,8 @@ def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
 def _run(
     row: dict[str, Any], bounds: tuple[float, float, float, float], problem: str
 ) -> content.Run:
+    from bezierplan.figures.panels.paths import steps
+
     path, size = results.path_of(row), _size(bounds)
     collision = None
     if (
@@ -239,7 +241,7 @@ def _run(
         evaluations=int(row["evaluations"]),
         stop=str(row["stop"]),
         curve=row["path_curve"] or "",
-        path=[] if path is None else _rounded(_flattened(path, _FLAT * size), size),
+        path=[] if path is None else _rounded(_simplified(steps(path), _FLAT * size), size),
         control=[] if path is None or path.curve == "ferguson" else _rounded(path.points, size),
         history=_history(row["history"]),
     )
@@ -259,13 +261,10 @@ def _rounded(points: np.ndarray, size: float) -> list[float]:
     return np.round(points, decimals).ravel().tolist()
 
 
-def _flattened(path: Path, tolerance: float) -> np.ndarray:
-    """Points (n, 2) along a path, as few as keep within a tolerance of it."""
+def _simplified(points: np.ndarray, tolerance: float) -> np.ndarray:
+    """As few of the points (n, 2) of a line as keep within a tolerance of it."""
     import shapely
 
-    from bezierplan.figures.panels.paths import steps
-
-    points = steps(path)
     return (
         shapely.get_coordinates(shapely.simplify(shapely.LineString(points), tolerance))
         if len(points) > 1
