@@ -9,6 +9,7 @@ always do.
 
 import contextlib
 import fcntl
+import gc
 import inspect
 import math
 import time
@@ -40,6 +41,11 @@ from bezierplan.running.digest import kernel_folder
 # time.
 LOOK = 0.05
 PATIENCE = 60.0
+
+# After how many new objects Python looks for garbage while it compiles, and after how many looks
+# through new ones it looks through older ones. numba makes millions of objects that stay until the
+# end; with Python's own thresholds, the looks take a tenth of the time.
+GARBAGE = (100_000, 10, 10)
 
 _held: list[Path] = []
 """Folders in which this process compiles, each for a kernel of the one before."""
@@ -159,13 +165,25 @@ class Kernel(CPUDispatcher):
                 # passes.
                 sig = tuple(map(unliteral, sig))
             if isinstance(self._cache, NullCache):
-                with effort.spending("compiling"):
+                with effort.spending("compiling"), _little_looking():
                     return super().compile(sig)
             if sig in self.overloads or self._cache.keeps(sig, self.targetctx.codegen()):
                 with effort.spending("loading kernels"):
                     return super().compile(sig)
-            with effort.spending("compiling"), _alone(Path(self._cache.cache_path)):
+            folder = Path(self._cache.cache_path)
+            with effort.spending("compiling"), _alone(folder), _little_looking():
                 return super().compile(sig)
+
+
+@contextmanager
+def _little_looking() -> Iterator[None]:
+    """Have Python look for garbage less often."""
+    before = gc.get_threshold()
+    gc.set_threshold(*GARBAGE)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 @contextmanager
