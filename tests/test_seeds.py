@@ -1,6 +1,8 @@
 """A chunk of runs: which names a seed is made of, which runs are done, and in which order."""
 
+import ast
 import hashlib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +11,8 @@ from bezierplan.running import execution
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
+
+ROOT = Path(__file__).resolve().parent.parent
 
 CHUNK = Chunk(
     study="paper",
@@ -120,3 +124,16 @@ def test_runs_that_repeat_exactly_are_done_once():
     assert runs["length"].to_numpy() == pytest.approx(np.hypot(3, 1))
     assert runs["feasible"].all()
     assert times.groupby(np.arange(18) // 3)["cpu_s"].nunique().to_list() == [1] * 6
+
+
+def test_nothing_that_is_judged_or_drawn_depends_on_a_number_as_seed():
+    """Seeds come from names, in what claims and drawings draw as in runs."""
+    folders = [ROOT / "src/bezierplan" / name for name in ("analysis", "figures", "study")]
+    numbered = [
+        f"{file.name}:{node.lineno}"
+        for folder in folders
+        for file in folder.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and node.attr in ("default_rng", "RandomState", "seed")
+    ]
+    assert numbered == []

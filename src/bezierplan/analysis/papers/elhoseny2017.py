@@ -504,7 +504,7 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         Circles((0, side, 0, side), np.array([[2.0, 2.0]]), np.array([0.8]), "cell")
     )
     start, target = (0, 0), (side, side)
-    rng = np.random.default_rng(0)
+    rng = generator("elhoseny2017/figure3")
     path, points = None, []
     while path is None or not is_free(path, grid):
         drawn = verdicts(rng.integers(0, side + 1, (number, 2)), grid, least_distance)
@@ -569,7 +569,7 @@ def validation(
         described = {"side": side, "start": ends[0], "target": ends[1]}
         described |= {"obstacles": obstacles, "layout": number}
         grid = random_field.field(workspace, described, "elhoseny2017/figure4")
-        drawn = np.random.default_rng(number).integers(0, side + 1, (points, 2))
+        drawn = generator("elhoseny2017/figure4/points", number).integers(0, side + 1, (points, 2))
         judged = verdicts(drawn, grid, least_distance)
         path = curve_through([each.point for each in judged if each.word == "accepted"], *ends)
         if {each.word for each in judged} == {"obstacle", "too near", "accepted"} and is_free(

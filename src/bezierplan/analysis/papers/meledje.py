@@ -33,6 +33,7 @@ from bezierplan.workspaces.ground import (
     ground_of,
     obstacles_met,
 )
+from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
@@ -40,8 +41,8 @@ if TYPE_CHECKING:
 
 # Of a cell: any nearer to the path there is no room for a number.
 BESIDE = 0.45
-# Number of seeds to search for one whose mutation shows what the paper says about the operator.
-SEEDS = 1000
+# Draws among which one is sought whose mutation shows what the paper says about the operator.
+DRAWS = 1000
 
 # The counts of `said` that Fisher's exact test compares, its level, and the sign of what counts as
 # best.
@@ -124,7 +125,7 @@ def mutations(
 
     Random mutation makes a feasible path infeasible; reference 12 changes a node that is not before
     the obstacle, and the path stays infeasible; the proposed mutation changes the one that is. The
-    first seed with this result is used.
+    first draw with this result is shown.
 
     free_path, blocked_path: columns and rows of the nodes of a feasible path, and of one whose
     second edge meets an obstacle. The others: settings that the operators read, as in
@@ -168,10 +169,10 @@ def _shown(
     ground = ground_of(grid, 1.0)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), before[[0, -1]])
     rules = rules._replace(mutation=int(Mutation[operator]))
-    for seed in range(SEEDS):
+    for number in range(DRAWS):
         after = before.copy()
         mutate(
-            np.random.default_rng(seed),
+            generator("meledje/figure4", operator, number),
             after,
             drawn,
             ground,

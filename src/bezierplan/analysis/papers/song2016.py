@@ -14,6 +14,7 @@ from bezierplan.analysis.papers.marks import along, mark, text
 from bezierplan.planners.parts.genetic import complement_bit, swap_tails
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
@@ -28,7 +29,7 @@ def genes_in_range(
     """Claim C8: genes outside 0 .. 2^bits - 1 after a crossover at every kind of cut and a mutation
     at any bit, in random chromosomes.
     """
-    rng = np.random.default_rng(0)
+    rng = generator("song2016/C8")
     outside = 0
     for _ in range(TRIALS):
         one, other = rng.integers(0, 1 << bits, (2, genes))

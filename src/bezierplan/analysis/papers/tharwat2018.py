@@ -72,7 +72,7 @@ def chaotic_sequences(
     The other arguments: parameters of the maps, as in `chaotic_maps.Parameters`.
     """
     parameters = chaotic_maps.Parameters(singer_mu, singer_x4, sine_a, piecewise_p, sinusoidal_a)
-    rng = np.random.default_rng(0)
+    rng = generator("tharwat2018/figure3")
     frames = []
     for name in CHAOTIC:
         start = chaotic_maps.random_start(rng, name, parameters)
@@ -176,7 +176,7 @@ def gauss_above(
     It tends to 1 - log2(1 + limit), which is 0.234 for 0.7, since the map's values have the density
     1 / ((1 + x) ln 2). The interval is that of the mean over sequences, each one unit.
     """
-    rng = np.random.default_rng(0)
+    rng = generator("tharwat2018/C39")
     shares = []
     for _ in range(SEQUENCES):
         start = chaotic_maps.random_start(rng, "gauss", NO_PARAMETERS)
@@ -210,7 +210,7 @@ def sensitive_to_start(
     The other arguments: parameters of the maps, as in `chaotic_maps.Parameters`.
     """
     parameters = chaotic_maps.Parameters(singer_mu, singer_x4, sine_a, piecewise_p, sinusoidal_a)
-    rng = np.random.default_rng(0)
+    rng = generator("tharwat2018/C46")
     exponents = {
         name: [_exponent(rng, name, apart, parameters) for _ in range(DIVERGING)]
         for name in CHAOTIC
@@ -318,7 +318,7 @@ def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[flo
     alternately random curves about the straight line and across the field, are the same in every
     call. Raises ValueError if none of them leads to a free curve.
     """
-    rng = np.random.default_rng(0)
+    rng = generator("tharwat2018/best_curve")
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     line = np.linspace(problem.start, problem.target, control_points + 2)[1:-1]
     reach = math.dist(problem.start, problem.target) / 3
