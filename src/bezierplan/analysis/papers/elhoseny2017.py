@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
     from bezierplan.analysis.claims.kinds.function import Options as Check
 
+# Points in Figure 4 that are nearer to each other, in cells, hide each other's numbers.
+APART = 2.0
+
 
 def said(published: "Published") -> dict[str, float]:
     """Values in the text, by quantity; a fraction stands for its value."""
@@ -559,10 +562,12 @@ def validation(
     around the accepted points, and their curve. Further columns: candidate (its number) and
     verdict.
 
-    The random fields and points shown are the first in which each rule rejects a point and the
-    curve is free. points: their number. The arguments from side on describe the field, as in a
-    `random_field`.
+    The random fields and points shown are the first in which each rule rejects a point, the curve
+    is free, and no two points hide each other's numbers. points: how many. The arguments from side
+    on describe the field, as in a `random_field`.
     """
+    from scipy.spatial.distance import pdist
+
     ends = tuple(start), tuple(target)
     workspace = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
     for number in itertools.count():
@@ -572,9 +577,9 @@ def validation(
         drawn = generator("elhoseny2017/figure4/points", number).integers(0, side + 1, (points, 2))
         judged = verdicts(drawn, grid, least_distance)
         path = curve_through([each.point for each in judged if each.word == "accepted"], *ends)
-        if {each.word for each in judged} == {"obstacle", "too near", "accepted"} and is_free(
-            path, grid
-        ):
+        words = {each.word for each in judged}
+        legible = pdist([*drawn.tolist(), *ends]).min() >= APART
+        if words == {"obstacle", "too near", "accepted"} and legible and is_free(path, grid):
             break
     marks = [
         mark("circle", "obstacle", x, y, group="obstacles", label="obstacle", radius=reach)
