@@ -15,10 +15,11 @@ from bezierplan.running.simulation import cells, clairvoyant, evasion, hindsight
 from bezierplan.running.simulation.circles import comes_near
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
+from bezierplan.running.simulation.regions import region_of
 from bezierplan.running.simulation.robot import drive
 from bezierplan.running.simulation.ways import drivable, way
 from bezierplan.workspaces import worlds
-from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
@@ -394,6 +395,27 @@ def test_the_free_length_of_a_way_ends_at_an_occupied_cell():
     along = way(np.array([[0.5, 1.5], [3.5, 1.5]]))
     assert cells.free_length(grid, along, 0.25) == pytest.approx(1.5)
     assert cells.free_length(grid, along, 2.5) == math.inf
+
+
+@given(
+    st.lists(st.integers(0, 1), min_size=12, max_size=12),
+    st.sampled_from([(3, 4), (4, 3)]),
+    st.sampled_from([0.5, 1.0]),
+    st.sampled_from([(0.0, 0.0), (2.0, -1.0)]),
+)
+def test_the_region_that_is_kept_of_a_map_is_the_map_s_own(occupied, shape, cell, origin):
+    grid = Grid(np.array(occupied, dtype=bool).reshape(shape), cell, "m", origin)
+    kept, own = region_of(grid), region(grid)
+    assert (kept.cell, kept.bins.side) == (own.cell, own.bins.side)
+    for name in ("origin", "blocked", "counts", "edges", "contacts"):
+        assert np.array_equal(getattr(kept, name), getattr(own, name))
+    assert region_of(Grid(grid.occupied.copy(), cell, "m", origin)) is kept
+
+
+def test_no_region_of_shapes_or_of_a_large_map_is_kept():
+    large = Grid(np.zeros((101, 100), dtype=bool), 1.0, "m")
+    for workspace in (large, circles((5, 5, 1, 0, 0)).obstacles(0)):
+        assert region_of(workspace) is not region_of(workspace)
 
 
 # What a clairvoyant robot could reach
