@@ -266,11 +266,12 @@ def test_audit():
     assert means["printed"].to_list() == [32.9973]  # of BCA-Q, above that of ASFA-GA
     slow = wrong[wrong["rule"].str.contains("slightly")]
     assert slow["printed"].to_list() == 3 * [293.4417]
-    height, quarter, listed = wrong[wrong["item"] == "text"].itertuples()
+    height, selected, quarter, listed = wrong[wrong["item"] == "text"].itertuples()
     assert (height.printed, height.limit) == (0, 400)
+    assert (selected.printed, selected.limit) == pytest.approx((20 * math.sqrt(2), 40))
     assert (quarter.printed, quarter.limit) == (0.25, 0.25**2)
     assert "number of control points" in listed.rule
-    assert len(wrong) == 8 + 1 + 3 + 3
+    assert len(wrong) == 8 + 1 + 3 + 4
 
 
 @pytest.mark.parametrize(

@@ -261,6 +261,14 @@ def _audit_text(published: "Published") -> Iterator[dict]:
     )
     inside = int((heights < side).sum())
     yield compared("text", "3.2, equation (11)", rule, inside, "==", side * side)
+    # By equation (13) the fitness of a free path is its length, and by equation (15) its chance of
+    # being selected grows with that.
+    rule = (
+        "the shorter of two free paths is selected more often: fitness of the straight path, and "
+        "of one along two sides of the map"
+    )
+    shorter, longer = side * math.sqrt(2), 2.0 * side
+    yield compared("text", "3.3, equations (12) and (15)", rule, shorter, ">", longer)
     # One curve refutes a sentence about all: its points lie on a line, two of them at the start.
     text = published["text_values"].set_index("quantity")["value"]
     quarter = float(text["t of a quarter of the path"])
