@@ -124,9 +124,11 @@ def test_same_content_gives_the_same_bytes(text):
 
 
 def test_blanks_before_tags_go_except_where_they_mean_something():
-    text = "<p>\n    <b>a</b>\n  b</p>\n  <pre>\n  <i></pre>\n  <script>\n  '<i>'\n  </script>"
-    short = "<p>\n<b>a</b>\n  b</p>\n<pre>\n  <i></pre>\n<script>\n  '<i>'\n  </script>"
+    text = "<p>\n    <b>a</b>\n  b</p>\n  <pre>\n  <td></pre>\n  <script>\n  '<i>'\n  </script>"
+    short = "<p>\n<b>a</b>\n  b</p>\n<pre>\n  <td></pre>\n<script>\n  '<i>'\n  </script>"
     assert build._unindented(text) == short
+    table = "<table>\n  <tr>\n    <td>1</td>\n    <td>\n2 <b>\n</b></td>\n  </tr>\n</table>"
+    assert build._unindented(table) == "<table><tr><td>1</td><td>\n2 <b>\n</b></td></tr></table>"
 
 
 def test_scripts_never_insert_markup():

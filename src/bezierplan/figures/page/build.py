@@ -51,6 +51,8 @@ MARKS = {
 # Elements whose blanks mean something.
 _AS_WRITTEN = ("<script", "<style", "<pre")
 _PARTS = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)", re.DOTALL)
+# Elements that stand on lines of their own, whatever stands before their tags.
+_BLOCKS = "table|caption|thead|tbody|tr|th|td|dl|dt|dd|ul|ol|li|details|summary|figure|figcaption"
 
 
 def html(page: content.Page, folder: Path) -> str:
@@ -113,9 +115,13 @@ def html(page: content.Page, folder: Path) -> str:
 
 
 def _unindented(text: str) -> str:
-    """A page without the blanks before its tags, except where these mean something."""
+    """A page without the blanks before its tags, and without the line breaks before those of tables
+    and lists, except where these mean something.
+    """
     return "".join(
-        part if part.startswith(_AS_WRITTEN) else re.sub(r"\n +(?=<|\Z)", "\n", part)
+        part
+        if part.startswith(_AS_WRITTEN)
+        else re.sub(r"\n +(?=<|\Z)", "\n", re.sub(rf"\n *(?=</?(?:{_BLOCKS})\b)", "", part))
         for part in _PARTS.split(text)
     )
 

@@ -156,7 +156,7 @@ def _problem(
         world=None if world is None else _world(world),
         start=problem.start,
         target=problem.target,
-        bound=float(bound["bound"]) if np.isfinite(bound["bound"]) else None,
+        bound=_finite(bound["bound"]),
         bound_path=_rounded(_simplified(path, _FLAT * size), size),
     )
 
