@@ -42,10 +42,10 @@ from bezierplan.running.digest import kernel_folder
 LOOK = 0.05
 PATIENCE = 60.0
 
-# After how many new objects Python looks for garbage while it compiles, and after how many looks
-# through new ones it looks through older ones. numba makes millions of objects that stay until the
-# end; with Python's own thresholds, the looks take a tenth of the time.
-GARBAGE = (100_000, 10, 10)
+# Thresholds of garbage collection while a kernel is compiled: new objects, and collections of new
+# ones before older ones are collected. numba makes millions of objects that stay until the end;
+# with Python's own thresholds, collections take a tenth of the time.
+COLLECTION_THRESHOLDS = (100_000, 10, 10)
 
 _held: list[Path] = []
 """Folders in which this process compiles, each for a kernel of the one before."""
@@ -165,21 +165,21 @@ class Kernel(CPUDispatcher):
                 # passes.
                 sig = tuple(map(unliteral, sig))
             if isinstance(self._cache, NullCache):
-                with effort.spending("compiling"), _little_looking():
+                with effort.spending("compiling"), _rare_garbage_collection():
                     return super().compile(sig)
             if sig in self.overloads or self._cache.keeps(sig, self.targetctx.codegen()):
                 with effort.spending("loading kernels"):
                     return super().compile(sig)
             folder = Path(self._cache.cache_path)
-            with effort.spending("compiling"), _alone(folder), _little_looking():
+            with effort.spending("compiling"), _alone(folder), _rare_garbage_collection():
                 return super().compile(sig)
 
 
 @contextmanager
-def _little_looking() -> Iterator[None]:
-    """Have Python look for garbage less often."""
+def _rare_garbage_collection() -> Iterator[None]:
+    """Collect garbage less often."""
     before = gc.get_threshold()
-    gc.set_threshold(*GARBAGE)
+    gc.set_threshold(*COLLECTION_THRESHOLDS)
     try:
         yield
     finally:
