@@ -149,6 +149,7 @@ WATCHED = """
 import ctypes, os, signal, subprocess, sys, threading, time
 from bezierplan.running.chunk import Chunk
 from bezierplan.running import log, watchdog
+watchdog._ENDING = 0.5
 watchdog.supervise("job", lambda line: log.report("log", line))
 with watchdog.watching({limit}) as watch:
     for name in ("first", "second"):
@@ -158,12 +159,12 @@ with watchdog.watching({limit}) as watch:
         watch("")
         time.sleep({pause})
 print("end")
-watchdog.settle()
+watchdog.settle({status})
 """
 
 
-def watched(folder, work, limit=2.0, pause=0.0):
-    source = WATCHED.format(limit=limit, work=work, pause=pause)
+def watched(folder, work, limit=2.0, pause=0.0, status=0):
+    source = WATCHED.format(limit=limit, work=work, pause=pause, status=status)
     return subprocess.run(
         [sys.executable, "-c", source],
         cwd=folder,
@@ -213,6 +214,17 @@ def test_whatever_ends_a_run_is_told_in_one_line_that_names_it(work, told, tmp_p
 def test_pauses_between_runs_and_short_runs_are_not_ended(tmp_path):
     done = watched(tmp_path, "time.sleep(0.1)", limit=1.0, pause=1.3)
     assert (done.returncode, done.stdout, done.stderr) == (0, "end\n", "")
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        "import atexit; atexit.register(os._exit, 0)",
+        "threading.Thread(target=time.sleep, args=(600,)).start()",
+    ],
+)
+def test_what_a_planner_leaves_does_not_change_the_exit_status(work, tmp_path):
+    assert watched(tmp_path, work, status=1).returncode == 1
 
 
 @pytest.mark.skipif(

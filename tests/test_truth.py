@@ -121,6 +121,10 @@ DEEDS = {
         "ctypes.memset(world.radii.ctypes.data, 0, 8)",
         f"problem: across: workspace: content: {IS_ANOTHER}",
     ),
+    "replaces": (
+        "np.isfinite = lambda values: True",
+        "replaces numpy.isfinite; a planner leaves other modules as they are",
+    ),
     "exits": ("os._exit(0)", "its process ended itself with exit status 0, before it was done"),
     "crashes": ("os.kill(os.getpid(), signal.SIGSEGV)", "its process was ended by signal SIGSEGV"),
     "forks": ("os.fork() or os.execvp('sleep', ['sleep', '4321.25'])", watchdog.LEFT),
@@ -250,10 +254,10 @@ def test_liar_is_refused_by_name_in_one_line(ended, run, method):
 
 @pytest.mark.parametrize("method", DEEDS)
 def test_what_a_planner_does_is_told_by_name_in_one_line(ended, method):
-    # What was written into memory shows only after all runs of a job.
-    run = f"liars/roads/{'*' if method == 'writes' else 'across'}/{method}" + (
-        "" if method == "writes" else "/0"
-    )
+    # What was written into memory or into other modules is looked for after all runs of a job.
+    run = f"liars/roads/across/{method}/0"
+    if method in ("writes", "replaces"):
+        run = f"liars/roads/*/{method}"
     assert told_once(
         ended, f"run {run}: planner liars/{method}.py: {DEEDS[method][1]}", "roads", method
     ), ended[1].stderr
@@ -347,6 +351,11 @@ AT_START = {
         "while True: pass",
         "",
         "when it is imported: not done within the time limit of 1 s; it is ended",
+    ),
+    "replaces": (
+        "np.hypot = None",
+        "",
+        "replaces numpy.hypot; a planner leaves other modules as they are",
     ),
     "asked exits": (
         "",

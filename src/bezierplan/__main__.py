@@ -140,10 +140,15 @@ def start() -> None:
         words.plain(f"{PROGRAM} {' '.join(sys.argv[1:])}", words.LONGEST),
         partial(print, file=sys.stderr, flush=True),
     )
+    status = 1
     try:
         main(sys.argv[1:])
+        status = 0
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else int(end.code is not None)
+        raise
     finally:
-        watchdog.settle()
+        watchdog.settle(status)
 
 
 if __name__ == "__main__":

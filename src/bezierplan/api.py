@@ -693,9 +693,15 @@ def _answered(
     from bezierplan.running import answer as door
     from bezierplan.running.columns import TAKEN
     from bezierplan.running.loans import lend
+    from bezierplan.running.tampering import left_alone
+    from bezierplan.running.watchdog import PlannerFailure
 
     loan = lend({problem.name: problem})[problem.name]
-    answered = module.plan(loan.problem, np.random.default_rng(seed), **settings)
+    try:
+        with left_alone(f"planner {name}"):
+            answered = module.plan(loan.problem, np.random.default_rng(seed), **settings)
+    except PlannerFailure as failure:
+        raise ValueError(str(failure)) from None
     try:
         plan = door.accepted(answered, problem, {*TAKEN, *settings})
     except door.Unfit as fault:

@@ -22,6 +22,7 @@ from bezierplan.running import answer, footprints, interface, legs, problems, to
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
 from bezierplan.running.problems import Placed, Regions
+from bezierplan.running.tampering import left_alone
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
@@ -611,6 +612,7 @@ def _answer(
         with (
             chdir("."),  # a planner that leaves this folder would take --out along
             watchdog.watching(None) as watch,
+            left_alone(f"--planner: {planner}"),
             watchdog.executing(f"--planner: {planner}", watch),
         ):
             begin = time.process_time()

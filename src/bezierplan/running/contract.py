@@ -26,6 +26,7 @@ from bezierplan.planners import Plan, known_planners
 from bezierplan.running import answer, interface, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
+from bezierplan.running.tampering import left_alone
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.words import told
 from bezierplan.workspaces import grid
@@ -360,7 +361,11 @@ def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tup
     ]:
         name = f"planner {module.__spec__.origin}: {problem.name}"
         try:
-            with watchdog.watching(LIMIT) as watch, watchdog.executing(name, watch):
+            with (
+                watchdog.watching(LIMIT) as watch,
+                watchdog.executing(name, watch),
+                left_alone(name),
+            ):
                 runs.append(_run(module, problem, settings, seed, surroundings))
         except watchdog.PlannerFailure as failure:
             cause = failure.__cause__

@@ -16,6 +16,7 @@ from bezierplan.running import answer, kernel_cache, rows, watchdog
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
 from bezierplan.running.loans import Loan, lend
+from bezierplan.running.tampering import left_alone
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -168,7 +169,10 @@ def run_chunk(
     first, last = chunk.repeats
     outcomes, times = {}, {}
     kernel_cache.meanwhile[:] = _judgements(met, blocked)
-    with watchdog.watching(chunk.time_limit) as watch:
+    with (
+        left_alone(f"run {chunk.name}: planner {chunk.planner}"),
+        watchdog.watching(chunk.time_limit) as watch,
+    ):
         for n, (k, repeat) in enumerate(
             _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
         ):

@@ -16,6 +16,7 @@ from bezierplan import planners
 from bezierplan.planners import planner_module, planner_settings, setting_fault
 from bezierplan.planners.parts.settings import setting
 from bezierplan.running import watchdog
+from bezierplan.running.tampering import left_alone
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.words import LONGEST, plain, told
 
@@ -48,9 +49,14 @@ def loaded(planner: str, location: str) -> ModuleType:
 def _loaded(planner: str) -> tuple[ModuleType | None, str]:
     """The module of a planner, and what is wrong with it: empty if nothing is."""
     try:
-        module = planner_module(planner)
+        if planner.endswith(".py"):
+            import shapely  # noqa: F401, so that a part of it cannot be replaced unnoticed
+        with left_alone(planner):
+            module = planner_module(planner)
     except watchdog.Interrupted:
         raise
+    except watchdog.PlannerFailure as failure:
+        return None, str(failure).removeprefix(f"{planner}: ")
     except BaseException as error:  # a user's file can fail in any way
         return None, _failed(error, planner)
     return module, interface_fault(module) or ""

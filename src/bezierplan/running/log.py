@@ -65,10 +65,10 @@ def job(snakemake: Any) -> Iterator[Any]:
             or f"{said} (full account: {log})"
         )
         logging.critical(line)
-        watchdog.settle()
+        watchdog.settle(1)
         sys.exit(line)
     except watchdog.Interrupted:
-        watchdog.settle()
+        watchdog.settle(1)
         raise
     watchdog.settle()
 

@@ -35,6 +35,7 @@ from bezierplan.running.simulation import cells, hindsight, motion_check, ways
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
+from bezierplan.running.tampering import left_alone
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_json
 
@@ -163,7 +164,10 @@ def run_chunk(
     texts = {name: to_json(worlds[name]) for name in chunk.problems}
     driven = {name: from_json(text) for name, text in texts.items()}
     drives, times, traces = [], [], []
-    with watchdog.watching(chunk.time_limit) as watch:
+    with (
+        left_alone(f"run {chunk.name}: planner {chunk.planner}"),
+        watchdog.watching(chunk.time_limit) as watch,
+    ):
         for condition in chunk.conditions():
             for repeat in range(*chunk.repeats):
                 problem, world = problems[condition.problem], worlds[condition.problem]

@@ -74,9 +74,11 @@ def _interrupt(*_: Any) -> NoReturn:
     raise Interrupted
 
 
-def settle() -> None:
-    """Tell that this process ends as it should, or has said why it does not."""
-    _tell(_SETTLED)
+def settle(status: int = 0) -> None:
+    """Tell that this process ends as it should, or has said why it does not, and with which exit
+    status: what a planner has left, such as a thread or an exit handler, may end it with another.
+    """
+    _tell(f"{_SETTLED} {status}")
 
 
 @contextmanager
@@ -242,6 +244,7 @@ def _wait(child: int, heard: int, name: str, report: Callable[[str], None]) -> N
 def _heard(child: int, heard: int, name: str) -> tuple[str, int]:
     """What is to be reported of a child that has ended, or is ended here, and the exit status."""
     pipes, rest, last, limit, until, ended, status = [heard], b"", "", math.inf, math.inf, 0, 0
+    settled = False
     while True:
         if not ended:
             ended, status = os.waitpid(child, os.WNOHANG)
@@ -252,22 +255,24 @@ def _heard(child: int, heard: int, name: str) -> tuple[str, int]:
             *lines, rest = (rest + told).split(b"\n")
             if lines:
                 last = lines[-1].decode()
-                limit = {"": math.inf, _SETTLED: _ENDING}.get(last) or float(last.split(" ", 1)[0])
+                settled = last.startswith(_SETTLED)
+                limit = _ENDING if settled else float(last.split(" ", 1)[0] or math.inf)
                 until = time.monotonic() + limit
             continue
-        under_way = name if last in ("", _SETTLED) else last.split(" ", 1)[1]
+        intended = int(last.split(" ", 1)[1]) if settled else 0
+        under_way = last.split(" ", 1)[1] if last and not settled else name
         if ended:
             return (
-                ("", status_code(status))
-                if last == _SETTLED
+                ("", status_code(status) or intended)
+                if settled
                 else (f"{under_way}: {how_ended(status)}", 1)
             )
         if time.monotonic() >= until:
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
             return (
-                ("", 0)
-                if last == _SETTLED
+                ("", intended)
+                if settled
                 else (f"{under_way}: not done within the time limit of {limit:g} s; it is ended", 1)
             )
 

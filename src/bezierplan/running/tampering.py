@@ -1,0 +1,77 @@
+"""Whether code of a planner has replaced something that its judge calls, such as numpy.isfinite.
+
+A path is judged in the process in which its planner ran. Problems are lent as copies (`loans`), but
+functions, classes and constants of modules are shared.
+"""
+
+import builtins
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FunctionType, ModuleType
+from typing import Any
+
+from bezierplan.running.watchdog import PlannerFailure
+
+_LIBRARIES = ("builtins", "math", "time", "os", "numpy", "numpy.linalg", "shapely")
+_OWN = "bezierplan."
+_PLANNERS = "bezierplan.planners."
+"""A planner may keep something in its own module, and replace parts of another planner."""
+_FUNCTIONS = (FunctionType, staticmethod, classmethod)
+
+
+@contextmanager
+def left_alone(name: str) -> Iterator[None]:
+    """A block that executes code of a planner, and perhaps judges its answers.
+
+    Raises PlannerFailure, beginning with `name`, if after the block a name of a module or class on
+    which the judge relies stands for another object than before, whatever else the block raises.
+    All such names stand for the old objects again.
+    """
+    modules = {name: module for name, module in sys.modules.items() if _relies_on(name)}
+    before = {home: dict(vars(home)) for home in _homes(modules)}
+    try:
+        yield
+    finally:
+        places = [f"sys.modules[{name!r}]" for name in modules.keys() - sys.modules.keys()]
+        sys.modules.update(modules)
+        places += [place for home in before for place in _put_back(home, before[home])]
+        if places:
+            raise PlannerFailure(
+                f"{name}: replaces {min(places)}; a planner leaves other modules as they are"
+            )
+
+
+def _relies_on(module: str) -> bool:
+    own = module.startswith(_OWN) and not module.startswith(_PLANNERS)
+    return own or module in _LIBRARIES
+
+
+def _homes(modules: dict[str, ModuleType]) -> Iterator[ModuleType | type]:
+    """Modules and the classes that they define."""
+    for name, module in modules.items():
+        yield module
+        classes = (value for value in vars(module).values() if isinstance(value, type))
+        yield from (kind for kind in classes if kind.__module__ == name and name not in _LIBRARIES)
+
+
+def _put_back(home: ModuleType | type, before: dict[str, Any]) -> Iterator[str]:
+    """The names of a module or class that stood for other objects before, and do so again."""
+    now = vars(home)
+    for name in now.keys() - before.keys():
+        # A module gets the names of modules that are imported late, but none of Python's own.
+        if hasattr(builtins, name) if isinstance(home, ModuleType) else not name.startswith("__"):
+            delattr(home, name)
+            yield f"{_path(home)}.{name}"
+    for name, value in before.items():
+        # Values such as `__pydantic_validator__` are filled in late by libraries.
+        late = name.startswith("__") and not isinstance(value, _FUNCTIONS)
+        if now.get(name) is not value and not late:
+            setattr(home, name, value)
+            yield f"{_path(home)}.{name}"
+
+
+def _path(home: ModuleType | type) -> str:
+    if isinstance(home, ModuleType):
+        return home.__name__
+    return f"{home.__module__}.{home.__qualname__}"
