@@ -338,7 +338,7 @@ def test_methods_that_no_metric_compares_are_parts(studies):
     job = choices.search_job(studies["elhoseny2017"])
     parts = {part.methods[0]: part.choices for part in job.parts}
     assert list(parts) == ["mga", "prm", "abc_ep", "ga"]
-    assert parts["prm"] == ["O1", "O1b", "O15b", "O15c", "O15d", "O15q", "O25b"]
+    assert parts["prm"] == ["O1", "O1b", "O1g", "O1h", "O15b", "O15c", "O15d", "O15q", "O25b"]
     # Mean ranks are those of all methods together.
     assert len(choices.search_job(studies["tharwat2018"]).parts) == 1
 

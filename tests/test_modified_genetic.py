@@ -51,6 +51,8 @@ SETTINGS = {
     "penalty": 20.0,
     "survival": "best_of_all",
     "offspring": "both",
+    "parents": "fitness",
+    "compared": "pool",
     "children_per_parent": 1,
 }
 FEW = {"population": 20, "iterations": 10}
@@ -406,6 +408,36 @@ def test_a_length_above_the_limit_need_not_be_exact(curve):
             assert cost == length or limit < cost < length
             above += cost != length
     assert above > 100
+
+
+def test_random_parents_all_have_one_weight(monkeypatch):
+    weights = {"fitness": set(), "random": set()}
+
+    def parents(rng, wheel):
+        weights[rule] |= set(np.diff(wheel, prepend=0.0))
+        return draw(rng, wheel)
+
+    draw = planner._parents.py_func
+    monkeypatch.setattr(planner, "_parents", parents)
+    monkeypatch.setattr(planner, "_add_offspring", planner._add_offspring.py_func)
+    monkeypatch.setattr(planner, "search", planner.search.py_func)
+    for rule in ("fitness", "random"):
+        run(problem(3), **FEW, parents=rule)
+    assert weights["random"] == {1.0}
+    assert len(weights["fitness"]) > FEW["population"]
+
+
+def test_offspring_alone_decide_about_more_of_them():
+    """The offspring of a population of copies are copies, unless they mutate: their mean Q is
+    lower than that of all.
+    """
+    found = {
+        compared: run(problem(3), compared=compared, most_batches=1, iterations=40)
+        for compared in ("pool", "offspring")
+    }
+    extra = {compared: each.extra for compared, each in found.items()}
+    assert extra["offspring"]["mean_q"] < extra["pool"]["mean_q"]
+    assert extra["offspring"]["extra_batches"] < extra["pool"]["extra_batches"]
 
 
 @pytest.mark.parametrize("diversity_rule", ["none", "more_offspring", "relaxing", "unique"])
@@ -796,11 +828,14 @@ def test_q_of_a_pool_is_the_mean_over_all_pairs():
         ones = np.flatnonzero(row)
         gene_lists.put(ones, len(ones), 1.0, True, pool, place)
     every = [diversity.q_of_rows(rows[i], rows[j]) for j in range(12) for i in range(j)]
-    assert gene_lists.sum_of_q(pool, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
+    assert gene_lists.sum_of_q(pool, 0, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
     first = [diversity.q_of_rows(rows[i], rows[j]) for j in range(8) for i in range(j)]
-    parts = gene_lists.sum_of_q(pool, 0, 8, 441) + gene_lists.sum_of_q(pool, 8, 12, 441)
+    parts = gene_lists.sum_of_q(pool, 0, 0, 8, 441) + gene_lists.sum_of_q(pool, 0, 8, 12, 441)
     assert parts == pytest.approx(sum(every), rel=1e-12)
     assert sum(first) != sum(every)
+    late = [diversity.q_of_rows(rows[i], rows[j]) for j in range(5, 12) for i in range(5, j)]
+    parts = gene_lists.sum_of_q(pool, 5, 0, 8, 441) + gene_lists.sum_of_q(pool, 5, 8, 12, 441)
+    assert parts == pytest.approx(sum(late), rel=1e-12)
     assert gene_lists.distinct(pool, 12) == 11
 
 

@@ -37,6 +37,48 @@ def test_a_field_is_drawn_from_its_name_alone():
     )
 
 
+def test_nested_fields_differ_in_their_last_circles():
+    nested = FIELD | {"nested": True}
+    many = random_field.field(nested, PROBLEM, "study/dense").drawn.centres
+    few = random_field.field(nested, PROBLEM | {"obstacles": 5}, "study/dense").drawn.centres
+    assert np.array_equal(few, many[:5])
+    other = random_field.field(nested, PROBLEM | {"layout": 1}, "study/dense").drawn.centres
+    assert not np.array_equal(many, other)
+
+
+def test_nested_fields_stay_nested_where_draws_are_repeated():
+    """Circles that large cut off the target in many draws, after different numbers of circles."""
+    nested = FIELD | {"nested": True, "radius": 0.12}
+    centres = {
+        (count, layout): random_field.field(
+            nested, PROBLEM | {"obstacles": count, "layout": layout}, "study/dense"
+        ).drawn.centres
+        for count in (17, 18)
+        for layout in range(60)
+    }
+    firsts = [
+        random_field.field(nested, PROBLEM | {"obstacles": 1, "layout": layout}, "study/dense")
+        for layout in range(60)
+    ]
+    drawn_again = [
+        not np.array_equal(centres[17, layout][0], first.drawn.centres[0])
+        for layout, first in enumerate(firsts)
+    ]
+    alike = [np.array_equal(centres[17, n], centres[18, n][:17]) for n in range(60)]
+    assert 5 < sum(drawn_again) < 55
+    assert sum(each and again for each, again in zip(alike, drawn_again)) > 3
+
+
+def test_radius_is_a_share_of_the_side_that_is_named():
+    for side, named, radius in ((100, "own", 6.0), (200, "own", 12.0), (200, 100, 6.0)):
+        field = random_field.field(
+            FIELD | {"radius_side": named},
+            PROBLEM | {"side": side, "target": [side, side], "obstacles": 5},
+            "study/dense",
+        )
+        assert set(field.drawn.radii) == {radius}
+
+
 def test_cells_are_those_whose_centres_lie_in_circles():
     grid = random_field.field(FIELD, PROBLEM, "study/dense")
     assert grid.occupied.shape == (101, 101)

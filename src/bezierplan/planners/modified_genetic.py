@@ -59,6 +59,8 @@ PointOrder = IntEnum("PointOrder", "projection index geodesic", start=0)
 FirstPopulation = IntEnum("FirstPopulation", "random roadmaps", start=0)
 Survival = IntEnum("Survival", "best_of_all generational", start=0)
 Offspring = IntEnum("Offspring", "both mutated", start=0)
+Parents = IntEnum("Parents", "fitness random", start=0)
+Compared = IntEnum("Compared", "pool offspring", start=0)
 
 # A shift moves a control point by at most this share of the lattice points of a side.
 _SHIFT_REACH = 0.1
@@ -102,6 +104,14 @@ class Settings(NamedTuple):
         float,
         Range(0, 1),
         About("factor of eta from one iteration to the next", PAPER + ", Section 3.3"),
+    ]
+    compared: Annotated[
+        Compared,
+        About(
+            "whose mean Q is compared with eta before more offspring are made: all of the pool, or "
+            "the offspring alone",
+            PAPER + ", Algorithm 2, lines 8 and 12",
+        ),
     ]
     most_batches: Annotated[int, Range(0), About("most extra batches of offspring in an iteration")]
     gene_lattice: Annotated[GeneLattice, About("genes are 21 x 21 points, or every cell")]
@@ -172,6 +182,13 @@ class Settings(NamedTuple):
         Offspring,
         About(
             "children and their mutants join the pool, or mutants alone", PAPER + ", Algorithm 2"
+        ),
+    ]
+    parents: Annotated[
+        Parents,
+        About(
+            "drawn in proportion to their fitness, or all alike",
+            PAPER + ", Algorithm 1, line 9, and Section 3.2.2",
         ),
     ]
     children_per_parent: Annotated[
@@ -375,7 +392,10 @@ def search(
         if iteration == rules.iterations:
             break
 
-        wheel = np.cumsum(1.0 / pool.cost[:size])
+        if rules.parents == Parents.fitness:
+            wheel = np.cumsum(1.0 / pool.cost[:size])
+        else:
+            wheel = np.cumsum(np.ones(size))
         limit = _highest_cost_that_counts(pool, rules)
         filled, pairs = size, 0.0
         for batch in range(batches):
@@ -388,11 +408,14 @@ def search(
             lost += invalid
             further += batch > 0
             if rules.diversity == Diversity.more_offspring:
+                begin = 0 if rules.compared == Compared.pool else size
                 pairs += gene_lists.sum_of_q(
-                    pool, before if batch > 0 else 0, filled, len(field.points)
+                    pool, begin, before if batch > 0 else 0, filled, len(field.points)
                 )
-                q[iteration] = pairs / (filled * (filled - 1) / 2)
-                if q[iteration] <= eta:
+                compared = filled - begin
+                if compared > 1:
+                    q[iteration] = pairs / (compared * (compared - 1) / 2)
+                if not q[iteration] > eta:
                     break
         # Where a diversity rule rejects so many children that places remain free, the last parents
         # keep them.
@@ -402,7 +425,7 @@ def search(
             filled,
             spare,
         )
-        population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (
+        population_q[iteration] = gene_lists.sum_of_q(pool, 0, 0, size, len(field.points)) / (
             size * (size - 1) / 2
         )
         eta *= rules.eta_decay
@@ -431,9 +454,9 @@ def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, r
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after
     those already in it.
 
-    wheel: (population,) running sum of the parents' fitness. limit: of `validate`. memory: of
-    validated chromosomes, changed in place. Returns the number of chromosomes now in the pool, of
-    chromosomes validated, and of invalid children.
+    wheel: (population,) running sum of the parents' weights in the draw. limit: of `validate`.
+    memory: of validated chromosomes, changed in place. Returns the number of chromosomes now in the
+    pool, of chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
     for _ in range(rules.population * rules.children_per_parent // 2):
@@ -481,8 +504,8 @@ def _validated(ones, memory, field, rules, limit, scratch):
 
 @allocation_free
 def _parents(rng, wheel):
-    """Two different parents in proportion to fitness (Algorithm 1, line 9). The second is drawn
-    from the wheel without the first one.
+    """Two different parents, as a rule in proportion to fitness (Algorithm 1, line 9). The second
+    is drawn from the wheel without the first one.
     """
     first = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
     first = min(first, len(wheel) - 1)

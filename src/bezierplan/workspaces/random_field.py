@@ -20,19 +20,21 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     """The field of a problem, drawn from names and numbers alone: problems that differ in any of
     them get unrelated fields.
 
-    description: radius, that of all circles as a share of the side; clear_ends, the cells that stay
-    free between a circle and start or target; and unit. problem: side (N); start; target;
-    obstacles, the number of circles; and layout, the number of the field. name: that of study and
-    workspace. Centres are uniform in the square from 0 to N; those too close to start or target are
-    redrawn. Circles may overlap. A field in which no path of free cells leads from start to target
-    is redrawn as a whole.
+    description: radius, that of all circles as a share of the side, or of radius_side, if that is a
+    number; clear_ends, the cells that stay free between a circle and start or target; nested,
+    whether fields that differ in their numbers of circles alone have the first circles in common;
+    and unit. problem: side (N); start; target; obstacles, the number of circles; and layout, the
+    number of the field. name: that of study and workspace. Centres are uniform in the square from 0
+    to N; those too close to start or target are redrawn. Circles may overlap. A field in which no
+    path of free cells leads from start to target is redrawn as a whole.
 
     Raises ValueError, naming the key, if start or target is not a cell of the field, or if no field
     can be found.
     """
     side = problem["side"]
-    numbers = *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]
-    rng = generator(name, side, *numbers)
+    nested = description.get("nested", False)
+    count = () if nested else (problem["obstacles"],)
+    rng = generator(name, side, *problem["start"], *problem["target"], *count, problem["layout"])
     square = 0.0, side, 0.0, side
     empty = from_circles(Circles(square, np.empty((0, 2)), np.empty(0), description["unit"]))
     ends = np.array([problem["start"], problem["target"]], dtype=float)
@@ -44,10 +46,13 @@ def field(description: dict, problem: dict, name: str) -> Grid:
                 f"{key}: {problem[key]}: outside the field; expected x and y from 0 to {side}"
             )
         cells.append(cell)
-    radius = description["radius"] * side
+    measure = description.get("radius_side", "own")
+    radius = description["radius"] * (side if measure == "own" else measure)
     for _ in range(MOST_FIELDS):
+        # Each draw of a nested field begins anew, however many numbers the last one took.
+        draw = rng.spawn(1)[0] if nested else rng
         centres = drawn_centres(
-            rng, problem["obstacles"], square, ends, radius + description["clear_ends"]
+            draw, problem["obstacles"], square, ends, radius + description["clear_ends"]
         )
         radii = np.full(len(centres), radius)
         grid = from_circles(Circles(square, centres, radii, description["unit"]))

@@ -158,8 +158,9 @@ def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 
 
 @compiled
-def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
-    """Sum of Q over the pairs of the pool whose second chromosome is at a place from `first` on.
+def sum_of_q(pool: Pool, begin: int, first: int, filled: int, genes: int) -> float:
+    """Sum of Q over the pairs of chromosomes from the place `begin` on in the pool, the second of
+    which is at a place from `first` on.
 
     A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum
     is made in the order of the places.
@@ -195,9 +196,9 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
         for gene in pool.ones[chromosome, : pool.count[chromosome]]:
             marked[gene] = 0
     total = 0.0
-    for j in range(max(first, 1), filled):
+    for j in range(max(first, begin + 1), filled):
         row = values[kind[j]]
-        for i in range(j):
+        for i in range(begin, j):
             total += row[kind[i]]
     return total
 

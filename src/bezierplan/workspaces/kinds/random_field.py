@@ -1,6 +1,6 @@
 """Fields of cells with circles at random places."""
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -20,6 +20,16 @@ class Options(Workspace):
     )
     clear_ends: NotNegative = Field(
         description="how many cells stay free between a circle and start or target, at least 0"
+    )
+    radius_side: Literal["own"] | Positive = Field(
+        "own",
+        description="the side of which the radius is a share: own, that of each field, or a number "
+        "of cells above 0, the same for all",
+    )
+    nested: bool = Field(
+        False,
+        description="whether a field with more circles is one with fewer and some more, true or "
+        "false",
     )
 
 
