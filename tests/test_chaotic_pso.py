@@ -37,6 +37,7 @@ SETTINGS = {
     "velocity_limit": math.inf,
     "bound_rule": "mirror",
     "random_numbers": "dimension",
+    "tested": "samples",
     "update": "asynchronous",
     "chaotic_term": "none",
     "chaotic_map": "singer",
@@ -91,11 +92,12 @@ def plan(where=EQUAL, seed=0, **changes):
 
 
 def judged(points, curve, where, changes):
-    """Length, violation and colliding samples of a path by numpy alone."""
+    """Length, violation and colliding samples, or control points, of a path by numpy alone."""
     settings = SETTINGS | changes
     samples = curves.sample_matrix(curve, len(points), settings["samples"]) @ points
     radii = where.workspace.radii + settings["d_min"]
-    distances = np.hypot(*(samples[:, None] - where.workspace.centres).transpose(2, 0, 1))
+    tested = samples if settings["tested"] == "samples" else points[1:-1]
+    distances = np.hypot(*(tested[:, None] - where.workspace.centres).transpose(2, 0, 1))
     length = np.hypot(*np.diff(samples, axis=0).T).sum()
     return (
         length,
@@ -230,6 +232,8 @@ def collisions(found):
         {"penalty": "death", "beta": 12.0},
         {"curve": "spline"},
         {"curve": "ferguson", "control_points": 4},
+        {"tested": "control_points"},
+        {"tested": "control_points", "d_min": 0.5, "curve": "spline", "control_points": 5},
         {"stall_limit": 1, "iterations": 60},
         {"stall_limit": 0, "particles": 3, "iterations": 20},
     ],

@@ -4,7 +4,8 @@ instead of one of its two random numbers: that of the cognitive term (CPSO-I) or
 
 A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one
 curve; among spheres, z_1, ..., z_n follow (Section 6). The curve is linear in them, so to the
-kernels every curve kind is a constant matrix. Obstacles are tested at samples of the curve.
+kernels every curve kind is a constant matrix. Obstacles are tested at samples of the curve; the
+paper's equation (20) names its control points, which can be free on a path that is not.
 
 All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from
 three generators; positions are drawn particle by particle, and for each move r1 before r2; the
@@ -51,6 +52,7 @@ Curve = IntEnum("Curve", "bezier spline ferguson", start=0)
 Update = IntEnum("Update", "asynchronous synchronous evaluate_first", start=0)
 StartRule = IntEnum("StartRule", "random fixed uniform", start=0)
 ZetaFor = IntEnum("ZetaFor", "iteration particle dimension", start=0)
+Tested = IntEnum("Tested", "samples control_points", start=0)
 
 # This share of the particles starts around a given path, at a distance of about this share of the
 # field's side per coordinate.
@@ -102,6 +104,13 @@ class Settings(NamedTuple):
         Range(2),
         About(
             "points of the curve tested and measured, uniform in the parameter, both ends included"
+        ),
+    ]
+    tested: Annotated[
+        Tested,
+        About(
+            "which points must keep out of obstacles: the samples, or the free control points",
+            PAPER + ", eqs. 20 to 22",
         ),
     ]
     penalty: Annotated[
@@ -451,7 +460,11 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 _hold(x[i], v[i], low, high, rules.bound_rule)
             length = penalised.length(x[i], objective, curve, scratch)
             if rules.count_collisions or penalised.least_fitness(length, objective) < p_fitness[i]:
-                violation, colliding = penalised.violation(curve, objective, scratch)
+                if rules.tested == Tested.samples:
+                    violation, colliding = penalised.violation(curve, objective, scratch)
+                else:
+                    points = x[i].reshape((len(curve), dimensions // len(curve)))
+                    violation, colliding = penalised.violation(points, objective, scratch)
                 infeasible += violation > FEASIBLE
                 colliding_samples += colliding
                 fitness = penalised.fitness(length, violation, objective)

@@ -92,7 +92,7 @@ class Assumption(Model):
     not_searched: listed(Setting) = Field(
         [],
         description="alternatives that `snakemake interpretations` "
-        "leaves out because they take too long",
+        "leaves out: they take too long, or the reason says why",
     )
 
     @model_validator(mode="after")

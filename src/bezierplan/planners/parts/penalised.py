@@ -171,10 +171,9 @@ def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> t
     """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
     The violation of an obstacle is the mean over the samples of their depth below its edge, as a
-    share of the largest depth (tharwat2018, eqs. 20 and 21; the paper prints control points where
-    only points of the path make sense).
+    share of the largest depth (tharwat2018, eqs. 20 and 21).
 
-    curve: (d, samples). scratch: (samples,).
+    curve: (d, samples). scratch: (samples,) or longer.
     """
     of_balls, in_balls = _among_balls(curve, objective.balls, scratch)
     of_polygons, in_polygons = _among_polygons(curve[0], curve[1], objective.polygons)
