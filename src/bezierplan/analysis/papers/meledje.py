@@ -195,11 +195,14 @@ def _mutation(
     marks = along("line", "third", first, group="before", label="before")
     marks += along("line", "accent", second, group="after", label="after")
     if operator != "random":
-        row, column = divmod(before[k], grid.occupied.shape[1])
-        for up, across in itertools.product((-1, 0, 1), repeat=2):
-            cell = grid.occupied.shape[1] * (row + up) + column + across
-            if (up, across) != (0, 0) and not grid.occupied.flat[cell]:
-                centre = grid.centre(int(cell))
+        rows, columns = grid.occupied.shape
+        row, column = divmod(int(before[k]), columns)
+        for above, beside in itertools.product(
+            range(max(row - 1, 0), min(row + 2, rows)),
+            range(max(column - 1, 0), min(column + 2, columns)),
+        ):
+            if (above, beside) != (row, column) and not grid.occupied[above, beside]:
+                centre = grid.centre(above * columns + beside)
                 marks.append(mark("dots", "muted", *centre, group="tried", label="cells tried"))
     marks += along("dots", "third", first[1:k] + first[k + 1 : -1], group="others", label="node")
     for role, label, centre in (
