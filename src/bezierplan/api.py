@@ -615,15 +615,25 @@ def plan(
 
         _, planned = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
     if strict:
-        footprints.check_held(planned.footprint, planned.feasible)
-        legs.check_continuous(
-            smooth, planned.curvature_jump, planned.curvature_bound, problem.workspace.unit
-        )
-        legs.check_kept(
-            planned.settings["turning_radius"], planned.turning_radius, problem.workspace.unit
-        )
-        legs.check_offset(planned.settings.get("offset"), planned.offset, problem.workspace.unit)
+        check_strict(planned, smooth, planned.settings, planned.turning_radius, planned.offset)
     return planned
+
+
+def check_strict(
+    judged: Judged, smooth: str, settings: Mapping[str, Any], turning_radius: float, offset: float
+) -> None:
+    """Raise ValueError, beginning with a name, for a path that is not all that was asked for.
+
+    smooth and settings: what was asked for. turning_radius, offset: what is kept of them, as in
+    `Answer`.
+    """
+    from bezierplan.running import footprints, legs
+
+    unit = judged.problem.workspace.unit
+    footprints.check_held(judged.footprint, judged.feasible)
+    legs.check_continuous(smooth, judged.curvature_jump, judged.curvature_bound, unit)
+    legs.check_kept(settings["turning_radius"], turning_radius, unit)
+    legs.check_offset(settings.get("offset"), offset, unit)
 
 
 def _planned(

@@ -378,20 +378,9 @@ def _plan(arguments: Namespace) -> None:
     kept = legs.kept(planner, solution.plan, settings)
     if arguments.strict:
         try:
+            offset = solution.plan.extra.get("least_offset", math.nan)
             with _as_options():
-                footprints.check_held(outline, judged.feasible)
-                legs.check_continuous(
-                    arguments.smooth,
-                    judged.curvature_jump,
-                    judged.curvature_bound,
-                    home.unit,
-                )
-                legs.check_kept(settings["turning_radius"], kept, home.unit)
-                legs.check_offset(
-                    settings.get("offset"),
-                    solution.plan.extra.get("least_offset", math.nan),
-                    home.unit,
-                )
+                api.check_strict(judged, arguments.smooth, settings, kept, offset)
         except ValueError as told:
             raise NoPath(str(told)) from None
     if arguments.out and judged.path:  # what cannot be written is told alone
