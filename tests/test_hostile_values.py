@@ -583,6 +583,12 @@ FAULTS = {
         "labels: {mine: line}",
         "labels: mine: line: mine and line of experiment first would both be printed so",
     ),
+    "a label of nothing": (
+        A,
+        "labels: {mine: my walk}",
+        "labels: {mine_of: my walk}",
+        "labels: mine_of: unknown; did you mean mine?",
+    ),
     "a label of two problems": (
         A,
         "labels: {mine: my walk}",

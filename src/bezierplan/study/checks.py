@@ -5,8 +5,10 @@ free places, matching published numbers. Every fault is reported in one line.
 import importlib
 import inspect
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, partial
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +77,12 @@ def check(study: Study) -> None:
 
 
 def _check_labels(study: Study, location: str) -> None:
-    """Methods of an experiment are printed by different names, and so are its problems."""
+    """Labels are of what a study prints; methods of an experiment are printed by different names,
+    and so are its problems.
+    """
+    printed_names = _printed_names(study)
+    for name in study.labels:
+        check_known(name, printed_names, location)
     for experiment, content in study.experiments.items():
         for names in (study.methods_of(experiment), content.problems):
             owners: dict[str, str] = {}
@@ -88,6 +95,33 @@ def _check_labels(study: Study, location: str) -> None:
                         f"{location}: {labelled}: {printed}: {owner} and {name} of experiment "
                         f"{experiment} would both be printed so"
                     )
+
+
+def _printed_names(study: Study) -> set[str]:
+    """All that may be printed by name: what a study defines, columns and metrics, settings, every
+    word in its experiments, tables, figures and claims, and those of its functions.
+    """
+    names = {*study.methods, *study.problems, *study.workspaces, *study.experiments}
+    names |= {*columns.TAKEN, *columns.WORDS, *metrics.METRICS, "generation"}
+    names.update(*(study.accepted(method) for method in study.methods))
+    specs = (study.problems, study.experiments, study.tables, study.figures)
+    for spec in (*chain.from_iterable(each.values() for each in specs), *study.claims):
+        names.update(_texts(spec.plain()))
+    if study.module():
+        module = importlib.import_module(study.module())
+        names.update(re.findall(r"\w+", inspect.getsource(module)))
+    return names
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """All texts in a plain value, keys of mappings included; of anything else, its own text."""
+    if isinstance(value, Mapping):
+        value = [*value.keys(), *value.values()]
+    if isinstance(value, list | tuple):
+        for each in value:
+            yield from _texts(each)
+    else:
+        yield str(value)
 
 
 def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], location: str) -> None:
