@@ -463,8 +463,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 if rules.tested == Tested.samples:
                     violation, colliding = penalised.violation(curve, objective, scratch)
                 else:
-                    points = x[i].reshape((len(curve), dimensions // len(curve)))
-                    violation, colliding = penalised.violation(points, objective, scratch)
+                    violation, colliding = _violation_of_points(x[i], objective, scratch)
                 infeasible += violation > FEASIBLE
                 colliding_samples += colliding
                 fitness = penalised.fitness(length, violation, objective)
@@ -499,6 +498,13 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
 def _copy(source, target):
     for d in range(len(source)):
         target[d] = source[d]
+
+
+@compiled
+def _violation_of_points(particle, objective, scratch):
+    """`penalised.violation` of a particle's control points instead of samples of its curve."""
+    d = len(objective.ends)
+    return penalised.violation(particle.reshape((d, len(particle) // d)), objective, scratch)
 
 
 @allocation_free
