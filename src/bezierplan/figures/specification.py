@@ -19,7 +19,7 @@ from bezierplan.figures import style
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_ROW, _ABOVE = 0.115, 1.7  # height of a row of choices, and of the curve with its labels, in inches
+_ROW, _ABOVE = 0.115, 2.0  # height of a row of choices, and of the curve with its labels, in inches
 
 
 def draw(interpretations: pd.DataFrame, choices: list[str]) -> Figure:
@@ -56,7 +56,7 @@ def _draw_curve(axes: Axes, ordered: pd.DataFrame) -> None:
     axes.plot(default, in_range, label=label, **style.PUBLISHED_MARK)
     axes.set_ylim(bottom=0)
     axes.set_ylabel("published numbers")
-    axes.legend(loc="lower right", ncols=2)
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.2, ncols=2)
 
 
 def _draw_choices(axes: Axes, ordered: pd.DataFrame, rows: list[tuple[str, str]]) -> None:
@@ -65,4 +65,4 @@ def _draw_choices(axes: Axes, ordered: pd.DataFrame, rows: list[tuple[str, str]]
         axes.plot(made, np.full(len(made), row), **style.mark("|", 5, style.BLACK))
     axes.set_yticks(range(len(rows)), [f"{choice} = {value}" for choice, value in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    axes.set_xlabel("interpretation, ordered by how many published numbers it explains")
+    axes.set_xlabel("interpretation, from the least to the most likely; the last ones by more runs")
