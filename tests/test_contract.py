@@ -92,6 +92,11 @@ BAD = {
     "is not deterministic as it says": ("KEPT =", "deterministic = True\nKEPT =", "generators"),
     "exits": (RETURN, f"    raise SystemExit\n{RETURN}", "plan"),
     "leaves a process behind": (RETURN, f"    {LEAVES}\n{RETURN}", "plan"),
+    "replaces a function of a library": (
+        RETURN,
+        f"    np.isfinite = math.isfinite\n{RETURN}",
+        "plan",
+    ),
     "draws from entropy": ("rng.uniform", "np.random.default_rng().uniform", "same bits"),
     "changes an array of the problem": (
         "    start, target",
@@ -362,6 +367,21 @@ def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
 def test_planner_that_is_not_there_is_told(planner, told):
     with pytest.raises(Fault, match=re.escape(told)):
         contract.check_planner(planner, {})
+
+
+@pytest.mark.parametrize(
+    ("does", "told"),
+    [
+        ("np.isfinite = math.isfinite", "replaces numpy.isfinite; a planner leaves other modules"),
+        (LEAVES, "leaves a process behind, which is ended; end or join what it starts"),
+        ("raise SystemExit", "raises sys.exit"),
+    ],
+)
+def test_what_is_wrong_with_a_run_is_told(does, told, tmp_path):
+    file = written(tmp_path, changed(RETURN, f"    {does}\n{RETURN}"))
+    findings = [each for each in failed(file, {"evaluations": 8}) if each.fact == "plan"]
+    assert findings
+    assert all(each.detail.startswith(told) for each in findings)
 
 
 def test_order_that_is_another_in_each_process_is_found(tmp_path):

@@ -369,7 +369,7 @@ def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tup
                 runs.append(_run(module, problem, settings, seed, surroundings))
         except watchdog.PlannerFailure as failure:
             cause = failure.__cause__
-            return [], f"raises {told(cause)}" if cause else watchdog.LEFT
+            return [], f"raises {told(cause)}" if cause else str(failure).removeprefix(f"{name}: ")
         try:
             runs[-1] = runs[-1]._replace(plan=answer.plain(runs[-1].plan))
         except answer.Unfit as fault:

@@ -88,7 +88,7 @@ def _parts(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 @cache
 def _fields(kind: type) -> tuple[str, ...] | None:
-    """The names of a dataclass's fields; None of another class. A robot that drives borrows a
-    problem for each plan, and to ask dataclasses themselves takes a tenth of a drive.
+    """The names of a dataclass's fields; None of another class. Kept, for a robot that drives
+    borrows a problem for each plan, and looking them up takes half of the time of that.
     """
     return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None

@@ -102,7 +102,7 @@ def _printed_names(study: Study) -> set[str]:
     word in its experiments, tables, figures and claims, and those of its functions.
     """
     names = {*study.methods, *study.problems, *study.workspaces, *study.experiments}
-    names |= {*columns.TAKEN, *columns.WORDS, *metrics.METRICS, "generation"}
+    names |= {*columns.TAKEN, *columns.WORDS, *metrics.METRICS, "generation"}  # of convergence
     names.update(*(study.accepted(method) for method in study.methods))
     specs = (study.problems, study.experiments, study.tables, study.figures)
     for spec in (*chain.from_iterable(each.values() for each in specs), *study.claims):
