@@ -226,7 +226,7 @@ def test_lie_is_refused_by_run_and_field(lie):
         row(plan)
     message = str(caught.value)
     assert message.startswith(
-        f"run s/e/disc,profile=a/m/0: the answer of planner chaotic_pso: {told}"
+        f"run s/e/disc,profile=a/m/0: planner chaotic_pso: its answer: {told}"
     )
     assert "\n" not in message
 

@@ -84,7 +84,11 @@ def test_a_job_that_waits_for_a_kernel_checks_a_free_path_and_one_that_collides(
 
     monkeypatch.setattr(execution, "run", run)
     monkeypatch.setattr(kernel_cache, "meanwhile", [])
-    given = chunk(tmp_path, problems={"disc": {"workspace": "field"}, "other": {"workspace": "w"}})
+    given = chunk(
+        tmp_path,
+        planner="straight_line",
+        problems={"disc": {"workspace": "field"}, "other": {"workspace": "w"}},
+    )
     with pytest.raises(watchdog.PlannerFailure, match="that is enough"):
         execution.run_chunk({"disc": blocked, "other": blocked}, given)
     assert checks == [False, True]

@@ -2,7 +2,9 @@
 
 import builtins
 import math
+import os
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ import bezierplan as bp
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.running import tampering
 from bezierplan.running.watchdog import PlannerFailure
+from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
 CHECK, BOUND = "bezierplan.geometry.checker.Check", "bezierplan.geometry.shortest_paths.graph.Bound"
@@ -65,6 +68,48 @@ def test_what_is_added_is_told_and_taken_away(home, name, told):
     with pytest.raises(PlannerFailure, match=f"replaces {told};"), tampering.left_alone("it"):
         setattr(home, name, 1)
     assert name not in vars(home)
+
+
+def doubled(pieces, blocked=None):
+    return 2
+
+
+@pytest.mark.parametrize(
+    ("function", "told"),
+    [
+        (checker.check, "bezierplan.geometry.checker.check"),
+        (Grid.in_cells, "bezierplan.workspaces.grid.Grid.in_cells"),
+    ],
+)
+@pytest.mark.parametrize("part", ["__code__", "__defaults__", "__kwdefaults__"])
+def test_other_code_of_a_function_is_told_and_put_back(function, told, part):
+    before = getattr(function, part)
+    with (
+        pytest.raises(PlannerFailure, match=f"^it: replaces the code of {told};"),
+        tampering.left_alone("it"),
+    ):
+        setattr(function, part, {"__kwdefaults__": {}}.get(part, getattr(doubled, part)))
+    assert getattr(function, part) is before
+
+
+def test_what_all_share_is_put_back_without_a_word():
+    def state():
+        return os.getcwd(), sys.stdout, np.geterr(), warnings.filters, sys.getrecursionlimit()
+
+    before = state()
+    with tampering.left_alone("it"):
+        os.chdir("/")
+        sys.stdout = None
+        np.seterr(all="raise")
+        warnings.simplefilter("error")
+        sys.setrecursionlimit(before[-1] - 100)
+    assert state() == before
+    try:
+        with tampering.left_alone("it"):
+            sys.setrecursionlimit(before[-1] + 100)
+        assert sys.getrecursionlimit() == before[-1] + 100, "a planner may need more"
+    finally:
+        sys.setrecursionlimit(before[-1])
 
 
 def test_new_modules_and_a_planners_own_names_are_free(monkeypatch):

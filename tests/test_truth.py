@@ -248,7 +248,7 @@ def told_once(ended, told, experiment, method):
 @pytest.mark.parametrize(("run", "method"), REFUSED)
 def test_liar_is_refused_by_name_in_one_line(ended, run, method):
     experiment, _, job = run.split("/")
-    told = f"run liars/{run}/0: the answer of planner liars/{method}.py{LIES[method][2]}"
+    told = f"run liars/{run}/0: planner liars/{method}.py: its answer{LIES[method][2]}"
     assert told_once(ended, told, experiment, job), ended[1].stderr
 
 

@@ -4,13 +4,13 @@ import math
 import re
 import sys
 import tempfile
-import time
 from argparse import Action, ArgumentParser, Namespace, RawDescriptionHelpFormatter
-from collections.abc import Iterator
-from contextlib import chdir, contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path as File
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -18,11 +18,19 @@ from bezierplan import api
 from bezierplan.geometry import checker, samples, shortest_paths
 from bezierplan.places import TREE
 from bezierplan.planners import Plan, known_planners, planner_module
-from bezierplan.running import answer, footprints, interface, legs, problems, tours, watchdog
+from bezierplan.running import (
+    answer,
+    apart,
+    footprints,
+    interface,
+    legs,
+    problems,
+    tours,
+    watchdog,
+)
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
 from bezierplan.running.problems import Placed, Regions
-from bezierplan.running.tampering import left_alone
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
@@ -34,8 +42,9 @@ from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.text_file import is_count
 
-# The first run also loads compiled code, so a second one is timed, unless the first took more CPU
-# seconds than that may take.
+T = TypeVar("T")
+
+# The most CPU seconds of a planner that is called a second time.
 _LONG = 2.0
 
 PICTURES = (".svg", ".png")
@@ -448,24 +457,59 @@ def _solution(task: _Task, problem: Placed) -> _Solution:
             f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
             "that can be reached"
         )
-    seconds = 0.0
-    for _ in range(2):
-        if seconds > _LONG:
-            break
-        if task.planner in legs.TURNING:
-            begin = time.process_time()
-            plan = legs.solved(task.planner, parts, bounds, blocked, settings, task.smooth)
-            seconds = time.process_time() - begin
-        else:
-            answers = [
-                _answer(task.module, part, task.planner, settings, task.seed) for part in parts
-            ]
-            plan, seconds = (
-                legs.joined([answer for answer, _ in answers]),
-                sum(taken for _, taken in answers),
-            )
+    if task.planner in legs.TURNING:
+        solved = partial(legs.solved, task.planner, parts, bounds, blocked, settings, task.smooth)
+        plan, seconds = _second(solved)
+    else:
+        plan, seconds = _answered(task, parts, settings)
     grown = grown_of(home)
     return _Solution(plan, seconds, bound, grown.radius if grown else 0.0)
+
+
+def _answered(task: _Task, parts: list[Problem], settings: dict[str, Any]) -> tuple[Plan, float]:
+    """A planner's answer to all legs, through the door of all answers, and its CPU seconds. Raises
+    Fault, in one line, however the planner fails.
+    """
+    name, loans = (
+        f"--planner: {task.planner}",
+        [lend({part.name: part})[part.name] for part in parts],
+    )
+
+    def planned(leg: int) -> Any:
+        rng = np.random.default_rng(task.seed)
+        return task.module.plan(loans[leg].problem, rng, **settings)
+
+    def fault() -> str:
+        return next(filter(None, (loan.thorough_fault() for loan in loans)), "")
+
+    try:
+        with (
+            watchdog.watching(None) as watch,
+            apart.asking(task.planner, name, planned, fault) as ask,
+            watchdog.executing(name, watch),
+        ):
+            answers, seconds = _second(lambda: [ask(name, leg) for leg in range(len(parts))])
+        taken = {*TAKEN, *settings}
+        return legs.joined(
+            [answer.accepted(given, part, taken) for given, part in zip(answers, parts)]
+        ), seconds
+    except answer.Unfit as unfit:
+        raise Fault(f"{name}: its answer: {unfit}") from None
+    except watchdog.PlannerFailure as failure:
+        raise Fault(str(failure)) from None
+
+
+def _second(once: Callable[[], T]) -> tuple[T, float]:
+    """What a second call returns, and its CPU seconds: the first one also loads compiled code. Of
+    the first one, if that took long.
+    """
+    for _ in range(2):
+        before = apart.clock()
+        found = once()
+        seconds = float((apart.clock() - before)[0])
+        if seconds > _LONG:
+            break
+    return found, seconds
 
 
 def _judged(
@@ -588,33 +632,6 @@ def _check_no_input(arguments: Namespace, described: dict[str, Any]) -> None:
 
 def _unwritable(out: File, error: OSError) -> Fault:
     return Fault(f"--out: {out}: cannot be written ({error.strerror or type(error).__name__})")
-
-
-def _answer(
-    module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int
-) -> tuple[Plan, float]:
-    """A planner's answer, through the door of all answers, and its CPU seconds. Raises Fault, in
-    one line, however the planner fails.
-    """
-    loan = lend({problem.name: problem})[problem.name]
-    try:
-        with (
-            chdir("."),  # a planner that leaves this folder would take --out along
-            watchdog.watching(None) as watch,
-            left_alone(f"--planner: {planner}"),
-            watchdog.executing(f"--planner: {planner}", watch),
-        ):
-            begin = time.process_time()
-            given = module.plan(loan.problem, np.random.default_rng(seed), **settings)
-            seconds = time.process_time() - begin
-        plan = answer.accepted(given, problem, {*TAKEN, *settings})
-    except answer.Unfit as fault:
-        raise Fault(f"--planner: {planner}: its answer: {fault}") from None
-    except watchdog.PlannerFailure as failure:
-        raise Fault(str(failure)) from None
-    if fault := loan.thorough_fault():
-        raise Fault(f"--planner: {planner}: {fault}")
-    return plan, seconds
 
 
 def _told(

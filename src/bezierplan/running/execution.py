@@ -2,7 +2,6 @@
 
 import itertools
 import logging
-import time
 from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, TypeVar
@@ -11,12 +10,11 @@ import numpy as np
 import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
-from bezierplan.planners import Plan, planner_module, planner_settings
-from bezierplan.running import answer, kernel_cache, rows, watchdog
+from bezierplan.planners import Plan, planner_module
+from bezierplan.running import answer, apart, interface, kernel_cache, rows, watchdog
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
 from bezierplan.running.loans import Loan, lend
-from bezierplan.running.tampering import left_alone
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -51,7 +49,7 @@ def settings_in(chunk: Chunk, condition: Condition) -> dict[str, Any]:
         settings |= (
             chunk.presets[name][str(value).lower()] if name in chunk.presets else {name: value}
         )
-    accepted = planner_settings(planner_module(chunk.planner))
+    accepted = interface.traits(chunk.planner).settings
     return {name: value for name, value in settings.items() if name in accepted}
 
 
@@ -64,6 +62,16 @@ def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Gene
         "common": [layout],
     }
     return seeds.generator(chunk.study, chunk.experiment, *parts[chunk.seeds], repeat)
+
+
+def told_run(chunk: Chunk, condition: Condition, repeat: int) -> str:
+    """How a message about a run's planner begins."""
+    return f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}"
+
+
+def told_chunk(chunk: Chunk) -> str:
+    """How a message about all runs of a chunk begins."""
+    return f"run {chunk.name}: planner {chunk.planner}"
 
 
 def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> Plan:
@@ -83,18 +91,13 @@ def accepted(plan: Any, problem: Problem, chunk: Chunk, condition: Condition, re
             plan, problem, {*TAKEN, *settings_in(chunk, condition), *condition.values}
         )
     except answer.Unfit as fault:
-        raise UnfitAnswer(
-            f"run {run_id(chunk, condition, repeat)}: "
-            f"the answer of planner {chunk.planner}: {fault}"
-        ) from None
+        raise UnfitAnswer(f"{told_run(chunk, condition, repeat)}: its answer: {fault}") from None
 
 
 def refuse_changed(loan: Loan, chunk: Chunk, condition: Condition, repeat: int) -> None:
     """Raise UnfitAnswer if a planner put something else in a workspace that was lent to it."""
     if fault := loan.fault():
-        raise UnfitAnswer(
-            f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}: {fault}"
-        )
+        raise UnfitAnswer(f"{told_run(chunk, condition, repeat)}: {fault}")
 
 
 def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:
@@ -156,7 +159,8 @@ def run_chunk(
     """The runs of a chunk (columns as in `columns`) and, in a separate table because they are never
     reproducible, their times.
 
-    Planners get copies of the problems, and these stay here to judge by. timed_alike: whether a
+    Planners get copies of the problems, and these stay here to judge by; a user's planner gets them
+    in another process (`apart`). timed_alike: whether a
     warm-up makes times comparable, whose runs must repeat themselves. Raises PlannerFailure, naming
     the run, if a planner fails, does not return a valid plan for the problem (`row`), changes a
     workspace, or gives another plan when its first run is repeated.
@@ -165,46 +169,53 @@ def run_chunk(
     blocked = {name: region(problem.workspace) for name, problem in met.items()}
     loans = lend(met)
     planned = chunk.conditions()
-    deterministic = getattr(planner_module(chunk.planner), "deterministic", False)
+    deterministic = interface.traits(chunk.planner).deterministic
     first, last = chunk.repeats
     outcomes, times = {}, {}
-    kernel_cache.meanwhile[:] = _judgements(met, blocked)
+
+    def plan(k: int, repeat: int) -> Any:
+        loan = loans[planned[k].problem]
+        found = run(chunk, planned[k], repeat, loan.problem)
+        refuse_changed(loan, chunk, planned[k], repeat)
+        return found
+
+    def fault() -> str:
+        return next(filter(None, (loan.thorough_fault() for loan in loans.values())), "")
+
     with (
-        left_alone(f"run {chunk.name}: planner {chunk.planner}"),
+        apart.asking(chunk.planner, told_chunk(chunk), plan, fault) as ask,
         watchdog.watching(chunk.time_limit) as watch,
     ):
+        kernel_cache.meanwhile[:] = _judgements(met, blocked)
+
+        def asked(k: int, repeat: int) -> tuple[Any, float, float]:
+            name = told_run(chunk, planned[k], repeat)
+            return timed(partial(ask, name, k, repeat), name, watch)
+
         for n, (k, repeat) in enumerate(
             _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
         ):
             condition = planned[k]
-            problem, loan = met[condition.problem], loans[condition.problem]
-            once = partial(run, chunk, condition, repeat, loan.problem)
             made = partial(
-                row, chunk, condition, repeat, problem=problem, blocked=blocked[condition.problem]
+                row,
+                chunk,
+                condition,
+                repeat,
+                problem=met[condition.problem],
+                blocked=blocked[condition.problem],
             )
-            if not outcomes:
+            if n == 0:
                 # What needs no random numbers must not be changed by others.
-                again = (
-                    partial(run, chunk, condition, repeat + 1, loan.problem)
-                    if deterministic
-                    else once
-                )
-                warm = (
-                    _warm_up(partial(timed, again, chunk, condition, repeat, watch))
-                    if timed_alike
-                    else []
-                )
-            plan, cpu, wall = timed(once, chunk, condition, repeat, watch)
-            refuse_changed(loan, chunk, condition, repeat)
-            outcomes[k, repeat] = made(plan)
+                again = partial(asked, k, repeat + deterministic)
+                warm = _warm_up(again) if timed_alike else []
+            found, cpu, wall = asked(k, repeat)
+            outcomes[k, repeat] = made(found)
             if n == 0:
                 refuse_unrepeatable(map(made, warm), outcomes[k, repeat], chunk, deterministic)
             times[k, repeat] = Times(outcomes[k, repeat]["id"], cpu, wall)._asdict()
             if (n + 1) % _LOGGED == 0:
                 logger.info("%d runs done", n + 1)
-    kernel_cache.meanwhile.clear()
-    if fault := next(filter(None, (loan.thorough_fault() for loan in loans.values())), ""):
-        raise UnfitAnswer(f"run {chunk.name}: planner {chunk.planner}: {fault}")
+        kernel_cache.meanwhile.clear()
     if deterministic:
         for k, repeat in itertools.product(range(len(planned)), range(first + 1, last)):
             outcomes[k, repeat] = outcomes[k, first] | {
@@ -284,21 +295,14 @@ def refuse_unrepeatable(
             )
 
 
-def timed(
-    once: Callable[[], T],
-    chunk: Chunk,
-    condition: Condition,
-    repeat: int,
-    watch: Callable[[str], None],
-) -> tuple[T, float, float]:
+def timed(once: Callable[[], T], name: str, watch: Callable[[str], None]) -> tuple[T, float, float]:
     """What one run returns, its CPU seconds and its wall-clock seconds. Raises PlannerFailure,
-    naming the run, if the planner fails.
+    beginning with the run's name, if the planner fails.
 
     watch: told what is under way, and with an empty text that it is over (`watchdog.watching`).
     """
-    with watchdog.executing(
-        f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}", watch
-    ):
-        cpu, wall = time.process_time(), time.perf_counter()
+    with watchdog.executing(name, watch):
+        before = apart.clock()
         found = once()
-        return found, time.process_time() - cpu, time.perf_counter() - wall
+        cpu, wall = (apart.clock() - before).tolist()
+        return found, cpu, wall

@@ -6,11 +6,12 @@ end or stall the one that it is in.
 """
 
 import inspect
+import json
 import traceback
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import cache, partial
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 from bezierplan import planners
 from bezierplan.planners import planner_module, planner_settings, setting_fault
@@ -60,6 +61,41 @@ def _loaded(planner: str) -> tuple[ModuleType | None, str]:
     except BaseException as error:  # a user's file can fail in any way
         return None, _failed(error, planner)
     return module, interface_fault(module) or ""
+
+
+class Traits(NamedTuple):
+    """What a judge has to know of a planner: the names of its settings, and whether it uses no
+    random numbers.
+    """
+
+    settings: list[str]
+    deterministic: bool
+
+
+@cache
+def traits(planner: str) -> Traits:
+    """Those of a planner, given as a name or the path of a file, which is not executed in this
+    process. Raises PlannerFailure if it cannot be executed. Do not modify the result.
+    """
+    if not planner.endswith(".py"):
+        return _traits(planner)
+    said = watchdog.verdict("when it is imported", partial(_told_traits, planner), LIMIT)
+    try:
+        return Traits(*json.loads(said))
+    except (ValueError, TypeError):
+        raise watchdog.PlannerFailure(f"planner {planner}: {said}") from None
+
+
+def _traits(planner: str) -> Traits:
+    module = planner_module(planner)
+    return Traits([*planner_settings(module)], bool(getattr(module, "deterministic", False)))
+
+
+def _told_traits(planner: str) -> str:
+    try:
+        return json.dumps(_traits(planner))
+    except BaseException as error:  # a user's file can fail in any way
+        return _failed(error, planner)
 
 
 def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:

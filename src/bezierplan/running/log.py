@@ -66,7 +66,9 @@ def job(snakemake: Any) -> Iterator[Any]:
         )
         logging.critical(line)
         watchdog.settle(1)
-        sys.exit(line)
+        # With its end, or what another job says could stand on its line.
+        print(f"{line}\n", end="", file=sys.stderr, flush=True)
+        sys.exit(1)
     except watchdog.Interrupted:
         watchdog.settle(1)
         raise

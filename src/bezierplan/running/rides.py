@@ -6,10 +6,12 @@ A chunk has a policy: the values of a `simulation.policy.Policy` by name. Column
 `columns.Times` and `columns.DriveTimes`.
 """
 
+import itertools
 import json
 import math
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -17,8 +19,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from bezierplan.planners import planner_module
-from bezierplan.running import execution, rows, watchdog
+from bezierplan.planners import Plan, planner_module
+from bezierplan.running import apart, execution, rows, watchdog
 from bezierplan.running import problems as problem_files
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import (
@@ -35,29 +37,71 @@ from bezierplan.running.simulation import cells, hindsight, motion_check, ways
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
-from bezierplan.running.tampering import left_alone
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_json
 
 
-def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
-    """The drive of one run. Raises UnfitAnswer for a plan not valid for what the robot saw."""
-    module, rng = planner_module(chunk.planner), execution.generator(chunk, condition, repeat)
-    settings = execution.settings_in(chunk, condition)
-    policy = Policy.model_construct(**chunk.policy)
+class _Driver:
+    """Makes the plans of a chunk's drives, of one drive after the other.
 
-    def planner(seen: Problem, state: Any) -> tuple:
+    What a planner keeps from plan to plan stays here: the generator of the drive, and what `resume`
+    returned with a plan, by a number.
+    """
+
+    def __init__(self, chunk: Chunk) -> None:
+        self._chunk = chunk
+        self._policy = Policy.model_construct(**chunk.policy)
+
+    def plan(
+        self, condition: Condition, repeat: int, seen: Problem, last: int | None, number: int
+    ) -> Any:
+        """The answer to what the robot sees. number: of this plan in its drive, from 0. last: the
+        number of the plan from which this one starts.
+        """
+        chunk = self._chunk
+        if number == 0:
+            self._rng = execution.generator(chunk, condition, repeat)
+            self._states = {}
+        module, settings = planner_module(chunk.planner), execution.settings_in(chunk, condition)
         loan = lend_once(seen)
-        given = loan.problem, rng
-        plan, state = (
-            module.resume(*given, state, **settings)
-            if policy.warm
-            else (module.plan(*given, **settings), None)
-        )
+        given = loan.problem, self._rng
+        if self._policy.warm:
+            state = self._states.get(last)
+            plan, new = module.resume(*given, state, **settings)
+            self._states = {last: state, number: new}
+        else:
+            plan = module.plan(*given, **settings)
         execution.refuse_changed(loan, chunk, condition, repeat)
-        return execution.accepted(plan, seen, chunk, condition, repeat), state
+        return plan
 
-    return drive(world, problem, policy, planner)
+
+@contextmanager
+def driver(chunk: Chunk) -> Iterator[Callable[..., Any]]:
+    """Yield what makes the plans of a chunk's drives, for `run`."""
+    name = execution.told_chunk(chunk)
+    with apart.asking(chunk.planner, name, _Driver(chunk).plan) as ask:
+        yield ask
+
+
+def run(
+    chunk: Chunk,
+    condition: Condition,
+    repeat: int,
+    problem: Problem,
+    world: World,
+    ask: Callable[..., Any],
+) -> Ride:
+    """The drive of one run. ask: from `driver`. Raises UnfitAnswer for a plan not valid for what
+    the robot saw.
+    """
+    name, numbers = execution.told_run(chunk, condition, repeat), itertools.count()
+
+    def planner(seen: Problem, last: int | None) -> tuple[Plan, int]:
+        number = next(numbers)
+        plan = ask(name, condition, repeat, seen, last, number)
+        return execution.accepted(plan, seen, chunk, condition, repeat), number
+
+    return drive(world, problem, Policy.model_construct(**chunk.policy), planner)
 
 
 def row(
@@ -164,18 +208,18 @@ def run_chunk(
     texts = {name: to_json(worlds[name]) for name in chunk.problems}
     driven = {name: from_json(text) for name, text in texts.items()}
     drives, times, traces = [], [], []
-    with (
-        left_alone(f"run {chunk.name}: planner {chunk.planner}"),
-        watchdog.watching(chunk.time_limit) as watch,
-    ):
+    with driver(chunk) as ask, watchdog.watching(chunk.time_limit) as watch:
         for condition in chunk.conditions():
             for repeat in range(*chunk.repeats):
                 problem, world = problems[condition.problem], worlds[condition.problem]
-                once = partial(run, chunk, condition, repeat, problem, driven[condition.problem])
+                name = execution.told_run(chunk, condition, repeat)
+                once = partial(
+                    run, chunk, condition, repeat, problem, driven[condition.problem], ask
+                )
                 if not drives:
                     # Compiles and loads.
-                    first, *_ = execution.timed(once, chunk, condition, repeat, watch)
-                ride, cpu, wall = execution.timed(once, chunk, condition, repeat, watch)
+                    first, *_ = execution.timed(once, name, watch)
+                ride, cpu, wall = execution.timed(once, name, watch)
                 drive, trace = row(chunk, condition, repeat, ride, problem, world)
                 if not drives:
                     again, _ = row(chunk, condition, repeat, first, problem, world)
@@ -187,8 +231,7 @@ def run_chunk(
     for name, text in texts.items():
         if to_json(driven[name]) != text:
             raise execution.UnfitAnswer(
-                f"run {chunk.name}: planner {chunk.planner}: problem: {name}: world: is another "
-                "after the runs"
+                f"{execution.told_chunk(chunk)}: problem: {name}: world: is another after the runs"
             )
     runs = rows.table(drives, Planned, Outcome, DriveOutcome)
     return runs, rows.table(times, Times, DriveTimes), pa.Table.from_pylist(traces)
@@ -199,7 +242,8 @@ def rerun(
 ) -> tuple[Ride, motion_check.Verdict]:
     """A run's drive, by its condition's name, and the verdict on it: for what no table keeps."""
     named = {each.name: each for each in chunk.conditions()}
-    ride = run(chunk, named[condition], repeat, problem, world)
+    with driver(chunk) as ask:
+        ride = run(chunk, named[condition], repeat, problem, world, ask)
     return ride, motion_check.check(ride.motion, world)
 
 

@@ -45,6 +45,19 @@ def end_with_parent() -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
+def forked() -> int:
+    """Fork this process: its number, and 0 in the child, which ends with this process, leaves the
+    user's interrupt to it, and becomes the parent of whatever its own children leave.
+    """
+    flush()
+    child = os.fork()
+    if child == 0:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        end_with_parent()
+        _adopt()
+    return child
+
+
 def supervise(name: str, report: Callable[[str], None]) -> None:
     """Return in a child of this process; the process itself waits for it and ends as it does.
 
@@ -53,7 +66,7 @@ def supervise(name: str, report: Callable[[str], None]) -> None:
     (`watching`). Then the status is 1. Processes that the child leaves are killed.
     """
     global _pipe
-    _flush()
+    flush()
     heard, ours = os.pipe()
     child = os.fork()
     if child:
@@ -140,7 +153,7 @@ def children() -> frozenset[int]:
         for file in Path("/proc/self/task").glob("*/children")
         for child in file.read_text().split()
     )
-    return frozenset(child for child in found if child != tracker and not _is_dead(child))
+    return frozenset(child for child in found if child != tracker and not is_dead(child))
 
 
 def end_children(spared: frozenset[int] = frozenset()) -> None:
@@ -152,7 +165,7 @@ def end_children(spared: frozenset[int] = frozenset()) -> None:
                 os.waitpid(child, 0)
 
 
-def _flush() -> None:
+def flush() -> None:
     """Print what a fork would print again. A process may have been started without streams."""
     for stream in filter(None, (sys.stdout, sys.stderr)):
         stream.flush()
@@ -166,7 +179,7 @@ def verdict(name: str, judge: Callable[[], str], limit: float) -> str:
     if sys.platform != "linux":  # a fork of a process that has loaded libraries of macOS may crash
         return judge()
     heard, ours = os.pipe()
-    _flush()
+    flush()
     supervisor = os.fork()
     if supervisor == 0:
         _judge(name, judge, limit, lambda line: os.write(ours, line.encode()))
@@ -300,7 +313,8 @@ def status_code(status: int) -> int:
     return code if code >= 0 else 128 - code
 
 
-def _is_dead(process: int) -> bool:
+def is_dead(process: int) -> bool:
+    """Whether a process has ended (Linux only)."""
     try:
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] in "ZX"
     except OSError:
