@@ -2,6 +2,7 @@
 line with status 2.
 """
 
+import contextlib
 import json
 import re
 import shlex
@@ -50,6 +51,44 @@ def test_without_a_planner_it_is_the_rounded_shortest_path(capsys):
     # One over the turning radius of 0.02 times 20 m.
     assert found["curvature"].startswith("at most 2.5")
     assert found["CPU time"].endswith(" s")
+
+
+ASKED = {
+    "nothing more": ([], {}),
+    "a radius": (["--robot-radius", "0.3"], {"robot_radius": 0.3}),
+    "a footprint": (
+        ["--footprint", "[[0.4, 0.2], [-0.4, 0.2], [-0.4, -0.2], [0.4, -0.2]]"],
+        {"footprint": [(0.4, 0.2), (-0.4, 0.2), (-0.4, -0.2), (0.4, -0.2)]},
+    ),
+    "way points": (
+        ["--via", "18,15", "--via", "2,15", "--via-order", "shortest", "--smooth", "continuous"],
+        {"via": [(18.0, 15.0), (2.0, 15.0)], "via_order": "shortest", "smooth": "continuous"},
+    ),
+    "headings": (["--settings", "{start_heading: 1.5}"], {"start_heading": 1.5}),
+    "a planner": (
+        ["--planner", "straight_line", "--seed", "2"],
+        {"method": "straight_line", "seed": 2},
+    ),
+}
+
+
+@pytest.mark.parametrize("asked", ASKED)
+def test_the_command_and_the_function_plan_alike(asked, capsys, tmp_path):
+    words, arguments = ASKED[asked]
+    command = tmp_path / "command.csv"
+    with contextlib.suppress(SystemExit):  # the straight line is not feasible
+        main(["plan", GAPS, *ENDS, *words, "--out", str(command)])
+    told = {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
+    problem = bp.Problem("", bp.read_map(GAPS), (2.0, 10.0), (18.0, 10.0))
+    answer = bp.plan(problem, **arguments)
+    answer.to_csv(tmp_path / "function.csv")
+    assert command.read_bytes() == (tmp_path / "function.csv").read_bytes()
+    settings = [
+        f"{name} {'any' if value is None else value}" for name, value in answer.settings.items()
+    ]
+    assert told["settings"] == (", ".join(settings) or "none")
+    assert told["length"].startswith(f"{answer.length:.6g} m")
+    assert told["feasible"].startswith("yes") == answer.feasible
 
 
 def test_help_has_examples_that_run(capsys, monkeypatch, tmp_path):

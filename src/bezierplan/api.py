@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path as File
 from types import ModuleType
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from bezierplan.geometry.samples import Samples
     from bezierplan.planners import Plan
+    from bezierplan.running.planning import Course, Task
     from bezierplan.running.problems import Placed, Regions
 
 __all__ = bezierplan.__all__
@@ -580,145 +581,134 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    from bezierplan.running import footprints, legs, problems, tours
+    from bezierplan.running import footprints, legs, planning, problems, tours
 
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
-    named, regions = _method(method, problem, settings), problems.remembered()
-    legs.check_planner(_planner_name(*named[:2]), via, strict, smooth)
+    (name, module, preset), regions = _method(method, problem, settings), problems.remembered()
+    planner = _planner_name(name, module)
+    legs.check_planner(planner, via, strict, smooth)
     tours.check_order(via_order, via)
-    served = getattr(named[1], "workspaces", None)
-    if footprint is None:
-        placed = problems.placed(_grown(problem, robot_radius), regions, served)
-        via = tours.ordered(via_order, placed, via, regions)
-        planned = _planned(placed, named, seed, via, smooth, settings, regions)
-    else:
-        outline = outline_of(footprint)
-        footprints.check_map(outline, problem.workspace, robot_radius)
+    outline = None if footprint is None else outline_of(footprint)
+    footprints.check_map(outline, problem.workspace, robot_radius)
+    chosen = preset | settings
 
-        def attempt(
-            radius: float, first: tuple[Placed, Answer] | None
-        ) -> tuple[Placed, Answer] | None:
-            try:
-                placed = problems.placed(_grown(problem, radius), regions, served)
-                # Larger discs keep the order of the smallest one, by whose map and shortest path
-                # all are judged.
-                order = first[1].via if first else tours.ordered(via_order, placed, via, regions)
-                legs.legs(placed, order, regions)
-            except ValueError:  # no room for a disc that large
-                if first is None:
-                    raise
-                return None
-            answer = _planned(placed, named, seed, order, smooth, settings, regions, outline, first)
-            return None if first and answer.path is None else (placed, answer)
+    def place(radius: float, order: Via | None) -> planning.Course:
+        grown = _grown(problem, robot_radius if outline is None else radius)
+        placed = problems.placed(grown, regions, getattr(module, "workspaces", None))
+        _check_settings(name, module, chosen, placed.near)
+        if order is None:
+            order = tours.ordered(via_order, placed, via, regions)
+        return planning.course(placed, order, regions)
 
-        _, planned = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
+    # A user's file is executed in this process, as all that a program imports.
+    known = planner if planner in legs.TURNING else name.removesuffix(".py")
+    task = planning.Task(f"planner {name}", known, module.plan, chosen, smooth, seed)
+    answer, _ = answered(task, outline, place, regions)
+    answer = replace(answer, method=name)
     if strict:
-        check_strict(planned, smooth, planned.settings, planned.turning_radius, planned.offset)
-    return planned
+        check_strict(answer, smooth)
+    return answer
 
 
-def check_strict(
-    judged: Judged, smooth: str, settings: Mapping[str, Any], turning_radius: float, offset: float
-) -> None:
+def answered(
+    task: Task,
+    outline: Footprint | None,
+    place: Callable[[float, Via | None], Course],
+    regions: Regions,
+) -> tuple[Answer, float]:
+    """The answer to a task, and the CPU seconds that the planner took.
+
+    outline: the robot's footprint, for which a path is planned for discs until the footprint is
+    free along it. place: the course on the map for a disc of a radius, of which 0 is without an
+    outline any, through way points in an order, or if that is None, in the order that it chooses;
+    larger discs keep it. All are judged by the first one's map and shortest path. Raises ValueError
+    as `place` does, and, beginning with the task's name, if the planner fails or the verdict on its
+    path is impossible.
+    """
+    from bezierplan.running import footprints, planning
+    from bezierplan.running.watchdog import PlannerFailure
+
+    def attempt(radius: float, first: tuple | None) -> tuple[Course, Answer, float] | None:
+        try:
+            course = place(radius, first[0].via if first else None)
+        except ValueError:  # no room for a disc that large
+            if first is None:
+                raise
+            return None
+        try:
+            plan, seconds = planning.planned(task, course)
+        except PlannerFailure as failure:
+            raise ValueError(str(failure)) from failure
+        if first and plan.path is None:
+            return None
+        home = first[0] if first else course
+        return course, _judged(task, course, plan, home, regions, outline), seconds
+
+    if outline is None:
+        found = attempt(0.0, None)
+    else:
+        found = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
+    _, answer, seconds = found
+    return answer, seconds
+
+
+def check_strict(answer: Answer, smooth: str) -> None:
     """Raise ValueError, beginning with a name, for a path that is not all that was asked for.
-
-    smooth and settings: what was asked for. turning_radius, offset: what is kept of them, as in
-    `Answer`.
+    smooth: as it was asked for.
     """
     from bezierplan.running import footprints, legs
 
-    unit = judged.problem.workspace.unit
-    footprints.check_held(judged.footprint, judged.feasible)
-    legs.check_continuous(smooth, judged.curvature_jump, judged.curvature_bound, unit)
-    legs.check_kept(settings["turning_radius"], turning_radius, unit)
-    legs.check_offset(settings.get("offset"), offset, unit)
+    unit, settings = answer.problem.workspace.unit, answer.settings
+    footprints.check_held(answer.footprint, answer.feasible)
+    legs.check_continuous(smooth, answer.curvature_jump, answer.curvature_bound, unit)
+    legs.check_kept(settings["turning_radius"], answer.turning_radius, unit)
+    legs.check_offset(settings.get("offset"), answer.offset, unit)
 
 
-def _planned(
-    problem: Placed,
-    named: tuple[str, Any, dict[str, Any]],
-    seed: int,
-    via: Via,
-    smooth: str,
-    settings: Mapping[str, Any],
+def _judged(
+    task: Task,
+    course: Course,
+    plan: Plan,
+    home: Course,
     regions: Regions,
-    footprint: Footprint | None = None,
-    judged_as: tuple[Placed, Answer] | None = None,
+    outline: Footprint | None,
 ) -> Answer:
-    """The answer of a method, given by name, module and settings, to a problem on a map for the
-    robot's centre.
-
-    judged_as: a problem and its answer, on the map and by the shortest path of which this one is
-    judged, if not by its own.
+    """The answer with its verdict. home: the course on whose map and by whose shortest path the
+    path is judged.
     """
-    from bezierplan.running import answer as door
+    from bezierplan.geometry import shortest_paths
     from bezierplan.running import legs
-    from bezierplan.running.columns import TAKEN
     from bezierplan.workspaces.grown import grown_of
 
-    name, module, preset = named
-    chosen = preset | settings
-    _check_settings(name, module, chosen, problem.near)
-    planner, given = _planner_name(name, module), legs.inward(chosen, problem.frame)
-    parts, blocked = legs.legs(problem, via, regions), regions(problem.near.workspace)
-    bounds = legs.shortest(parts, blocked)
-    if planner in legs.TURNING:
-        answer = legs.solved(planner, parts, bounds, blocked, given, smooth)
-    else:
-        answer = legs.joined([_answered(part, name, module, seed, given) for part in parts])
+    shortest, grown = home.shortest, grown_of(course.problem.near.workspace)
     try:
-        whole = parts[0]._replace(target=parts[-1].target)
-        answer = door.accepted(answer, whole, {*TAKEN, *chosen})
-    except door.Unfit as fault:
-        raise ValueError(f"the answer of planner {name}: {fault}") from None
-    grown = grown_of(problem.near.workspace)
-    home, shortest = (
-        (judged_as[0], judged_as[1].shortest) if judged_as else (problem, legs.whole(bounds).length)
-    )
+        judged = verdict(home.problem, plan.path, shortest.length, regions, course.via, outline)
+    except ValueError as fault:
+        raise ValueError(f"{task.name}: {fault}") from None
+    if judged["feasible"] and judged["length"] < shortest_paths.least_length(shortest):
+        raise ValueError(
+            f"{task.name}: its path is {judged['length']:.12g} long and feasible, but no free path "
+            f"is shorter than {shortest.length:.12g}: the checker or the bound is wrong"
+        )
     return Answer(
-        **verdict(home, answer.path, shortest, regions, via, footprint),
-        turning_radius=legs.kept(planner, answer, chosen),
+        **judged,
+        turning_radius=legs.kept(task.planner, plan, task.settings),
         planned_radius=grown.radius if grown else 0.0,
-        offset=answer.extra.get("least_offset", math.nan),
-        method=name,
-        settings=chosen,
-        claimed_feasible=answer.claimed_feasible,
-        objective=answer.objective,
-        evaluations=answer.evaluations,
-        history=answer.history,
-        stop=answer.stop,
+        offset=plan.extra.get("least_offset", math.nan),
+        method=task.planner,
+        settings=task.settings,
+        claimed_feasible=plan.claimed_feasible,
+        objective=plan.objective,
+        evaluations=plan.evaluations,
+        history=plan.history,
+        stop=plan.stop,
     )
 
 
 def _planner_name(name: str, module: Any) -> str:
     return getattr(module, "__name__", name).removeprefix("bezierplan.planners.")
-
-
-def _answered(
-    problem: Problem, name: str, module: Any, seed: int, settings: Mapping[str, Any]
-) -> Plan:
-    """The answer of any planner, which gets a copy of the problem."""
-    from bezierplan.running import answer as door
-    from bezierplan.running.columns import TAKEN
-    from bezierplan.running.loans import lend
-    from bezierplan.running.tampering import left_alone
-    from bezierplan.running.watchdog import PlannerFailure
-
-    loan = lend({problem.name: problem})[problem.name]
-    try:
-        with left_alone(f"planner {name}"):
-            answered = module.plan(loan.problem, np.random.default_rng(seed), **settings)
-    except PlannerFailure as failure:
-        raise ValueError(str(failure)) from None
-    try:
-        plan = door.accepted(answered, problem, {*TAKEN, *settings})
-    except door.Unfit as fault:
-        raise ValueError(f"the answer of planner {name}: {fault}") from None
-    if fault := loan.thorough_fault():
-        raise ValueError(f"planner {name}: {fault}")
-    return plan
 
 
 def _check_problem(problem: Problem) -> None:

@@ -5,31 +5,18 @@ import re
 import sys
 import tempfile
 from argparse import Action, ArgumentParser, Namespace, RawDescriptionHelpFormatter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path as File
-from types import ModuleType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any
 
 import numpy as np
 
 from bezierplan import api
-from bezierplan.geometry import checker, samples, shortest_paths
+from bezierplan.geometry import checker, samples
 from bezierplan.places import TREE
-from bezierplan.planners import Plan, known_planners, planner_module
-from bezierplan.running import (
-    answer,
-    apart,
-    footprints,
-    interface,
-    legs,
-    problems,
-    tours,
-    watchdog,
-)
-from bezierplan.running.columns import TAKEN
-from bezierplan.running.loans import lend
+from bezierplan.planners import known_planners, planner_module
+from bezierplan.running import footprints, interface, legs, planning, problems, tours
 from bezierplan.running.problems import Placed, Regions
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
@@ -37,15 +24,10 @@ from bezierplan.schema.model import is_line
 from bezierplan.workspaces import map_files, robot, ros
 from bezierplan.workspaces.footprint import Footprint, footprint
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import grown_of, original
+from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.text_file import is_count
-
-T = TypeVar("T")
-
-# The most CPU seconds of a planner that is called a second time.
-_LONG = 2.0
 
 PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
@@ -359,53 +341,46 @@ def _plan(arguments: Namespace) -> None:
     interface.check_settings(module, settings, "--settings")
     if hasattr(module, "serves"):
         interface.asked(module.serves, f"--planner: {planner}", problem.near)
-    task = _Task(planner, module, settings, arguments.seed, via, arguments.smooth, regions)
-    solution = _solution(task, problem)
-    judged = _judged(task, problem, solution, solution.bound, outline)
-    if outline:
+    task = planning.Task(
+        f"--planner: {planner}",
+        planner,
+        module.plan,
+        settings,
+        arguments.smooth,
+        arguments.seed,
+        timed=True,
+    )
 
-        def attempt(radius: float, first: Any) -> tuple[_Solution, api.Judged] | None:
-            if first is None:
-                return solution, judged
-            try:
-                wide = _problem(
-                    arguments,
-                    described,
-                    planner,
-                    places,
-                    robot.grow(original(home), radius),
-                    regions,
-                )
-                found = _solution(task, wide)
-            except ValueError:  # no room for a disc that large
-                return None
-            return found, _judged(task, problem, found, solution.bound, outline)
+    def place(radius: float, order: Any) -> planning.Course:
+        placed = problem
+        if order is not None:
+            grown = robot.grow(original(home), radius)
+            placed = _problem(arguments, described, planner, places, grown, regions)
+        course = planning.course(placed, via, regions)
+        _check_reached(course)
+        return course
 
-        solution, judged = footprints.first_that_holds(
-            outline, attempt, lambda each: each[1].feasible
-        )
-    kept = legs.kept(planner, solution.plan, settings)
+    answer, seconds = api.answered(task, outline, place, regions)
     if arguments.strict:
         try:
-            offset = solution.plan.extra.get("least_offset", math.nan)
             with _as_options():
-                api.check_strict(judged, arguments.smooth, settings, kept, offset)
+                api.check_strict(answer, arguments.smooth)
         except ValueError as told:
             raise NoPath(str(told)) from None
-    if arguments.out and judged.path:  # what cannot be written is told alone
+    if arguments.out and answer.path:  # what cannot be written is told alone
         try:
             with _as_options():
-                _write(arguments, judged)
+                _write(arguments, answer)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(arguments.out, error) from None
         except ValueError as told:  # such as a speed for a path with corners
             raise NoPath(str(told)) from None
-    for name, text in _told(judged, task, solution, kept):
+    for name, text in _told(answer, arguments.smooth, seconds):
         print(f"{name:16}{text}")
-    if judged.path is None:
+    if answer.path is None:
         unwritten = f"; {arguments.out} is not written" if arguments.out else ""
         raise NoPath(f"--planner: {planner}: found no path{unwritten}")
-    if not judged.feasible:
+    if not answer.feasible:
         raise NoPath(f"--planner: {planner}: its path is not feasible")
 
 
@@ -418,125 +393,14 @@ def _for_disc_within(home: Workspace, outline: Footprint) -> Workspace:
         raise Fault(f"--footprint: the circle within it, of radius {told}") from None
 
 
-class _Task(NamedTuple):
-    """What to plan with: a planner with its settings, way points, how smooth, and the
-    blocked regions of maps.
-    """
-
-    planner: str
-    module: ModuleType
-    settings: dict[str, Any]
-    seed: int
-    via: list[tuple[float, float]]
-    smooth: str
-    regions: Regions
-
-
-class _Solution(NamedTuple):
-    """A planner's answer, the CPU seconds that it took, the exact shortest path, and the radius of
-    the disc for which both are.
-    """
-
-    plan: Plan
-    seconds: float
-    bound: shortest_paths.Bound
-    radius: float
-
-
-def _solution(task: _Task, problem: Placed) -> _Solution:
-    """The planner's answer to a problem. Raises NoPath without a free way, and Fault if the planner
-    fails.
-    """
-    home, settings = problem.near.workspace, legs.inward(task.settings, problem.frame)
-    parts, blocked = legs.legs(problem, task.via, task.regions), task.regions(home)
-    bounds = legs.shortest(parts, blocked)
-    bound = legs.whole(bounds)
-    if not np.isfinite(bound.length):
-        x, y = problem.world.target
+def _check_reached(course: planning.Course) -> None:
+    """Raise NoPath for a target to which no free way leads."""
+    if not np.isfinite(course.shortest.length):
+        x, y = course.problem.world.target
         raise NoPath(
             f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
             "that can be reached"
         )
-    if task.planner in legs.TURNING:
-        solved = partial(legs.solved, task.planner, parts, bounds, blocked, settings, task.smooth)
-        plan, seconds = _second(solved)
-    else:
-        plan, seconds = _answered(task, parts, settings)
-    grown = grown_of(home)
-    return _Solution(plan, seconds, bound, grown.radius if grown else 0.0)
-
-
-def _answered(task: _Task, parts: list[Problem], settings: dict[str, Any]) -> tuple[Plan, float]:
-    """A planner's answer to all legs, through the door of all answers, and its CPU seconds. Raises
-    Fault, in one line, however the planner fails.
-    """
-    name, loans = (
-        f"--planner: {task.planner}",
-        [lend({part.name: part})[part.name] for part in parts],
-    )
-
-    def planned(leg: int) -> Any:
-        rng = np.random.default_rng(task.seed)
-        return task.module.plan(loans[leg].problem, rng, **settings)
-
-    def fault() -> str:
-        return next(filter(None, (loan.thorough_fault() for loan in loans)), "")
-
-    try:
-        with (
-            watchdog.watching(None) as watch,
-            apart.asking(task.planner, name, planned, fault) as ask,
-            watchdog.executing(name, watch),
-        ):
-            answers, seconds = _second(lambda: [ask(name, leg) for leg in range(len(parts))])
-        taken = {*TAKEN, *settings}
-        return legs.joined(
-            [answer.accepted(given, part, taken) for given, part in zip(answers, parts)]
-        ), seconds
-    except answer.Unfit as unfit:
-        raise Fault(f"{name}: its answer: {unfit}") from None
-    except watchdog.PlannerFailure as failure:
-        raise Fault(str(failure)) from None
-
-
-def _second(once: Callable[[], T]) -> tuple[T, float]:
-    """What a second call returns, and its CPU seconds: the first one also loads compiled code. Of
-    the first one, if that took long.
-    """
-    for _ in range(2):
-        before = apart.clock()
-        found = once()
-        seconds = float((apart.clock() - before)[0])
-        if seconds > _LONG:
-            break
-    return found, seconds
-
-
-def _judged(
-    task: _Task,
-    problem: Placed,
-    solution: _Solution,
-    bound: shortest_paths.Bound,
-    outline: Footprint | None,
-) -> api.Judged:
-    """The verdict on a path, beside the exact shortest one. Raises Fault if the two contradict each
-    other.
-    """
-    try:
-        judged = api.Judged(
-            **api.verdict(
-                problem, solution.plan.path, bound.length, task.regions, task.via, outline
-            )
-        )
-    except ValueError as error:
-        raise Fault(f"--planner: {task.planner}: {error}") from None
-    if judged.feasible and judged.length < shortest_paths.least_length(bound):
-        raise Fault(
-            f"--planner: {task.planner}: its path is {judged.length:.12g} long and feasible, but "
-            "no free path is shorter than"
-            f" {bound.length:.12g}: the checker or the bound is wrong"
-        )
-    return judged
 
 
 def _footprint(arguments: Namespace) -> Footprint | None:
@@ -634,64 +498,62 @@ def _unwritable(out: File, error: OSError) -> Fault:
     return Fault(f"--out: {out}: cannot be written ({error.strerror or type(error).__name__})")
 
 
-def _told(
-    judged: api.Judged, task: _Task, solution: _Solution, kept: float
-) -> list[tuple[str, str]]:
-    """The names and values to print."""
-    home, planner, settings, seconds = (
-        judged.problem.workspace,
-        task.planner,
-        task.settings,
-        solution.seconds,
-    )
+def _told(answer: api.Answer, smooth: str, seconds: float) -> list[tuple[str, str]]:
+    """The names and values to print. seconds: of CPU time that the planner took."""
+    home, planner, settings = answer.problem.workspace, answer.method, answer.settings
+    searched = f"in a search of {answer.evaluations:,}"
     unit = home.unit
     told = ", ".join(
         f"{name} {'any' if value is None else value}" for name, value in settings.items()
     )
     lines = [("planner", planner), ("settings", told or "none")]
-    if judged.footprint:
-        within, around = judged.footprint.inscribed, judged.footprint.circumscribed
+    if answer.footprint:
+        within, around = answer.footprint.inscribed, answer.footprint.circumscribed
         lines.append(
             (
                 "footprint",
-                f"{len(judged.footprint.corners)} corners, circles of {within:.6g} {unit} within "
+                f"{len(answer.footprint.corners)} corners, circles of {within:.6g} {unit} within "
                 f"and {around:.6g} around it",
             )
         )
-        lines.append(("planned for", f"a disc of {solution.radius:.6g} {unit}"))
-    elif judged.robot_radius:
+        lines.append(("planned for", f"a disc of {answer.planned_radius:.6g} {unit}"))
+    elif answer.robot_radius:
         whole = (
             f", by whole cells of {home.cell:g} {unit}"
             if isinstance(home, Grid) and not home.drawn
             else ""
         )
-        lines.append(("robot radius", f"{judged.robot_radius:g} {unit}{whole}"))
-    lines.append(("shortest path", f"{judged.shortest:.6g} {unit}"))
-    if len(judged.via) > 1:
-        order = " ".join(f"{x:.12g},{y:.12g}" for x, y in judged.via)
+        lines.append(("robot radius", f"{answer.robot_radius:g} {unit}{whole}"))
+    lines.append(("shortest path", f"{answer.shortest:.6g} {unit}"))
+    if len(answer.via) > 1:
+        order = " ".join(f"{x:.12g},{y:.12g}" for x, y in answer.via)
         lines.append(("way points", order))
-    if judged.path is None:
-        told = solution.plan.stop
+    if answer.path is None:
+        told = answer.stop
         if planner in legs.TURNING:
-            told += f" in a search of {solution.plan.evaluations:,} places"
+            told += f" {searched} places"
         return [*lines, ("path", f"none ({told})"), ("CPU time", f"{seconds:.3g} s")]
-    gap = _told_number(100 * abs(judged.gap), 3)
-    side = "below" if judged.gap < 0 and gap != "0" else "above"
-    lines.append(("length", f"{judged.length:.6g} {unit}, {gap} % {side} the shortest path"))
-    lines.append(("curvature", _told_curvature(judged, task.smooth)))
+    gap = _told_number(100 * abs(answer.gap), 3)
+    side = "below" if answer.gap < 0 and gap != "0" else "above"
+    lines.append(("length", f"{answer.length:.6g} {unit}, {gap} % {side} the shortest path"))
+    lines.append(("curvature", _told_curvature(answer, smooth)))
     if planner in legs.TURNING:
         asked = settings["turning_radius"]
+        kept = answer.turning_radius
         met = kept >= asked * (1 - 1e-9)
-        searched = f"in a search of {solution.plan.evaluations:,} paths and places"
         lines.append(
             (
                 "turning radius",
                 f"{asked:.6g} {unit} asked"
-                + (" and kept" if met else f", {kept:.6g} {unit} kept: no more {searched}"),
+                + (
+                    " and kept"
+                    if met
+                    else f", {kept:.6g} {unit} kept: no more {searched} paths and places"
+                ),
             )
         )
-        if "least_offset" in solution.plan.extra:
-            wish, least = settings["offset"], solution.plan.extra["least_offset"]
+        if not math.isnan(answer.offset):
+            wish, least = settings["offset"], answer.offset
             lines.append(
                 (
                     "offset",
@@ -706,14 +568,14 @@ def _told(
     lines.append(
         (
             "clearance",
-            f"{_told_number(judged.clearance, 6)} "
-            f"{unit}{' of the footprint' if judged.footprint else ''}",
+            f"{_told_number(answer.clearance, 6)} "
+            f"{unit}{' of the footprint' if answer.footprint else ''}",
         )
     )
-    if judged.feasible:
+    if answer.feasible:
         lines.append(("feasible", "yes"))
-    elif judged.footprint and not judged.depth:
-        x, y = judged.collision
+    elif answer.footprint and not answer.depth:
+        x, y = answer.collision
         lines.append(
             (
                 "feasible",
@@ -722,14 +584,14 @@ def _told(
             )
         )
     else:
-        x, y = judged.collision
+        x, y = answer.collision
         what = (
             "comes closer to an obstacle than the robot's radius"
-            if judged.clearance > 0
+            if answer.clearance > 0
             else "enters an obstacle"
         )
         lines.append(
-            ("feasible", f"no: {what} at {x:.6g},{y:.6g}, at most {judged.depth:.6g} {unit} deep")
+            ("feasible", f"no: {what} at {x:.6g},{y:.6g}, at most {answer.depth:.6g} {unit} deep")
         )
     return [*lines, ("CPU time", f"{seconds:.3g} s")]
 

@@ -16,6 +16,7 @@ from bezierplan.running import problems
 from bezierplan.running.problems import Placed, Regions
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.frames import Frame
+from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
@@ -30,7 +31,7 @@ CHAINED = (*TURNING, "shortest_path")
 """Planners whose paths can be joined: chains of pieces."""
 
 SHARE = 0.02
-"""The turning radius without a wish, as a share of the map's longer side."""
+"""The turning radius without a wish, as a share of the longer side of the map itself."""
 
 # Two directions that differ by less, in radians, are no corner.
 _STRAIGHT = 1e-8
@@ -78,8 +79,10 @@ def check_planner(
 
 
 def preset(planner: str, workspace: Workspace) -> dict[str, Any]:
-    """Settings of a planner with a turning radius where none are given."""
-    x_low, x_high, y_low, y_high = workspace.bounds
+    """Settings of a planner with a turning radius where none are given, the same for a map that has
+    grown by a robot's radius.
+    """
+    x_low, x_high, y_low, y_high = original(workspace).bounds
     radius = {"turning_radius": SHARE * max(x_high - x_low, y_high - y_low)}
     return radius | ({"offset": 0.0} if planner == ROUNDED else dict.fromkeys(HEADINGS))
 

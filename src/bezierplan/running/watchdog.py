@@ -118,7 +118,8 @@ def executing(name: str, watch: Callable[[str], None]) -> Iterator[None]:
     before = children()
     watch(name)
     try:
-        yield
+        with contextlib.chdir("."):  # one that leaves this folder would take files along
+            yield
     except (Interrupted, PlannerFailure):
         raise
     # Code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included.
