@@ -49,6 +49,13 @@ def plan(problem, rng, *, tries: Annotated[int, Range(1)]):
     return Plan(best, history[-1], best is not None, tries, np.array(history), "tries", {})
 """
 
+RESUMES = """
+
+def resume(problem, rng, last, *, tries: Annotated[int, Range(1)]):
+    made = (last or 0) + 1
+    return plan(problem, rng, tries=tries)._replace(evaluations=made), made
+"""
+
 EXPERIMENTS = """
 title: My planner in a room whose door moves
 methods:
@@ -121,6 +128,15 @@ def test_equal_seeds_give_equal_drives(tmp_path):
     stored = one[0].to_pylist()[1]
     found = replay.replay(stored["id"], {"mystudy": study})
     assert replay.equal(found.runs.iloc[0], stored)
+
+
+def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
+    """Each plan says by what it kept how many came before it; one without a path keeps nothing."""
+    home = written(tmp_path, "start: centre", "start: centre, warm: true")
+    with (home / "walk.py").open("a") as file:
+        file.write(RESUMES)
+    for run in chunk(reading.load([home])["mystudy"])[0].to_pylist():
+        assert run["evaluations"] > run["replans"] + 1 > 1
 
 
 def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path):

@@ -96,7 +96,7 @@ def _asked(pipe: Connection, child: int, run: str, given: tuple | None) -> Plan 
                 raise EOFError
         said = json.loads(pipe.recv_bytes())
         if _FAILURE not in said:
-            found, took = _unpacked(**said), np.array(said["took"])
+            plan, took = _unpacked(**said), np.array(said["took"])
     except (EOFError, OSError):
         status = os.waitpid(child, 0)[1]
         raise PlannerFailure(f"{run}: {watchdog.how_ended(status)}") from None
@@ -107,7 +107,7 @@ def _asked(pipe: Connection, child: int, run: str, given: tuple | None) -> Plan 
         failure.add_note(said[_ACCOUNT])
         raise failure
     _ahead[:] += took - (_own_clock() - before)
-    return found
+    return plan
 
 
 # --------------------------------------------------------------------------------------------------

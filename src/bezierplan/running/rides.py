@@ -64,13 +64,12 @@ class _Driver:
             self._states = {}
         module, settings = planner_module(chunk.planner), execution.settings_in(chunk, condition)
         loan = lend_once(seen)
-        given = loan.problem, self._rng
         if self._policy.warm:
             state = self._states.get(last)
-            plan, new = module.resume(*given, state, **settings)
+            plan, new = module.resume(loan.problem, self._rng, state, **settings)
             self._states = {last: state, number: new}
         else:
-            plan = module.plan(*given, **settings)
+            plan = module.plan(loan.problem, self._rng, **settings)
         execution.refuse_changed(loan, chunk, condition, repeat)
         return plan
 
