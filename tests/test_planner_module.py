@@ -149,7 +149,7 @@ def test_command_whose_planner_exits_says_so(command, place, tmp_path):
     (tmp_path / "ends.py").write_text(source)
     words = [sys.executable, "-m", "bezierplan", *COMMANDS[command]]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == (2 if place == "import" else 1)
+    assert done.returncode == (2 if command == "plan" else 1)
     (line,) = done.stderr.splitlines()
     assert "ends.py" in line
     assert line.endswith("its process ended itself with exit status 0, before it was done")

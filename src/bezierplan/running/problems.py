@@ -274,9 +274,9 @@ def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -
 
 def read(file: str) -> dict[str, Problem]:
     """The problems of a file, by name, in file order; those in one workspace share its object."""
-    import pyarrow.parquet as parquet
+    from bezierplan.running import rows
 
-    table = parquet.read_table(file).to_pylist()
+    table = rows.read_alone(file).to_pylist()
     drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
     return {
         row["problem"]: Problem(

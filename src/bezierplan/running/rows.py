@@ -4,6 +4,7 @@ of their own rows, so that a later change of any column shows.
 
 import hashlib
 import json
+from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
@@ -62,6 +63,13 @@ def write(table: pa.Table, file: str) -> None:
     """Write a table of runs with the digest of its rows."""
     metadata = {**(table.schema.metadata or {}), _DIGEST: rows_digest(table).encode()}
     parquet.write_table(table.replace_schema_metadata(metadata), file)
+
+
+def read_alone(file: str, columns: list[str] | None = None) -> pa.Table:
+    """A small table, read without pyarrow's threads, so that this process can be forked."""
+    content = pa.BufferReader(Path(file).read_bytes())
+    with parquet.ParquetFile(content, pre_buffer=False) as source:
+        return source.read(columns, use_threads=False)
 
 
 def kept_digest(table: pa.Table) -> str | None:

@@ -10,6 +10,7 @@ import pyarrow.parquet as parquet
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems as problem_files
+from bezierplan.running import rows
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import worlds
 from bezierplan.workspaces.grid import Grid
@@ -61,7 +62,8 @@ def write(
 
 def read(file: str) -> dict[str, World]:
     """The worlds of a file of problems, by problem; empty if nothing moves there."""
-    if "world" not in parquet.read_schema(file).names:
+    table = rows.read_alone(file)
+    if "world" not in table.column_names:
         return {}
-    table = parquet.read_table(file, columns=["problem", "world"]).to_pydict()
-    return {name: worlds.from_json(text) for name, text in zip(table["problem"], table["world"])}
+    made = zip(table["problem"].to_pylist(), table["world"].to_pylist())
+    return {name: worlds.from_json(text) for name, text in made}
