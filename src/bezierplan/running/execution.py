@@ -159,11 +159,11 @@ def run_chunk(
     """The runs of a chunk (columns as in `columns`) and, in a separate table because they are never
     reproducible, their times.
 
-    Planners get copies of the problems, and these stay here to judge by; a user's planner gets them
-    in another process (`apart`). timed_alike: whether a
-    warm-up makes times comparable, whose runs must repeat themselves. Raises PlannerFailure, naming
-    the run, if a planner fails, does not return a valid plan for the problem (`row`), changes a
-    workspace, or gives another plan when its first run is repeated.
+    Planners get copies of the problems, a user's planner in another process (`apart`), and these
+    stay here to judge by. timed_alike: whether a warm-up makes times comparable, whose runs must
+    repeat themselves. Raises PlannerFailure, naming the run, if a planner fails, does not return a
+    valid plan for the problem (`row`), changes a workspace, or gives another plan when its first
+    run is repeated.
     """
     met = {name: problem for name, problem in problems.items() if name in chunk.problems}
     blocked = {name: region(problem.workspace) for name, problem in met.items()}
