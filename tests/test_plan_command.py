@@ -3,6 +3,7 @@ line with status 2.
 """
 
 import contextlib
+import importlib.util
 import json
 import re
 import shlex
@@ -22,6 +23,17 @@ GAPS = str(BENCHMARK_MAPS / "gaps.geojson")
 CELLS = str(BENCHMARK_MAPS.parents[1] / "song2016" / "workspaces" / "figure2.txt")
 ENDS = ["--start", "2,10", "--target", "18,10"]
 SHORTEST = 29.565803670
+
+
+# Through the middle of each gap.
+OWN = """
+import numpy as np
+from bezierplan.planners import Path, Plan
+
+def plan(problem, rng):
+    way = [problem.start, (5.0, 15.0), (10.0, 5.0), (15.0, 15.0), problem.target]
+    return Plan.of_one(Path("polyline", np.array(way)), 1.0, "told")
+"""
 
 
 def planned(capsys, *words):
@@ -66,8 +78,12 @@ ASKED = {
     ),
     "headings": (["--settings", "{start_heading: 1.5}"], {"start_heading": 1.5}),
     "a planner": (
-        ["--planner", "straight_line", "--seed", "2"],
-        {"method": "straight_line", "seed": 2},
+        ["--planner", "chaotic_pso", "--seed", "2"],
+        {"method": "chaotic_pso", "seed": 2},
+    ),
+    "a planner of cells": (
+        ["--planner", "binary_genetic", "--cell", "1.25"],
+        {"method": "binary_genetic"},
     ),
 }
 
@@ -79,7 +95,8 @@ def test_the_command_and_the_function_plan_alike(asked, capsys, tmp_path):
     with contextlib.suppress(SystemExit):  # the straight line is not feasible
         main(["plan", GAPS, *ENDS, *words, "--out", str(command)])
     told = {line[:16].strip(): line[16:] for line in capsys.readouterr().out.splitlines()}
-    problem = bp.Problem("", bp.read_map(GAPS), (2.0, 10.0), (18.0, 10.0))
+    cell = 1.25 if "--cell" in words else None
+    problem = bp.Problem("", bp.read_map(GAPS, cell=cell), (2.0, 10.0), (18.0, 10.0))
     answer = bp.plan(problem, **arguments)
     answer.to_csv(tmp_path / "function.csv")
     assert command.read_bytes() == (tmp_path / "function.csv").read_bytes()
@@ -89,6 +106,23 @@ def test_the_command_and_the_function_plan_alike(asked, capsys, tmp_path):
     assert told["settings"] == (", ".join(settings) or "none")
     assert told["length"].startswith(f"{answer.length:.6g} m")
     assert told["feasible"].startswith("yes") == answer.feasible
+
+
+@pytest.mark.parametrize("name", ["rounded_shortest_path", "dubins_search"])
+def test_a_planner_of_one_s_own_may_have_any_name(name, capsys, tmp_path):
+    """That of one of this package, whose settings and way points it does not have."""
+    file = tmp_path / f"{name}.py"
+    file.write_text(OWN)
+    assert planned(capsys, GAPS, *ENDS, "--planner", file)["length"].startswith("34.0226 m")
+    spec = importlib.util.spec_from_file_location(name, file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.plan.__name__ = name
+    problem = bp.Problem("", bp.read_map(GAPS), (2.0, 10.0), (18.0, 10.0))
+    for method in (str(file), module, module.plan):
+        assert bp.plan(problem, method).length == pytest.approx(2 * (34**0.5 + 125**0.5))
+        with pytest.raises(ValueError, match="via: only for"):
+            bp.plan(problem, method, via=[(2.0, 15.0)])
 
 
 def test_help_has_examples_that_run(capsys, monkeypatch, tmp_path):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path as File
 from types import ModuleType
@@ -524,8 +524,8 @@ def plan(
     problem : Problem
     method : str, module or callable, optional
         A study's method such as ``"song2016/smooth"``, whose settings are the defaults; a planner
-        such as ``"prm"``, with the settings of the first study that uses it; the path of a
-        planner's file; or a planner's module or its function ``plan``. Without it, the exact
+        such as ``"prm"``, with the settings of the first study, by name, that uses it; the path of
+        a planner's file; or a planner's module or its function ``plan``. Without it, the exact
         shortest path with rounded corners.
     seed : int
         Of the random numbers.
@@ -587,26 +587,24 @@ def plan(
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
     (name, module, preset), regions = _method(method, problem, settings), problems.remembered()
-    planner = _planner_name(name, module)
-    legs.check_planner(planner, via, strict, smooth)
+    planner = _own_name(module)
+    legs.check_planner(planner, planner or name, via, strict, smooth)
     tours.check_order(via_order, via)
     outline = None if footprint is None else outline_of(footprint)
     footprints.check_map(outline, problem.workspace, robot_radius)
     chosen = preset | settings
 
-    def place(radius: float, order: Via | None) -> planning.Course:
+    def place(radius: float, first: Course | None) -> Course:
         grown = _grown(problem, robot_radius if outline is None else radius)
         placed = problems.placed(grown, regions, getattr(module, "workspaces", None))
-        _check_settings(name, module, chosen, placed.near)
-        if order is None:
-            order = tours.ordered(via_order, placed, via, regions)
+        if first is None:
+            _check_settings(name, module, chosen, placed.near)
+        order = first.via if first else tours.ordered(via_order, placed, via, regions)
         return planning.course(placed, order, regions)
 
     # A user's file is executed in this process, as all that a program imports.
-    known = planner if planner in legs.TURNING else name.removesuffix(".py")
-    task = planning.Task(f"planner {name}", known, module.plan, chosen, smooth, seed)
-    answer, _ = answered(task, outline, place, regions)
-    answer = replace(answer, method=name)
+    task = planning.Task(f"planner {name}", planner, module.plan, chosen, smooth, seed)
+    answer, _ = answered(task, name, outline, place, regions)
     if strict:
         check_strict(answer, smooth)
     return answer
@@ -614,17 +612,18 @@ def plan(
 
 def answered(
     task: Task,
+    method: str,
     outline: Footprint | None,
-    place: Callable[[float, Via | None], Course],
+    place: Callable[[float, Course | None], Course],
     regions: Regions,
 ) -> tuple[Answer, float]:
-    """The answer to a task, and the CPU seconds that the planner took.
+    """The answer to a task, by the name of a method, and the CPU seconds that the planner took.
 
-    outline: the robot's footprint, for which a path is planned for discs until the footprint is
-    free along it. place: the course on the map for a disc of a radius, of which 0 is without an
-    outline any, through way points in an order, or if that is None, in the order that it chooses;
-    larger discs keep it. All are judged by the first one's map and shortest path. Raises ValueError
-    as `place` does, and, beginning with the task's name, if the planner fails or the verdict on its
+    outline: the robot's footprint, for which paths are planned for larger and larger discs, until
+    the footprint is free along one. place: the course for a disc of a radius, which it may ignore
+    without an outline; it also gets the course for the smallest disc, None for that one itself,
+    whose map and shortest path all are judged by. It raises ValueError for a disc without room.
+    Raises ValueError, beginning with the task's name, if the planner fails or the verdict on its
     path is impossible.
     """
     from bezierplan.running import footprints, planning
@@ -632,8 +631,8 @@ def answered(
 
     def attempt(radius: float, first: tuple | None) -> tuple[Course, Answer, float] | None:
         try:
-            course = place(radius, first[0].via if first else None)
-        except ValueError:  # no room for a disc that large
+            course = place(radius, first[0] if first else None)
+        except ValueError:
             if first is None:
                 raise
             return None
@@ -644,7 +643,7 @@ def answered(
         if first and plan.path is None:
             return None
         home = first[0] if first else course
-        return course, _judged(task, course, plan, home, regions, outline), seconds
+        return course, _judged(task, method, course, plan, home, regions, outline), seconds
 
     if outline is None:
         found = attempt(0.0, None)
@@ -669,6 +668,7 @@ def check_strict(answer: Answer, smooth: str) -> None:
 
 def _judged(
     task: Task,
+    method: str,
     course: Course,
     plan: Plan,
     home: Course,
@@ -697,7 +697,7 @@ def _judged(
         turning_radius=legs.kept(task.planner, plan, task.settings),
         planned_radius=grown.radius if grown else 0.0,
         offset=plan.extra.get("least_offset", math.nan),
-        method=task.planner,
+        method=method,
         settings=task.settings,
         claimed_feasible=plan.claimed_feasible,
         objective=plan.objective,
@@ -707,8 +707,12 @@ def _judged(
     )
 
 
-def _planner_name(name: str, module: Any) -> str:
-    return getattr(module, "__name__", name).removeprefix("bezierplan.planners.")
+def _own_name(module: Any) -> str:
+    """The name of a planner of this package; empty of another one, whatever it is called."""
+    from bezierplan.planners import known_planners, planner_module
+
+    name = getattr(module, "__name__", "").rpartition(".")[2]
+    return name if name in known_planners() and module is planner_module(name) else ""
 
 
 def _check_problem(problem: Problem) -> None:
@@ -735,14 +739,12 @@ def _method(
     """Name, module and settings of a method; without one, of a planner that has the given
     settings.
     """
-    from bezierplan.planners import known_planners, planner_module
+    from bezierplan.planners import is_file, known_planners, planner_module
     from bezierplan.running import legs
     from bezierplan.schema.checked import closest
 
     if method is None:
-        method = (
-            legs.DRIVEN if {"start_heading", "target_heading"} & set(settings) else legs.ROUNDED
-        )
+        method = legs.default(settings)
     if isinstance(method, str) and method in legs.TURNING:
         return method, planner_module(method), legs.preset(method, problem.workspace)
     if isinstance(method, ModuleType):
@@ -754,12 +756,12 @@ def _method(
             f"method: is a {type(method).__name__}; "
             "expected a name, a planner's module, or its function plan"
         )
-    if method.endswith(".py"):
+    if is_file(method):
         if not File(method).is_file():
             raise ValueError(f"method: {method}: no such file")
         return method, planner_module(method), {}
     if method in known_planners():
-        return method, planner_module(method), _first_use(method)
+        return method, planner_module(method), first_use(method)
     key, _, name = method.partition("/")
     if key not in _keys() or name not in _study(key).methods:
         raise ValueError(
@@ -783,8 +785,10 @@ def _keys() -> list[str]:
     return sorted(file.parent.name for file in STUDIES.glob("*/experiments.yaml"))
 
 
-def _first_use(planner: str) -> dict[str, Any]:
-    """A planner's settings in the first study that uses it; none if none does."""
+def first_use(planner: str) -> dict[str, Any]:
+    """A planner's settings in the first study of this project, by name, that uses it; none if none
+    does.
+    """
     for study in map(_study, _keys()):
         for name in study.methods:
             if study.planner(name) == planner:

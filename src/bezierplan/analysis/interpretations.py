@@ -39,7 +39,7 @@ from bezierplan.planners import planner_module
 from bezierplan.running import execution
 from bezierplan.running import problems as problem_files
 from bezierplan.running.chunk import Chunk
-from bezierplan.running.digest import source_digest
+from bezierplan.running.digest import module_of, source_digest
 from bezierplan.running.log import end_with_parent
 from bezierplan.workspaces.seeds import generator
 
@@ -457,7 +457,7 @@ class Evaluator:
 
     def _runs(self, chunk: Chunk, problems: dict, changes: list) -> pd.DataFrame:
         key = (
-            source_digest(_planner(chunk.planner))
+            source_digest(module_of(chunk.planner))
             + self.stage.maps
             + json.dumps([chunk.plain(), changes], sort_keys=True)
         )
@@ -561,8 +561,3 @@ def _excluded(chunk: Chunk) -> bool:
     except ValueError:
         return True
     return False
-
-
-def _planner(planner: str) -> str:
-    """A planner as an argument of `source_digest`."""
-    return planner if planner.endswith(".py") else f"bezierplan.planners.{planner}"

@@ -14,8 +14,7 @@ import numpy as np
 
 from bezierplan import api
 from bezierplan.geometry import checker, samples
-from bezierplan.places import TREE
-from bezierplan.planners import known_planners, planner_module
+from bezierplan.planners import is_file, known_planners, planner_module
 from bezierplan.running import footprints, interface, legs, planning, problems, tours
 from bezierplan.running.problems import Placed, Regions
 from bezierplan.schema import checked
@@ -104,8 +103,8 @@ maps:
 
 planners:
   Without --planner it is the exact shortest path with rounded corners. A planner takes its settings
-  from the first study of this project that has it, or from --like STUDY/METHOD; --settings changes
-  some of them. `python -m bezierplan list` names studies and methods.
+  from the first study of this project, by name, that has it, or from --like STUDY/METHOD;
+  --settings changes some of them. `python -m bezierplan list` names studies and methods.
 
 files:
   .svg, .png       a picture
@@ -322,7 +321,7 @@ def _plan(arguments: Namespace) -> None:
     planner, settings = _planner(arguments, headings)
     module, regions = planner_module(planner), problems.remembered()
     with _as_options():
-        legs.check_planner(planner, arguments.via, arguments.strict, arguments.smooth)
+        legs.check_planner(planner, planner, arguments.via, arguments.strict, arguments.smooth)
         via = [map_files.point("via", text) for text in arguments.via]
         tours.check_order(arguments.via_order, via)
         outline = _footprint(arguments)
@@ -348,19 +347,20 @@ def _plan(arguments: Namespace) -> None:
         settings,
         arguments.smooth,
         arguments.seed,
+        foreign=is_file(planner),
         timed=True,
     )
 
-    def place(radius: float, order: Any) -> planning.Course:
+    def place(radius: float, first: planning.Course | None) -> planning.Course:
         placed = problem
-        if order is not None:
+        if first:
             grown = robot.grow(original(home), radius)
             placed = _problem(arguments, described, planner, places, grown, regions)
         course = planning.course(placed, via, regions)
         _check_reached(course)
         return course
 
-    answer, seconds = api.answered(task, outline, place, regions)
+    answer, seconds = api.answered(task, planner, outline, place, regions)
     if arguments.strict:
         try:
             with _as_options():
@@ -540,7 +540,7 @@ def _told(answer: api.Answer, smooth: str, seconds: float) -> list[tuple[str, st
     if planner in legs.TURNING:
         asked = settings["turning_radius"]
         kept = answer.turning_radius
-        met = kept >= asked * (1 - 1e-9)
+        met = legs.keeps_radius(asked, kept)
         lines.append(
             (
                 "turning radius",
@@ -560,7 +560,7 @@ def _told(answer: api.Answer, smooth: str, seconds: float) -> list[tuple[str, st
                     f"{wish:.6g} {unit} asked"
                     + (
                         " and kept"
-                        if legs.is_kept(wish, least)
+                        if legs.keeps_offset(wish, least)
                         else f", {_told_number(least, 6)} {unit} kept at a corner: no room"
                     ),
                 )
@@ -649,15 +649,11 @@ def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dic
     if arguments.like:
         planner, preset = _like(arguments.like)
     else:
-        planner = arguments.planner or (
-            legs.DRIVEN
-            if {"start_heading", "target_heading"} & (headings.keys() | changed.keys())
-            else legs.ROUNDED
-        )
-        if not planner.endswith(".py") and planner not in known_planners():
+        planner = arguments.planner or legs.default(headings.keys() | changed.keys())
+        if not is_file(planner) and planner not in known_planners():
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
         interface.loaded(planner, f"--planner: {planner}")
-        preset = {} if planner in legs.TURNING or planner.endswith(".py") else _preset(planner)
+        preset = {} if planner in legs.TURNING or is_file(planner) else api.first_use(planner)
     if headings and planner != legs.DRIVEN:
         end = min(headings).removesuffix("_heading")
         raise Fault(
@@ -681,23 +677,6 @@ def _like(name: str) -> tuple[str, dict[str, Any]]:
             f"--like: {name}: the study has no method {method}{closest(method, study.methods)}"
         )
     return study.planner(method), study.resolved(method)
-
-
-def _preset(planner: str) -> dict[str, Any]:
-    """A planner's settings in the first study of this project that uses it as a method."""
-    from bezierplan.study import reading
-
-    # Away from the project's folder no configuration is found.
-    named = (
-        {}
-        if File("config/config.yaml").is_file()
-        else checked.read(TREE / "config" / "config.yaml")
-    )
-    for study in reading.load(reading.read_config(named)).values():
-        for method in study.methods:
-            if study.planner(method) == planner:
-                return study.resolved(method)
-    return {}
 
 
 def _map(arguments: Namespace, planner: str) -> tuple[dict[str, Any], Workspace]:

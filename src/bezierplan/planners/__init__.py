@@ -40,6 +40,7 @@ __all__ = [
     "Problem",
     "Range",
     "Setting",
+    "is_file",
     "known_planners",
     "planner_module",
     "planner_settings",
@@ -92,6 +93,13 @@ PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 """Keys of a described problem that are columns of the runs table."""
 
 
+def is_file(planner: str) -> bool:
+    """Whether a planner is given as the path of a user's file, and not as the name of one of this
+    package.
+    """
+    return planner.endswith(".py")
+
+
 @cache
 def planner_module(planner: str) -> ModuleType:
     """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a
@@ -99,7 +107,7 @@ def planner_module(planner: str) -> ModuleType:
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
-    if not planner.endswith(".py"):
+    if not is_file(planner):
         return importlib.import_module(f"bezierplan.planners.{planner}")
     spec = importlib.util.spec_from_file_location(File(planner).stem, planner)
     module = importlib.util.module_from_spec(spec)

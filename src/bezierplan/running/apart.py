@@ -44,19 +44,19 @@ def _own_clock() -> np.ndarray:
 
 @contextmanager
 def asking(
-    planner: str, name: str, plan: Callable[..., Any], fault: Callable[[], str] = str
+    foreign: bool, name: str, plan: Callable[..., Any], fault: Callable[[], str] = str
 ) -> Iterator[Callable[..., Any]]:
-    """Yield `ask(run, *given)`, which returns the answer `plan(*given)` of a planner, given as a
-    name or the path of a file.
+    """Yield `ask(run, *given)`, which returns the answer `plan(*given)` of a planner.
 
-    Code of a file is executed in a fork of this process, from which nothing comes back but plain
-    values; on systems other than Linux, where a fork may crash, in this process.
+    foreign: whether its code is of unknown origin. Then it is executed in a fork of this process,
+    from which nothing comes back but plain values; on systems other than Linux, where a fork may
+    crash, in this process, as other code.
 
     fault: says in one line, in the end and where the planner was executed, what it has changed.
     Raises PlannerFailure, beginning with `run` or `name`, if the planner fails, ends its process,
     leaves others behind, replaces part of another module, or has changed something.
     """
-    if not planner.endswith(".py") or sys.platform != "linux":
+    if not foreign or sys.platform != "linux":
         with left_alone(name):
             yield lambda run, *given: plan(*given)
         _refuse(name, fault())
@@ -95,11 +95,9 @@ def _asked(pipe: Connection, child: int, run: str, given: tuple | None) -> Plan 
             if watchdog.is_dead(child) and not pipe.poll():
                 raise EOFError
         said = json.loads(pipe.recv_bytes())
-        if _FAILURE not in said:
-            plan, took = _unpacked(**said), np.array(said["took"])
+        plan, took = (None, np.zeros(2)) if _FAILURE in said else _unpacked(**said)
     except (EOFError, OSError):
-        status = os.waitpid(child, 0)[1]
-        raise PlannerFailure(f"{run}: {watchdog.how_ended(status)}") from None
+        raise PlannerFailure(f"{run}: {watchdog.awaited(child)}") from None
     except (ValueError, TypeError, LookupError):
         raise PlannerFailure(f"{run}: its process does not answer with a plan") from None
     if _FAILURE in said:
@@ -164,8 +162,10 @@ def _packed(plan: Plan | None, took: np.ndarray) -> bytes:
     return json.dumps({"plan": fields, "took": took.tolist()}).encode()
 
 
-def _unpacked(plan: dict[str, Any] | None, took: list[float]) -> Plan | None:
+def _unpacked(plan: dict[str, Any] | None, took: list[float]) -> tuple[Plan | None, np.ndarray]:
+    seconds = np.array(took, dtype=float).reshape(2)
     if plan is None:
-        return None
+        return None, seconds
     path = plan["path"] and answer.restored(*plan["path"])
-    return Plan(**plan | {"path": path, "history": np.array(plan["history"], dtype=float)})
+    history = np.array(plan["history"], dtype=float)
+    return Plan(**plan | {"path": path, "history": history}), seconds

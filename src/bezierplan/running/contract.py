@@ -22,7 +22,7 @@ import numpy as np
 from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
 from bezierplan.kernels import allocation_free
-from bezierplan.planners import Plan, known_planners
+from bezierplan.planners import Plan, is_file, known_planners
 from bezierplan.running import answer, interface, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
@@ -116,7 +116,7 @@ def first_answers(planner: str, settings: dict[str, Any]) -> Iterator[tuple[str,
 
 
 def _loaded(planner: str) -> ModuleType:
-    if not planner.endswith(".py") and planner not in known_planners():
+    if not is_file(planner) and planner not in known_planners():
         raise Fault(
             f"{planner}: unknown planner, and not the path of a file that ends in "
             f".py{closest(planner, known_planners())}"

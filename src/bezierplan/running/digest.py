@@ -70,6 +70,11 @@ def _module(name: str) -> _Module:
     return _Module(PACKAGE.parent, name)
 
 
+def module_of(planner: str) -> str:
+    """A planner, given as a name or the path of a file, as an argument of `source_digest`."""
+    return planner if planner.endswith(".py") else f"{PACKAGE.name}.planners.{planner}"
+
+
 class _Syntax(NamedTuple):
     """What a file computes, as text: its syntax tree without docstrings; and what it imports:
     (leading dots, module, name in it).

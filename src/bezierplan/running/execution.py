@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
-from bezierplan.planners import Plan, planner_module
+from bezierplan.planners import Plan, is_file, planner_module
 from bezierplan.running import answer, apart, interface, kernel_cache, rows, watchdog
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
@@ -183,7 +183,7 @@ def run_chunk(
         return next(filter(None, (loan.thorough_fault() for loan in loans.values())), "")
 
     with (
-        apart.asking(chunk.planner, told_chunk(chunk), plan, fault) as ask,
+        apart.asking(is_file(chunk.planner), told_chunk(chunk), plan, fault) as ask,
         watchdog.watching(chunk.time_limit) as watch,
     ):
         kernel_cache.meanwhile[:] = _judgements(met, blocked)

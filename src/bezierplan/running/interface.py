@@ -14,7 +14,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from bezierplan import planners
-from bezierplan.planners import planner_module, planner_settings, setting_fault
+from bezierplan.planners import is_file, planner_module, planner_settings, setting_fault
 from bezierplan.planners.parts.settings import setting
 from bezierplan.running import watchdog
 from bezierplan.running.tampering import left_alone
@@ -38,7 +38,7 @@ def loaded(planner: str, location: str) -> ModuleType:
     a location, unless it can be executed and has the interface of a planner (`planners`).
     """
     module, fault = None, ""
-    if planner.endswith(".py"):
+    if is_file(planner):
         fault = watchdog.verdict("when it is imported", lambda: _loaded(planner)[1], LIMIT)
     if not fault:
         module, fault = _loaded(planner)
@@ -50,7 +50,7 @@ def loaded(planner: str, location: str) -> ModuleType:
 def _loaded(planner: str) -> tuple[ModuleType | None, str]:
     """The module of a planner, and what is wrong with it: empty if nothing is."""
     try:
-        if planner.endswith(".py"):
+        if is_file(planner):
             import shapely  # noqa: F401, so that a part of it cannot be replaced unnoticed
         with left_alone(planner):
             module = planner_module(planner)
@@ -77,7 +77,7 @@ def traits(planner: str) -> Traits:
     """Those of a planner, given as a name or the path of a file, which is not executed in this
     process. Raises PlannerFailure if it cannot be executed. Do not modify the result.
     """
-    if not planner.endswith(".py"):
+    if not is_file(planner):
         return _traits(planner)
     said = watchdog.verdict("when it is imported", partial(_told_traits, planner), LIMIT)
     try:

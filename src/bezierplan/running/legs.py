@@ -1,7 +1,7 @@
 """Way points: a problem becomes one from each to the next, and their answers become one path."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -53,25 +53,35 @@ SMOOTH = ("arcs", "continuous")
 _NO_JUMP = 1e-6
 
 
+def default(settings: Collection[str]) -> str:
+    """The planner without a wish, which has these settings."""
+    return DRIVEN if set(HEADINGS) & set(settings) else ROUNDED
+
+
 def check_planner(
-    planner: str, via: Sequence[tuple[float, float]], strict: bool, smooth: str = SMOOTH[0]
+    planner: str,
+    name: str,
+    via: Sequence[tuple[float, float]],
+    strict: bool,
+    smooth: str = SMOOTH[0],
 ) -> None:
     """Raise ValueError for way points, a strict turning radius or continuous curvature with a
     planner that does not have them.
+
+    planner: its name in this package, empty for another one; name: how it is told.
     """
-    name = planner.removeprefix("bezierplan.planners.")
-    if via and name not in CHAINED:
+    if via and planner not in CHAINED:
         raise ValueError(
             f"via: only for {', '.join(CHAINED[:-1])} and {CHAINED[-1]}; the planner is {name}"
         )
     if smooth not in SMOOTH:
         raise ValueError(f"smooth: {smooth!r}; expected {' or '.join(SMOOTH)}")
-    if smooth == "continuous" and name not in TURNING:
+    if smooth == "continuous" and planner not in TURNING:
         raise ValueError(
             f"smooth: only for {' and '.join(TURNING)}, "
             f"whose paths have arcs; the planner is {name}"
         )
-    if strict and name not in TURNING:
+    if strict and planner not in TURNING:
         raise ValueError(
             f"strict: only for {' and '.join(TURNING)}, "
             f"which have a turning radius; the planner is {name}"
@@ -206,7 +216,7 @@ def _solved(
         len(parts) == 1
         or rounded.path is None
         or radius < SMALLEST_FEATURE
-        or rounded.extra["least_radius"] >= radius * (1 - _SAME)
+        or keeps_radius(radius, rounded.extra["least_radius"])
     ):
         return rounded
     driven = joined(
@@ -331,14 +341,19 @@ def check_continuous(smooth: str, jump: float, curvature: float, unit: str) -> N
         )
 
 
-def is_kept(asked: float, kept: float) -> bool:
+def keeps_radius(asked: float, kept: float) -> bool:
+    """Whether a turning radius is kept."""
+    return kept >= asked * (1 - _SAME)
+
+
+def keeps_offset(asked: float, kept: float) -> bool:
     """Whether an offset is kept; arcs are cubic pieces, which lie a little off their circles."""
     return kept >= asked * (1 - _OFF_CIRCLE)
 
 
 def check_offset(asked: float | None, kept: float, unit: str) -> None:
     """Raise ValueError if a path does not keep the offset asked for. kept: nan where none was."""
-    if asked and not math.isnan(kept) and not is_kept(asked, kept):
+    if asked and not math.isnan(kept) and not keeps_offset(asked, kept):
         raise ValueError(
             f"offset: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that can be "
             "kept, or not strict"
@@ -352,7 +367,7 @@ def check_kept(asked: float, kept: float, unit: str) -> None:
             f"turning_radius: {asked:g} {unit} asked: no path was found; expected one that can be "
             "kept, or not strict"
         )
-    if kept < asked * (1 - _SAME):
+    if not keeps_radius(asked, kept):
         raise ValueError(
             f"turning_radius: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that "
             "can be kept, or not strict"

@@ -25,10 +25,11 @@ _LONG = 2.0
 class Task(NamedTuple):
     """What to plan with.
 
-    name: how messages about the planner begin. planner: its name, or the path of its file, which is
-    then executed in a process of its own. settings: all of them, headings in the world. smooth: one
-    of `legs.SMOOTH`. seed: of its random numbers. timed: whether it is called a second time if it
-    is fast, since the first call also loads compiled code.
+    name: how messages about the planner begin. planner: its name in this package, empty for
+    another one. plan: its function. settings: all of them, headings in the world. smooth: one of
+    `legs.SMOOTH`. seed: of its random numbers. foreign: whether it is executed in a process of its
+    own. timed: whether it is called a second time if it is fast, since the first call also loads
+    compiled code.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Task(NamedTuple):
     settings: dict[str, Any]
     smooth: str
     seed: int
+    foreign: bool = False
     timed: bool = False
 
 
@@ -107,9 +109,9 @@ def _asked(
 
     with (
         watchdog.watching(None) as watch,
-        apart.asking(task.planner, task.name, plan, fault) as ask,
+        apart.asking(task.foreign, task.name, plan, fault) as ask,
         # What a program plans with fails as its own code does.
-        watchdog.executing(task.name, watch) if task.planner.endswith(".py") else nullcontext(),
+        watchdog.executing(task.name, watch) if task.foreign else nullcontext(),
     ):
         return _timed(lambda: [ask(task.name, leg) for leg in range(len(parts))], task.timed)
 

@@ -19,7 +19,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from bezierplan.planners import Plan, planner_module
+from bezierplan.planners import Plan, is_file, planner_module
 from bezierplan.running import apart, execution, rows, watchdog
 from bezierplan.running import problems as problem_files
 from bezierplan.running.chunk import Chunk, Condition
@@ -78,7 +78,7 @@ class _Driver:
 def driver(chunk: Chunk) -> Iterator[Callable[..., Any]]:
     """Yield what makes the plans of a chunk's drives, for `run`."""
     name = execution.told_chunk(chunk)
-    with apart.asking(chunk.planner, name, _Driver(chunk).plan) as ask:
+    with apart.asking(is_file(chunk.planner), name, _Driver(chunk).plan) as ask:
         yield ask
 
 

@@ -65,11 +65,11 @@ def write(table: pa.Table, file: str) -> None:
     parquet.write_table(table.replace_schema_metadata(metadata), file)
 
 
-def read_alone(file: str, columns: list[str] | None = None) -> pa.Table:
+def read_alone(file: str) -> pa.Table:
     """A small table, read without pyarrow's threads, so that this process can be forked."""
     content = pa.BufferReader(Path(file).read_bytes())
     with parquet.ParquetFile(content, pre_buffer=False) as source:
-        return source.read(columns, use_threads=False)
+        return source.read(use_threads=False)
 
 
 def kept_digest(table: pa.Table) -> str | None:

@@ -27,6 +27,8 @@ PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 # Seconds between two looks at whether the child is there: while its end of the pipe is open, which
 # another process may hold, and after.
 _LOOK, _CLOSED = 1.0, 0.005
+# How often the kernel's list of children is read until it shows one that is known to be there.
+_LOOKS = 20
 # Seconds that a process has for ending after its work is done: threads that a planner left running
 # would keep an interpreter for ever.
 _ENDING = 10.0
@@ -135,13 +137,15 @@ def executing(name: str, watch: Callable[[str], None]) -> Iterator[None]:
 
 def children() -> frozenset[int]:
     """The processes that this one has started, or inherited as the last one responsible, and that
-    have not ended (Linux only).
+    have not ended (on Linux; elsewhere none is known).
 
     The process in which Python's multiprocessing keeps track of shared memory is none of them: it
     ends by itself.
     """
+    if sys.platform != "linux":
+        return frozenset()
     try:
-        os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+        ended = os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
     except ChildProcessError:  # the usual case: a thousand of these calls take a millisecond
         return frozenset()
     tracker = getattr(
@@ -149,12 +153,22 @@ def children() -> frozenset[int]:
         "_pid",
         None,
     )
-    found = (
-        int(child)
-        for file in Path("/proc/self/task").glob("*/children")
-        for child in file.read_text().split()
-    )
+    found = _listed()
+    for _ in range(_LOOKS):
+        if found or ended:
+            break
+        time.sleep(_CLOSED)  # there is one, but the list may lack it while others end
+        found = _listed()
     return frozenset(child for child in found if child != tracker and not is_dead(child))
+
+
+def _listed() -> set[int]:
+    """The processes that the kernel lists as children of this one."""
+    listed: set[int] = set()
+    for file in Path("/proc/self/task").glob("*/children"):
+        with contextlib.suppress(OSError):  # a thread may have ended by now
+            listed |= set(map(int, file.read_text().split()))
+    return listed
 
 
 def end_children(spared: frozenset[int] = frozenset()) -> None:
@@ -289,6 +303,15 @@ def _heard(child: int, heard: int, name: str) -> tuple[str, int]:
                 if settled
                 else (f"{under_way}: not done within the time limit of {limit:g} s; it is ended", 1)
             )
+
+
+def awaited(child: int) -> str:
+    """How a child ends, in words, once it does. It stays to be waited for, so that no other process
+    gets its number.
+    """
+    ended = os.waitid(os.P_PID, child, os.WEXITED | os.WNOWAIT)
+    exited = ended.si_code == os.CLD_EXITED
+    return how_ended(ended.si_status << 8 if exited else ended.si_status)
 
 
 def how_ended(status: int) -> str:

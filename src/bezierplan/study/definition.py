@@ -10,7 +10,7 @@ from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, Table
-from bezierplan.planners import planner_module, planner_settings
+from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.study.artefacts import Figure
 from bezierplan.study.claims import Assumption
 from bezierplan.study.experiments import BaselineComparison, Experiment, Method, Policy, Problem
@@ -69,7 +69,7 @@ class Study:
     def planner(self, method: str) -> str:
         """The planner of a method: a name, or the path of a file relative to the working folder."""
         planner = self.methods[method].planner
-        return relative(self.folder / planner) if planner.endswith(".py") else planner
+        return relative(self.folder / planner) if is_file(planner) else planner
 
     def methods_of(self, experiment: str) -> list[str]:
         """Methods of an experiment, followed by the baselines that support all its workspaces."""

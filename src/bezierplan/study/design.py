@@ -9,7 +9,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.geometry.curves import CURVES
-from bezierplan.planners import PLACE, planner_module
+from bezierplan.planners import PLACE, is_file, planner_module
 from bezierplan.running.chunk import Chunk, conditions
 from bezierplan.running.columns import (
     DRIVE_JOINED,
@@ -104,9 +104,7 @@ class Design:
         columns: set[str] = set()
         for method in self.study.methods_of(experiment):
             planner = self.study.planner(method)
-            extra = getattr(
-                planner_module(planner), "extra", None if planner.endswith(".py") else ()
-            )
+            extra = getattr(planner_module(planner), "extra", None if is_file(planner) else ())
             if extra is None:
                 return None
             columns.update(extra)

@@ -2,7 +2,7 @@
 
 from types import ModuleType
 
-from bezierplan.planners import known_planners, planner_settings
+from bezierplan.planners import is_file, known_planners, planner_settings
 from bezierplan.running import interface
 from bezierplan.running.columns import TAKEN
 from bezierplan.schema.checked import Fault, closest
@@ -16,7 +16,7 @@ def loaded(study: Study, method: str, location: str) -> ModuleType:
     """
     name = study.methods[method].planner
     location = f"{location}: planner: {name}"
-    if name.endswith(".py"):
+    if is_file(name):
         inside(study.folder, name, location)
     elif name not in known_planners():
         raise Fault(

@@ -6,6 +6,7 @@ import pandas as pd
 
 from bezierplan.analysis import results
 from bezierplan.geometry.region import region
+from bezierplan.planners import is_file
 from bezierplan.running import apart, execution, problems, rides, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.loans import lend
@@ -56,7 +57,7 @@ def _rerun(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> res
     (loan,) = lend(named).values()
     run = partial(execution.run, chunk, condition, repeat, loan.problem)
     name = execution.told_run(chunk, condition, repeat)
-    with apart.asking(chunk.planner, name, run, loan.thorough_fault) as ask:
+    with apart.asking(is_file(chunk.planner), name, run, loan.thorough_fault) as ask:
         plan = ask(name)
     row = execution.row(chunk, condition, repeat, plan, problem, region(problem.workspace))
     return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())

@@ -17,7 +17,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.jobs import AuditJob, ListingJob, MeasuredJob, PivotJob, SummaryJob
 from bezierplan.analysis.table_kinds import Comparison, Layout, Pivot
 from bezierplan.places import TREE
-from bezierplan.running.digest import content_digest, versioned_digest
+from bezierplan.running.digest import content_digest, module_of, versioned_digest
 from bezierplan.running.inputs import BOUNDS, PROBLEMS, Files, named, of_experiments, part
 from bezierplan.schema.model import plain
 from bezierplan.study import alternatives, choices, definition, design, jobs
@@ -98,11 +98,6 @@ def _code(script: str, *modules: str | None) -> str:
     return versioned_digest(str(SCRIPTS / f"{script}.py"), *filter(None, modules))
 
 
-def _planner(planner: str) -> str:
-    """A planner as an argument of `source_digest`."""
-    return planner if planner.endswith(".py") else f"bezierplan.planners.{planner}"
-
-
 # --------------------------------------------------------------------------------------------------
 # Problems and runs
 
@@ -146,7 +141,7 @@ def run_params(
         "job": jobs.job(studies[study], experiment, method, scale, int(chunk)).plain(),
         "code": _code(
             "drives" if studies[study].moves(experiment) else "runs",
-            _planner(studies[study].planner(method)),
+            module_of(studies[study].planner(method)),
         ),
     }
 
@@ -294,7 +289,7 @@ def figure_params(studies: Studies, scale: str, study: str, figure: str) -> dict
         studies[study].module() if any(getattr(panel, "data", None) for panel in panels) else None
     )
     again = {
-        _planner(chunk.planner) for methods in job.chunks.values() for chunk in methods.values()
+        module_of(chunk.planner) for methods in job.chunks.values() for chunk in methods.values()
     }
     return {
         "job": plain(
@@ -449,7 +444,7 @@ def alternative_params(studies: Studies, scale: str, study: str, alternative: st
         if method in changed
         for number in jobs.chunks(content, experiment, method, scale)
     ]
-    planners = sorted({_planner(chunk.planner) for _, chunk in chunks})
+    planners = sorted({module_of(chunk.planner) for _, chunk in chunks})
     return {
         "chunks": [[number, chunk.plain()] for number, chunk in chunks],
         "job": plain(
@@ -531,7 +526,7 @@ def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
     job = choices.search_job(content)
     screened = job.stages["screened"]
     planners = {
-        _planner(chunk.planner)
+        module_of(chunk.planner)
         for table in screened.tables.values()
         for chunk in table.jobs.values()
     }

@@ -27,7 +27,7 @@ def of_method(study: str, name: str, method: MethodShown) -> content.Method:
     planner = method.planner
     file = (
         Path(planner)
-        if planner.endswith(".py")
+        if planners.is_file(planner)
         else Path(planners.__file__).with_name(f"{planner}.py")
     )
     told = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
