@@ -139,6 +139,17 @@ def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
         assert run["evaluations"] > run["replans"] + 1 > 1
 
 
+def test_a_drive_that_is_made_again_has_the_path_of_its_row(tmp_path):
+    study = reading.load([written(tmp_path)])["mystudy"]
+    made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    described = job(study, "drives", "mine", "smoke", 0)
+    run = chunk(study)[0].to_pylist()[1]
+    ride, _ = rides.rerun(described, run, made["across"], found["across"])
+    assert ride.motion.points[-1].tolist() == run["path_points"][-2:]
+    with pytest.raises(ValueError, match="its rerun ends in another path"):
+        rides.rerun(described, run | {"repeat": 0}, made["across"], found["across"])
+
+
 def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path):
     study = reading.load([written(tmp_path)])["mystudy"]
     file = tmp_path / "drive.gif"

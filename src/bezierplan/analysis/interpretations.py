@@ -36,11 +36,11 @@ from bezierplan.analysis.search import Evaluate, Task, confirm, search, within_r
 from bezierplan.analysis.search_job import WITHOUT, Choice, Part, Search, Stage
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.planners import planner_module
-from bezierplan.running import execution
+from bezierplan.running import execution, rows
 from bezierplan.running import problems as problem_files
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.digest import module_of, source_digest
-from bezierplan.running.log import end_with_parent
+from bezierplan.running.watchdog import end_with_parent
 from bezierplan.workspaces.seeds import generator
 
 logger = logging.getLogger(__name__)
@@ -452,7 +452,8 @@ class Evaluator:
             made = problem_files.build_all(
                 described._replace(problems=wanted, workspaces=workspaces), self.maps
             )
-            self.worlds[described_world] = made, problem_files.bounds_of(made).to_pandas()
+            bounds = problem_files.bounds_of(made).to_pandas(use_threads=False)
+            self.worlds[described_world] = made, bounds
         return *self.worlds[described_world], changes
 
     def _runs(self, chunk: Chunk, problems: dict, changes: list) -> pd.DataFrame:
@@ -469,7 +470,7 @@ class Evaluator:
             part = Path(f"{file}.{os.getpid()}.part")
             parquet.write_table(table.append_column("cpu_s", times["cpu_s"]), part)
             part.replace(file)
-        return parquet.read_table(file).to_pandas()
+        return rows.read_alone(file).to_pandas(use_threads=False)
 
 
 def _in_range(found: Evaluated) -> tuple[int, int]:

@@ -7,11 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-import pyarrow.parquet as parquet
 
+from bezierplan.running import answer, worlds
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
-from bezierplan.running import worlds
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.columns import TABLES, Table
 from bezierplan.running.inputs import Files
@@ -55,7 +54,7 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
         (files.bounds, bounded),
     ):
         if "problem" not in known or not set(table["problem"]) <= set(known["problem"]):
-            raise _misplaced(file, "not of the problems that the runs are of")
+            raise row_files.misplaced(file, "not of the problems that the runs are of")
     _refuse_unlike(files.bounds, bound_table, TABLES["bounds"], "least_arrival")
     results = joined(table, problem_files.read(files.problems), bounded)
     return results._replace(worlds=worlds.read(files.problems))
@@ -72,16 +71,18 @@ def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.Data
         for column, wanted in (("experiment", experiment), ("method", method)):
             others = set(rows[column]) - {wanted} if column in rows else {"no runs"}
             if others:
-                raise _misplaced(file, f"of {column} {min(map(str, others))}, not {wanted}")
+                raise row_files.misplaced(
+                    file, f"of {column} {min(map(str, others))}, not {wanted}"
+                )
         if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
-            raise _misplaced(file, "the runs of another chunk")
+            raise row_files.misplaced(file, "the runs of another chunk")
         _refuse_unlike(file, table, TABLES["runs"], "arrival")
         seen.update(rows["id"])
         beside = str(PurePath(file).with_suffix(".times.parquet"))
         timed = _read(beside)
         times = timed.to_pandas()
         if "id" not in times or sorted(times["id"]) != sorted(rows["id"]):
-            raise _misplaced(beside, f"not the times of {PurePath(file).name}")
+            raise row_files.misplaced(beside, f"not the times of {PurePath(file).name}")
         _refuse_unlike(beside, timed, TABLES["times"], "replan_mean_s")
         yield rows.merge(times, on="id", validate="one_to_one")
 
@@ -93,24 +94,15 @@ def _refuse_unlike(file: str, table: pa.Table, declared: Table, driven: str) -> 
     if fault := row_files.fault(
         table.schema, *declared.every, *([declared.drives] if driven in table.column_names else [])
     ):
-        raise _misplaced(file, fault)
+        raise row_files.misplaced(file, fault)
 
 
 def _read(file: str, edited: Callable[[pa.Table], bool] = lambda table: False) -> pa.Table:
-    """The table of a Parquet file. Raises ValueError, naming it, for one that is cut off or none,
-    or was edited.
-    """
-    try:
-        table = parquet.read_table(file)
-    except (OSError, pa.ArrowException):
-        raise _misplaced(file, "not a whole Parquet file") from None
+    """`rows.read`, which also refuses a table that was edited."""
+    table = row_files.read(file)
     if edited(table):
-        raise _misplaced(file, "its rows are not those that were written")
+        raise row_files.misplaced(file, "its rows are not those that were written")
     return table
-
-
-def _misplaced(file: str, what: str) -> ValueError:
-    return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
 
 
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
@@ -169,9 +161,7 @@ def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None
 
 def path_of(run: Mapping[str, Any] | pd.Series) -> Path | None:
     """The path of a run, or None if it has none."""
-    if not run["path_curve"]:
-        return None
-    return Path(run["path_curve"], np.reshape(run["path_points"], (-1, 2)))
+    return answer.restored(run["path_curve"], run["path_points"])
 
 
 def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:

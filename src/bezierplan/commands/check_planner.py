@@ -2,13 +2,11 @@
 
 import sys
 from argparse import ArgumentParser
-from typing import Any
 
+from bezierplan.commands import of_study, settings_in
 from bezierplan.commands.completion import named
 from bezierplan.planners import known_planners
 from bezierplan.running import contract
-from bezierplan.schema import checked
-from bezierplan.study import reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
@@ -31,9 +29,9 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     )
     words = parser.parse_args(words)
     planner, settings = (
-        of_study(words.study, words.planner)
+        of_study(words.study, words.planner, f"{words.study}: methods")
         if words.study
-        else (words.planner, of_text(words.settings))
+        else (words.planner, settings_in(words.settings))
     )
     failed = total = 0
     for check in (contract.check_planner, contract.check_elsewhere):
@@ -46,18 +44,3 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     print(f"{total - failed} of {total} facts hold")
     if failed:
         sys.exit(1)
-
-
-def of_text(text: str) -> dict[str, Any]:
-    """Parse settings from YAML text. Raises Fault."""
-    settings = checked.parse(text, "--settings")
-    if not isinstance(settings, dict):
-        raise checked.Fault(f"--settings: {text}: expected '{{name: value, ...}}'")
-    return settings
-
-
-def of_study(name: str, method: str) -> tuple[str, dict[str, Any]]:
-    """The planner and settings of a study's method. Raises Fault."""
-    (study,) = reading.load(reading.read_config({"studies": [name]})).values()
-    checked.check_known(method, study.methods, f"{name}: methods")
-    return study.planner(method), study.resolved(method)

@@ -6,7 +6,6 @@ outcome.
 """
 
 import heapq
-import os
 import re
 import subprocess
 from argparse import ArgumentParser
@@ -15,7 +14,7 @@ from math import prod
 from pathlib import Path
 from typing import NamedTuple
 
-from bezierplan.commands import SNAKEMAKE
+from bezierplan.commands import SNAKEMAKE, cores
 from bezierplan.places import TREE
 from bezierplan.planners import planner_module
 from bezierplan.running import records
@@ -53,7 +52,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument(
         "--cores",
         type=int,
-        default=os.cpu_count(),
+        default=cores(),
         metavar="N",
         help="how many jobs run at once (default: all cores of this machine)",
     )

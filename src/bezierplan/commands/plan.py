@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from bezierplan import api
+from bezierplan.commands import of_study, settings_in
 from bezierplan.geometry import checker, samples
 from bezierplan.planners import is_file, known_planners, planner_module
 from bezierplan.running import footprints, interface, legs, planning, problems, tours
@@ -638,9 +639,7 @@ def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str,
 
 def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dict[str, Any]]:
     """The planner and its settings, as far as they are known without the map."""
-    changed = checked.parse(arguments.settings, "--settings")
-    if not isinstance(changed, dict):
-        raise Fault(f"--settings: {arguments.settings}: expected '{{name: value, ...}}'")
+    changed = settings_in(arguments.settings)
     if twice := headings.keys() & changed.keys():
         raise Fault(
             f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as "
@@ -666,17 +665,10 @@ def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dic
 
 def _like(name: str) -> tuple[str, dict[str, Any]]:
     """Planner and settings of a method of a study."""
-    from bezierplan.study import reading
-
     key, _, method = name.rpartition("/")
     if not key:
         raise Fault(f"--like: {name}; expected STUDY/METHOD, such as song2016/smooth")
-    (study,) = reading.load(reading.read_config({"studies": [key]})).values()
-    if method not in study.methods:
-        raise Fault(
-            f"--like: {name}: the study has no method {method}{closest(method, study.methods)}"
-        )
-    return study.planner(method), study.resolved(method)
+    return of_study(key, method, f"--like: {name}: methods")
 
 
 def _map(arguments: Namespace, planner: str) -> tuple[dict[str, Any], Workspace]:

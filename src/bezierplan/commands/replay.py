@@ -142,10 +142,6 @@ def animate(made: results.Results, file: Path) -> None:
     run = made.runs.iloc[0]
     name = run["problem"]
     ride, verdict = rides.rerun(
-        made.jobs[run["method"]],
-        run["condition"],
-        int(run["repeat"]),
-        made.problems[name],
-        made.worlds[name],
+        made.jobs[run["method"]], run, made.problems[name], made.worlds[name]
     )
     animation.save(made.worlds[name], made.problems[name], ride, verdict, file)

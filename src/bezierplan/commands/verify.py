@@ -1,9 +1,10 @@
 """Judge results again from their own points: `python -m bezierplan verify results/full`."""
 
-import os
 import sys
 from argparse import ArgumentParser
 from pathlib import Path
+
+from bezierplan.commands import cores
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
@@ -19,7 +20,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument(
         "--cores",
         type=int,
-        default=len(os.sched_getaffinity(0)),
+        default=cores(),
         metavar="N",
         help="processes (default: all cores)",
     )

@@ -2,7 +2,7 @@
 
 import itertools
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, TypeVar
 
@@ -98,6 +98,15 @@ def refuse_changed(loan: Loan, chunk: Chunk, condition: Condition, repeat: int) 
     """Raise UnfitAnswer if a planner put something else in a workspace that was lent to it."""
     if fault := loan.fault():
         raise UnfitAnswer(f"{told_run(chunk, condition, repeat)}: {fault}")
+
+
+def refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
+    """Raise ValueError unless a run that was made again has the points (n, 2) of its row's path."""
+    if not np.array_equal(points.ravel(), run["path_points"]):
+        raise ValueError(
+            f"run {run['id']}: its rerun ends in another path; the runs table comes from another "
+            "version of the code"
+        )
 
 
 def identity(chunk: Chunk, condition: Condition, repeat: int) -> dict[str, Any]:

@@ -74,8 +74,8 @@ class Traits(NamedTuple):
 
 @cache
 def traits(planner: str) -> Traits:
-    """Those of a planner, given as a name or the path of a file, which is not executed in this
-    process. Raises PlannerFailure if it cannot be executed. Do not modify the result.
+    """Those of a planner, given as a name or the path of a file, which on Linux is not executed in
+    this process. Raises PlannerFailure if it cannot be executed. Do not modify the result.
     """
     if not is_file(planner):
         return _traits(planner)

@@ -24,14 +24,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as compute
-import pyarrow.parquet as parquet
 
 from bezierplan.geometry import curves
 from bezierplan.geometry.region import Region, region, walled
 from bezierplan.running import answer, columns, problems, rides, rows, worlds
 from bezierplan.running.chunk import chunk_files
 from bezierplan.running.digest import COMPUTING, library_version
-from bezierplan.running.log import end_with_parent
+from bezierplan.running.watchdog import end_with_parent
 from bezierplan.schema.words import plain
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
@@ -203,7 +202,7 @@ def judged(task: Task) -> Verdict:
     try:
         made, moving = problems.read(task.problems), worlds.read(task.problems)
     except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
-        raise _misplaced(task.problems, "not a whole file of problems") from None
+        raise rows.misplaced(task.problems, "not a whole file of problems") from None
     if task.bounds:
         return _bounds_judged(task, made, moving)
     chunks = [_chunk(file, _DRIVE_COLUMNS if moving else _RUN_COLUMNS) for file in task.runs]
@@ -261,8 +260,9 @@ _DRIVE_COLUMNS = (
 )
 
 _TYPES: dict[str, tuple[str, Callable[[pa.DataType], bool]]] = {
-    "name": ("text", pa.types.is_string),
-    "word": ("text", pa.types.is_string),
+    # What wrote a file chooses between the two types of text.
+    "name": ("text", lambda kind: pa.types.is_string(kind) or pa.types.is_large_string(kind)),
+    "word": ("text", lambda kind: pa.types.is_string(kind) or pa.types.is_large_string(kind)),
     "flag": ("truths", pa.types.is_boolean),
     "number": ("numbers", lambda type_: pa.types.is_floating(type_) or pa.types.is_integer(type_)),
     "list": ("lists of numbers", pa.types.is_list),
@@ -271,7 +271,7 @@ _TYPES: dict[str, tuple[str, Callable[[pa.DataType], bool]]] = {
 
 def _chunk(file: str, wanted: Iterable[str]) -> _Chunk:
     """A file of runs. Raises ValueError for one without the columns wanted."""
-    table = _read(file)
+    table = rows.read(file)
     known = columns.PLANNED | columns.RESULTS | columns.DRIVE_RESULTS
     seen = {name: _column(file, table, name, known[name]) for name in wanted}
     numbers = {
@@ -299,27 +299,16 @@ def _chunk(file: str, wanted: Iterable[str]) -> _Chunk:
     )
 
 
-def _read(file: str) -> pa.Table:
-    try:
-        return parquet.read_table(file)
-    except (OSError, pa.ArrowException):
-        raise _misplaced(file, "not a whole Parquet file") from None
-
-
-def _misplaced(file: str, what: str) -> ValueError:
-    return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
-
-
 def _column(file: str, table: pa.Table, name: str, kind: str) -> pa.Array:
     """A column, with a value in each row. Raises ValueError for one that is not there or holds
     other things.
     """
     expected, fits = _TYPES[kind]
     if name not in table.column_names:
-        raise _misplaced(file, f"no column {name}")
+        raise rows.misplaced(file, f"no column {name}")
     column = table[name].combine_chunks()
     if not fits(column.type) or column.null_count:
-        raise _misplaced(file, f"column {name}: expected {expected} in every row")
+        raise rows.misplaced(file, f"column {name}: expected {expected} in every row")
     return column
 
 
@@ -494,7 +483,7 @@ class _Trace(NamedTuple):
 
 def _traces(file: str) -> dict[str, _Trace]:
     beside = str(File(file).with_suffix(".traces.parquet"))
-    table = _read(beside)
+    table = rows.read(beside)
     x, y, clearance = (
         _arrays(_column(beside, table, name, "list")) for name in ("x", "y", "clearance")
     )
@@ -502,7 +491,7 @@ def _traces(file: str) -> dict[str, _Trace]:
     if not all(
         len(one) == len(other) > len(least) > 0 for one, other, least in zip(x, y, clearance)
     ):
-        raise _misplaced(
+        raise rows.misplaced(
             beside,
             "columns x, y and clearance: expected as many x as y, and one number less of clearance",
         )
@@ -633,7 +622,7 @@ def _inside(cells: np.ndarray, grid: Grid, points: np.ndarray) -> bool:
 
 
 def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World]) -> Verdict:
-    kept = _read(task.bounds)
+    kept = rows.read(task.bounds)
     again = (
         rides.bounds_again(made, moving, kept, task.runs) if moving else problems.bounds_of(made)
     )

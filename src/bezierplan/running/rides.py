@@ -10,7 +10,7 @@ import itertools
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
@@ -112,8 +112,7 @@ def row(
     """
     verdict = motion_check.check(ride.motion, world)
     points, times = ride.motion
-    moved = np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])
-    path = Path("polyline", points[moved] if moved.sum() > 1 else np.repeat(points[:1], 2, axis=0))
+    path = _driven(ride)
     done = ways.lengths(points)
     travelled, collided = float(done[-1]), not math.isnan(verdict.collision_at)
     least = float(verdict.clearance.min())
@@ -186,6 +185,13 @@ def row(
     return columns, trace
 
 
+def _driven(ride: Ride) -> Path:
+    """The path of a drive, without its waits."""
+    points = ride.motion.points
+    moved = np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])
+    return Path("polyline", points[moved] if moved.sum() > 1 else np.repeat(points[:1], 2, axis=0))
+
+
 def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
     """`cells.least_plan` for the last plan of a drive; nan among circles."""
     if not isinstance(world, ChangingCells):
@@ -237,12 +243,15 @@ def run_chunk(
 
 
 def rerun(
-    chunk: Chunk, condition: str, repeat: int, problem: Problem, world: World
+    chunk: Chunk, row: Mapping[str, Any], problem: Problem, world: World
 ) -> tuple[Ride, motion_check.Verdict]:
-    """A run's drive, by its condition's name, and the verdict on it: for what no table keeps."""
+    """The drive of a run, by its row, and the verdict on it: for what no table keeps. Raises
+    ValueError if it has another path than the row.
+    """
     named = {each.name: each for each in chunk.conditions()}
     with driver(chunk) as ask:
-        ride = run(chunk, named[condition], repeat, problem, world, ask)
+        ride = run(chunk, named[row["condition"]], int(row["repeat"]), problem, world, ask)
+    execution.refuse_other_path(row, _driven(ride).points)
     return ride, motion_check.check(ride.motion, world)
 
 

@@ -65,6 +65,19 @@ def write(table: pa.Table, file: str) -> None:
     parquet.write_table(table.replace_schema_metadata(metadata), file)
 
 
+def read(file: str) -> pa.Table:
+    """The table of a Parquet file. Raises ValueError, naming it, unless it is a whole one."""
+    try:
+        return parquet.read_table(file)
+    except (OSError, pa.ArrowException):
+        raise misplaced(file, "not a whole Parquet file") from None
+
+
+def misplaced(file: str, what: str) -> ValueError:
+    """The exception for a file of results that is not what belongs in its place."""
+    return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
+
+
 def read_alone(file: str) -> pa.Table:
     """A small table, read without pyarrow's threads, so that this process can be forked."""
     content = pa.BufferReader(Path(file).read_bytes())

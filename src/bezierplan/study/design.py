@@ -374,7 +374,7 @@ def in_first_variant(claim: Claim, check: Check) -> dict[str, Any]:
     return getattr(check, "where", {}) | extra
 
 
-def judged_only(chunk: Chunk, claims: list[Claim]) -> dict:
+def judged_only(chunk: Chunk, claims: list[Claim]) -> Chunk:
     """A chunk of runs without the problems and varied values that no check of these claims selects
     in its primary variant.
     """

@@ -63,9 +63,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
-    ride, verdict = rides.rerun(
-        results.jobs[run["method"]], run["condition"], int(run["repeat"]), problem, world
-    )
+    ride, verdict = rides.rerun(results.jobs[run["method"]], run, problem, world)
     frame = moment(world, problem, ride, verdict, options.at)
     return frame.assign(
         problem=run["problem"],

@@ -121,19 +121,20 @@ def _commonest(groups: pd.Series) -> list[float]:
 
 def _tracked(run: pd.Series, chunk: Chunk, problem: Problem) -> list[Path]:
     """The best path after each iteration of a run, reproduced from its chunk."""
-    from bezierplan.analysis.results import path_of
     from bezierplan.running import execution
+    from bezierplan.running.loans import lend
+    from bezierplan.running.tampering import left_alone
 
     condition = next(each for each in chunk.conditions() if each.name == run["condition"])
-    rng = execution.generator(chunk, condition, int(run["repeat"]))
-    track = planner_module(chunk.planner).track(
-        problem, rng, **execution.settings_in(chunk, condition)
-    )
-    if not np.array_equal(track[-1], path_of(run).points):
-        raise ValueError(
-            f"run {run['id']}: its rerun ends in another path; the runs table comes from another "
-            "version of the code"
+    repeat = int(run["repeat"])
+    (loan,) = lend({"": problem}).values()
+    with left_alone(execution.told_run(chunk, condition, repeat)):
+        track = planner_module(chunk.planner).track(
+            loan.problem,
+            execution.generator(chunk, condition, repeat),
+            **execution.settings_in(chunk, condition),
         )
+    execution.refuse_other_path(run, track[-1])
     return [Path(run["path_curve"], points) for points in track]
 
 
