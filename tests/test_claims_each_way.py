@@ -598,12 +598,9 @@ def sequences(monkeypatch, truth):
 
 
 def starts(monkeypatch, truth):
-    """The circle map is not sensitive to its start; the logistic map is."""
-    if truth:
-        own = tharwat2018.chaotic_maps.sequence
-        monkeypatch.setattr(
-            tharwat2018.chaotic_maps, "sequence", lambda _, *given: own("logistic", *given)
-        )
+    """All maps are like the logistic map, or like the circle map, which forgets its start."""
+    own, like = tharwat2018.chaotic_maps.sequence, "logistic" if truth else "circle"
+    monkeypatch.setattr(tharwat2018.chaotic_maps, "sequence", lambda _, *given: own(like, *given))
     return {}, None
 
 
@@ -667,19 +664,6 @@ def clearances(monkeypatch, truth):
     return {"environments": found._replace(problems=problem)}, None
 
 
-def first_populations(monkeypatch, truth):
-    """Feasible first populations give shorter paths and cost less for each; or longer, and more."""
-    kinds = itertools.product(("env1", "env2"), ("feasible", "unrestricted"), range(80))
-    rows = pd.DataFrame(kinds, columns=["workspace", "initial", "repeat"]).assign(method="proposed")
-    better = (rows["initial"] == "feasible") == truth
-    rows["objective"] = np.where(better, 20.0, 30.0) + 0.01 * rows["repeat"]
-    rows["evaluations"] = np.where(better, 9000, 5000)
-    rows["feasible"] = better | (rows["repeat"] % 8 == 0)
-    rows["cpu_s"] = 1.0
-    rows["condition"] = rows["workspace"] + rows["initial"]
-    return results_of(rows, "first_populations"), None
-
-
 def coverage(monkeypatch, truth):
     return {}, None if truth else altered("ma2020", "parameters", lambda values: values * 1.1)
 
@@ -704,7 +688,6 @@ BY_HAND = {
     ("ma2020", "C16"): coverage,
     ("ma2020", "C18"): quoted,
     ("ma2020", "C20"): paths,
-    ("meledje", "C7"): first_populations,
 }
 
 
