@@ -80,7 +80,8 @@ PAIRED = (
 SCALE = "absolute (left out: this), or relative to the value of the other group"
 MARGIN = (
     "the smallest effect that matters: a number above 0, or {published: share}, that share of the "
-    "other group's value, or the printed difference of the same cells if it is smaller"
+    "other group's value (the share itself for a metric that is true or false), or the printed "
+    "difference of the same cells if it is smaller"
 )
 WORK = (
     "the metric of counted work that is judged instead of seconds, which differ from machine "
