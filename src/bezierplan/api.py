@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import bezierplan
-from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.footprint import Footprint
 from bezierplan.workspaces.footprint import footprint as outline_of
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.grid import Grid as Grid
+from bezierplan.workspaces.polygons import Polygons as Polygons
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
 if TYPE_CHECKING:
@@ -803,7 +803,7 @@ def _check_settings(name: str, module: Any, settings: Mapping[str, Any], problem
     interface.refuse_unknown(module, settings, name)
     interface.check_settings(module, dict(settings), f"{name}: settings")
     served = getattr(module, "workspaces", None)
-    kind = KINDS[type(problem.workspace)]
+    kind = interface.KINDS[type(problem.workspace)]
     if served is not None and kind not in served:
         hint = (
             "; read the map with a cell to have a grid"
@@ -816,10 +816,6 @@ def _check_settings(name: str, module: Any, settings: Mapping[str, Any], problem
         )
     if hasattr(module, "serves"):
         module.serves(problem)
-
-
-KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
-"""Type of a workspace -> its kind, by which planners say what they serve."""
 
 
 def methods() -> dict[str, str]:

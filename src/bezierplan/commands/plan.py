@@ -33,24 +33,6 @@ PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
 LIMITS = ("speed", "lateral_acceleration", "acceleration")
 
-_FROM_MAPS = (
-    *(
-        "start",
-        "target",
-        "via",
-        "cell",
-        "rule",
-        "margin",
-        "resolution",
-        "unknown",
-        "most_pixels",
-        "scenario",
-    ),
-    *("robot_radius", "footprint", "smooth", "strict", "turning_radius", "offset", "via_order"),
-    *("speed", "lateral_acceleration", "acceleration", "step"),
-)
-"""What messages about a map or a problem may begin with: here these are options."""
-
 MANUAL = f"""
 Plans one path on a map and checks it by exact geometry. Prints its length, its excess over the
 exact shortest path, its largest curvature, its clearance from the map's own obstacles and border,
@@ -321,7 +303,7 @@ def _plan(arguments: Namespace) -> None:
     places, headings = _places(arguments)
     planner, settings = _planner(arguments, headings)
     module, regions = planner_module(planner), problems.remembered()
-    with _as_options():
+    with _as_options(arguments):
         legs.check_planner(planner, planner, arguments.via, arguments.strict, arguments.smooth)
         via = [map_files.point("via", text) for text in arguments.via]
         tours.check_order(arguments.via_order, via)
@@ -364,13 +346,13 @@ def _plan(arguments: Namespace) -> None:
     answer, seconds = api.answered(task, planner, outline, place, regions)
     if arguments.strict:
         try:
-            with _as_options():
+            with _as_options(arguments):
                 api.check_strict(answer, arguments.smooth)
         except ValueError as told:
             raise NoPath(str(told)) from None
     if arguments.out and answer.path:  # what cannot be written is told alone
         try:
-            with _as_options():
+            with _as_options(arguments):
                 _write(arguments, answer)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(arguments.out, error) from None
@@ -444,7 +426,7 @@ def _check_words(arguments: Namespace) -> None:
             f"{', '.join(OUT[len(PICTURES) :])}"
         )
     limits = {name: getattr(arguments, name) for name in LIMITS}
-    with _as_options():
+    with _as_options(arguments):
         samples.check_limits(limits.pop("speed"), limits)
     if arguments.speed is not None and (
         arguments.out is None or arguments.out.suffix.lower() != ".csv"
@@ -453,21 +435,18 @@ def _check_words(arguments: Namespace) -> None:
 
 
 @contextmanager
-def _as_options() -> Iterator[None]:
-    """Have the message of a ValueError that begins with a name begin with the option of that
-    name.
+def _as_options(arguments: Namespace) -> Iterator[None]:
+    """Have the message of a ValueError that begins with a name begin with the option of that name,
+    or with that of settings.
     """
     try:
         yield
     except ValueError as error:
         name, colon, told = str(error).partition(":")
-        if colon and name in _FROM_MAPS:
-            option = (
-                f"--settings: {name}"
-                if name in ("turning_radius", "offset")
-                else f"--{name.replace('_', '-')}"
-            )
-            raise Fault(f"{option}:{told}") from None
+        if colon and name in vars(arguments):
+            raise Fault(f"--{name.replace('_', '-')}:{told}") from None
+        if colon and name in ("turning_radius", "offset"):
+            raise Fault(f"--settings: {name}:{told}") from None
         raise
 
 
@@ -629,7 +608,7 @@ def _told_number(value: float, digits: int) -> str:
 def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str, float]]:
     """Start and target, as far as given, and the headings there, by the names of their settings."""
     places, headings = {}, {}
-    with _as_options():
+    with _as_options(given):
         for end in () if given.scenario else ("start", "target"):
             places[end], heading = map_files.pose(end, getattr(given, end))
             if heading is not None:

@@ -20,9 +20,12 @@ from bezierplan.running import watchdog
 from bezierplan.running.tampering import left_alone
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.words import LONGEST, plain, told
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.polygons import Polygons
 
-KINDS = ("grid", "circles", "polygons")
-"""Kinds of workspace that planners meet."""
+KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
+"""Type of a workspace -> its kind, by which planners say what they serve."""
 
 LIMIT = 60.0
 """Seconds for which a planner's file may be executed, and each call of its `check` and `serves`."""
@@ -198,9 +201,13 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
 
 def _workspaces_fault(served: Any) -> str | None:
     if not isinstance(served, tuple | list):
-        return f"workspaces: {served!r}: expected kinds among {', '.join(KINDS)}"
-    unknown = [kind for kind in served if kind not in KINDS]
-    return f"workspaces: {unknown[0]}: unknown{closest(unknown[0], KINDS)}" if unknown else None
+        return f"workspaces: {served!r}: expected kinds among {', '.join(KINDS.values())}"
+    unknown = [kind for kind in served if kind not in KINDS.values()]
+    return (
+        f"workspaces: {unknown[0]}: unknown{closest(unknown[0], KINDS.values())}"
+        if unknown
+        else None
+    )
 
 
 def _failed(error: BaseException, file: str) -> str:
