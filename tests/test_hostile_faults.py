@@ -60,7 +60,7 @@ TEXTS = {
     "bytes that are no text": (
         E,
         b"title: \xff\xfe\n",
-        "experiments.yaml: cannot be read (UnicodeDecodeError)",
+        "experiments.yaml: cannot be read; expected text in UTF-8",
     ),
     "deep nesting of lists": (
         E,
@@ -160,7 +160,7 @@ TEXTS = {
         "",
         "table1.csv: line 1: the file is empty; expected a header",
     ),
-    "published bytes": (T, b"\xff\xff", "table1.csv: cannot be read (UnicodeDecodeError)"),
+    "published bytes": (T, b"\xff\xff", "table1.csv: cannot be read; expected text in UTF-8"),
     "published NUL": (
         T,
         "metric,statistic,n,unit,value\na\0,b,c,d,e\n",
@@ -253,13 +253,13 @@ WORDS = {
         E,
         "full: 100,",
         "full: 1000000000,",
-        "repeats: full: 1000000000: expected a whole number of at least 1",
+        "repeats: full: 1000000000: expected a whole number from 1 to 1000000",
     ),
     "repeats of 0": (
         E,
         "full: 100,",
         "full: 0,",
-        "experiments: routes: repeats: full: 0: expected a whole number of at least 1",
+        "experiments: routes: repeats: full: 0: expected a whole number from 1 to 1000000",
     ),
     "repeats below 0": (
         E,

@@ -5,6 +5,7 @@ function `main`.
 import argparse
 import importlib
 import os
+import signal
 import sys
 from functools import partial
 from pathlib import Path
@@ -128,6 +129,10 @@ def main(words: list[str]) -> None:
         sys.exit(2)
 
 
+INTERRUPTED = 128 + signal.SIGINT
+"""The exit status of a command that its user interrupts."""
+
+
 def start() -> None:
     """Do what the words of this process say, in a child: a command may execute planners, which can
     end a process in silence.
@@ -147,6 +152,10 @@ def start() -> None:
     except SystemExit as end:
         status = end.code if isinstance(end.code, int) else int(end.code is not None)
         raise
+    except watchdog.Interrupted:
+        status = INTERRUPTED
+        print(f"{PROGRAM}: interrupted", file=sys.stderr, flush=True)
+        sys.exit(status)
     finally:
         watchdog.settle(status)
 

@@ -3,15 +3,20 @@ package's Snakefile and profile.
 """
 
 import json
+import signal
 import subprocess
 import sys
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
+from contextlib import suppress
 from pathlib import Path
 
 from bezierplan.commands import SNAKEMAKE
 from bezierplan.places import TREE
 from bezierplan.running import forks
 from bezierplan.schema.checked import Fault
+
+# Seconds in which a workflow reacts to its user's interrupt.
+_PATIENCE = 2.0
 
 MANUAL = """
 Runs targets of the workflow; results are written below the working folder, into results/. A word
@@ -58,13 +63,20 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     except ValueError as fault:
         raise Fault(f"--config: {fault}") from None
     _check_cache(Path(get_appdirs().user_cache_dir))
-    ended = subprocess.run(
-        started,
-        stdout=forks.stream_for(sys.stdout),
-        stderr=forks.stream_for(sys.stderr),
-        check=False,
+    workflow = subprocess.Popen(
+        started, stdout=forks.stream_for(sys.stdout), stderr=forks.stream_for(sys.stderr)
     )
-    sys.exit(ended.returncode)
+    signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
+    try:
+        sys.exit(workflow.wait())
+    except KeyboardInterrupt:
+        # A terminal interrupts the workflow as well; others interrupt this process alone.
+        with suppress(subprocess.TimeoutExpired):
+            workflow.wait(_PATIENCE)
+        if workflow.poll() is None:
+            workflow.send_signal(signal.SIGINT)
+        workflow.wait()
+        raise
 
 
 def _check_cache(folder: Path) -> None:

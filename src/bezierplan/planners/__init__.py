@@ -109,13 +109,20 @@ def planner_module(planner: str) -> ModuleType:
     """
     if not is_file(planner):
         return importlib.import_module(f"bezierplan.planners.{planner}")
-    spec = importlib.util.spec_from_file_location(File(planner).stem, planner)
+    # Modules know themselves by name, such as those that numba or pickle keep parts of; this one is
+    # no library's.
+    name = f"planner_{File(planner).stem}"
+    spec = importlib.util.spec_from_file_location(name, planner)
     module = importlib.util.module_from_spec(spec)
     folder = File(planner).resolve().parent
-    known = set(sys.modules)
+    known = {*sys.modules, name}
     sys.path.append(str(folder))  # last, so that no user file shadows a library
+    sys.modules[name] = module
     try:
         spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
     finally:
         sys.path.remove(str(folder))
         # The planners of another study may have modules of the same name next to them.

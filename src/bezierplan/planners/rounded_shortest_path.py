@@ -324,7 +324,8 @@ def _rounded(
 
     Where two circles of the same sense get in each other's way, they become one turn and are pulled
     inwards in the same direction. Where that does not help, circles are pulled inwards less, and
-    only then shrink. With `give_up`, there are no points if one has to be below the turning radius.
+    only then shrink. There are no points if that does not help either, as around two round corners
+    of a grown map that touch; with `give_up`, also if one has to be below the turning radius.
     """
     count = len(turns.side)
     # Share of the desired radius, share of the way inwards up to the corner's clearance, and
@@ -342,6 +343,8 @@ def _rounded(
         wrong = _beside(bent_back) | crowded
         if wrong.any():
             slack = wrong & (pulled > 0) & (radii > turns.radius)
+            if not (slack.any() or share[_of_turns(wrong, begins)].any()):
+                return np.empty((0, 2)), radii, tries, False
             pulled[slack] = np.where(pulled[slack] > 0.1, pulled[slack] * _SHRINKING, 0.0)
             _shrink(share, wrong & ~slack, begins)
             continue
@@ -362,10 +365,15 @@ def _is_tight(radii: np.ndarray, settings: Settings) -> np.ndarray:
     return radii < settings.turning_radius * (1 - 1e-9)
 
 
+def _of_turns(which: np.ndarray, begins: np.ndarray) -> np.ndarray:
+    """The marked circles, along with the rest of their turns."""
+    turn = np.cumsum(begins)
+    return np.isin(turn, turn[which])
+
+
 def _shrink(share: np.ndarray, which: np.ndarray, begins: np.ndarray) -> None:
     """Shrink the marked circles, along with the rest of their turns."""
-    turn = np.cumsum(begins)
-    which = np.isin(turn, turn[which])
+    which = _of_turns(which, begins)
     share[which] = np.where(share[which] > _SMALLEST, share[which] * _SHRINKING, 0.0)
 
 

@@ -5,6 +5,7 @@ the process that judges its answers and writes them down.
 import contextlib
 import json
 import os
+import resource
 import signal
 import sys
 import time
@@ -39,7 +40,10 @@ def clock() -> np.ndarray:
 
 
 def _own_clock() -> np.ndarray:
-    return np.array([time.process_time(), time.perf_counter()])
+    """Children that have ended count, for a planner may leave its work to them."""
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = time.process_time() + ended.ru_utime + ended.ru_stime
+    return np.array([cpu, time.perf_counter()])
 
 
 @contextmanager

@@ -297,6 +297,8 @@ def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]
         blocked = region(problem.workspace)
         runs, fault = _runs(module, problem, settings)
         yield Finding(problem.name, "plan", not fault, fault)
+        if fault == watchdog.LEFT:
+            return  # later runs may wait for what has been ended
         if fault:
             continue
         plan, again, reseeded, *others = (run.plan for run in runs)

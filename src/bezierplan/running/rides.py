@@ -66,7 +66,13 @@ class _Driver:
         loan = lend_once(seen)
         if self._policy.warm:
             state = self._states.get(last)
-            plan, new = module.resume(loan.problem, self._rng, state, **settings)
+            answer = module.resume(loan.problem, self._rng, state, **settings)
+            if type(answer) is not tuple or len(answer) != 2:
+                raise TypeError(
+                    f"resume returns a {type(answer).__name__}; expected a Plan and what the next "
+                    "call gets as last"
+                )
+            plan, new = answer
             self._states = {last: state, number: new}
         else:
             plan = module.plan(loan.problem, self._rng, **settings)

@@ -25,6 +25,7 @@ _OWN = "bezierplan."
 _PLANNERS = "bezierplan.planners."
 """A planner may keep something in its own module, and replace parts of another planner."""
 _FUNCTIONS = (FunctionType, staticmethod, classmethod)
+_PLAIN = (bool, int, float, str, tuple)
 
 
 @contextmanager
@@ -86,9 +87,16 @@ def _put_back(home: ModuleType | type, before: dict[str, Any]) -> Iterator[str]:
     for name, value in before.items():
         # Values such as `__pydantic_validator__` are filled in late by libraries.
         late = name.startswith("__") and not isinstance(value, _FUNCTIONS)
-        if now.get(name) is not value and not late:
+        if not (late or _is_same(now.get(name), value)):
             setattr(home, name, value)
             yield f"{_path(home)}.{name}"
+
+
+def _is_same(now: Any, before: Any) -> bool:
+    """Whether a name stands for the same object, or for an equal plain one: time.tzset() makes its
+    names and numbers anew.
+    """
+    return now is before or (type(now) is type(before) and type(now) in _PLAIN and now == before)
 
 
 def _functions(home: ModuleType | type) -> Iterator[FunctionType]:

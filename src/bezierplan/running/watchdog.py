@@ -32,6 +32,8 @@ _LOOKS = 20
 # Seconds that a process has for ending after its work is done: threads that a planner left running
 # would keep an interpreter for ever.
 _ENDING = 10.0
+# Seconds for which what a planner leaves is killed, though it starts anew.
+_KILLING = 1.0
 # What a child tells last: that its end, good or bad, needs no more words.
 _SETTLED = "settled"
 
@@ -86,6 +88,8 @@ class Interrupted(KeyboardInterrupt):
 
 
 def _interrupt(*_: Any) -> NoReturn:
+    # The process that watches passes on what a terminal has sent to both.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     raise Interrupted
 
 
@@ -172,8 +176,11 @@ def _listed() -> set[int]:
 
 
 def end_children(spared: frozenset[int] = frozenset()) -> None:
-    """Kill the processes that this one has started, and theirs, but for some."""
-    while left := children() - spared:
+    """Kill the processes that this one has started, and theirs, but for some; for a while, since a
+    thread may start further ones.
+    """
+    until = time.monotonic() + _KILLING
+    while (left := children() - spared) and time.monotonic() < until:
         for child in left:
             with contextlib.suppress(ProcessLookupError, ChildProcessError):
                 os.kill(child, signal.SIGKILL)
@@ -256,14 +263,26 @@ def _adopt() -> None:
 
 
 def _wait(child: int, heard: int, name: str, report: Callable[[str], None]) -> NoReturn:
-    """Wait for a child, report what it does not say itself, and end as it does."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Wait for a child, report what it does not say itself, and end as it does. What interrupts or
+    terminates this process is passed on to the child.
+    """
+    passed_on: list[int] = []
+
+    def pass_on(number: int, _: Any) -> None:
+        passed_on.append(number)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(child, number)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, pass_on)
     _adopt()
     code = 1
     try:
         line, code = _heard(child, heard, name)
         end_children()
-        if line:
+        if line and passed_on:  # what ended it is known
+            code = 128 + passed_on[-1]
+        elif line:
             report(line)
     finally:
         os._exit(code)

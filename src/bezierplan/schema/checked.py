@@ -104,7 +104,9 @@ def text_of(file: Path, location: str) -> str:
         if found.st_size > LONGEST_FILE:
             raise Fault(f"{location}: {found.st_size} bytes; expected at most {LONGEST_FILE}")
         return file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError:
+        raise Fault(f"{location}: cannot be read; expected text in UTF-8") from None
+    except OSError as error:
         raise Fault(f"{location}: cannot be read ({type(error).__name__})") from None
 
 

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.schema.model import (
+    MOST,
     MOST_ENTRIES,
     Count,
     Line,
@@ -49,9 +50,9 @@ Point = Annotated[list[Number], of_length(2, "[x, y]")]
 class Scales(Model):
     """A number for each scale."""
 
-    smoke: Count = Field(description="a whole number of at least 1")
-    full: Count = Field(description="a whole number of at least 1")
-    extended: Count = Field(description="a whole number of at least 1")
+    smoke: Count = Field(description=f"a whole number from 1 to {MOST}")
+    full: Count = Field(description=f"a whole number from 1 to {MOST}")
+    extended: Count = Field(description=f"a whole number from 1 to {MOST}")
 
     def __getitem__(self, scale: str) -> int:
         return getattr(self, scale)
