@@ -139,6 +139,14 @@ def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
         assert run["evaluations"] > run["replans"] + 1 > 1
 
 
+def test_a_resume_without_a_state_is_told(tmp_path):
+    home = written(tmp_path, "start: centre", "start: centre, warm: true")
+    with (home / "walk.py").open("a") as file:
+        file.write(RESUMES.replace("evaluations=made), made", "evaluations=made)"))
+    with pytest.raises(RuntimeError, match=r"resume returns a Plan; expected a Plan and what"):
+        chunk(reading.load([home])["mystudy"])
+
+
 def test_a_drive_that_is_made_again_has_the_path_of_its_row(tmp_path):
     study = reading.load([written(tmp_path)])["mystudy"]
     made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)

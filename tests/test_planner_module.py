@@ -1,7 +1,10 @@
 """Planners of a reader's own, with modules of the reader's own beside them."""
 
+import os
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -174,3 +177,143 @@ def test_wrong_input_ends_every_command_with_status_2(words, tmp_path, monkeypat
         __main__.main(words)
     assert ended.value.code == 2
     assert capsys.readouterr().err
+
+
+LIBRARIES = {
+    "a kernel that numba keeps": """
+import numba
+
+@numba.njit(cache=True)
+def doubled(x):
+    return 2.0 * x
+
+def work():
+    return doubled(1.0) == 2.0
+""",
+    "annotations as text of a dataclass": """
+from __future__ import annotations
+from dataclasses import dataclass
+
+@dataclass
+class Node:
+    cost: float
+
+def work():
+    return Node(1.0).cost == 1.0
+""",
+    "its own functions in other processes": """
+import multiprocessing
+
+def doubled(x):
+    return 2 * x
+
+def work():
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        return pool.map(doubled, [1, 2]) == [2, 4]
+""",
+    "what it pickles": """
+import pickle
+
+class Node:
+    pass
+
+def work():
+    return type(pickle.loads(pickle.dumps(Node()))) is Node
+""",
+    "the clock's zone": """
+import time
+
+def work():
+    time.tzset()
+    return time.strptime("2026", "%Y").tm_year == 2026
+""",
+}
+USING = """
+import numpy as np
+from bezierplan.planners import Path, Plan
+
+def plan(problem, rng):
+    assert work()
+    path = Path("polyline", np.array([problem.start, problem.target]))
+    return Plan(path, 1.0, True, 1, np.array([1.0]), "one", {})
+"""
+
+
+@linux
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_a_planner_may_use_libraries_each_time(library, tmp_path):
+    """In one process after the other, since numba keeps a kernel for the next."""
+    (tmp_path / "room.txt").write_text("..\n")
+    (tmp_path / "uses.py").write_text(LIBRARIES[library] + USING)
+    words = [sys.executable, "-m", "bezierplan", *COMMANDS["plan"][:-4], "--planner", "uses.py"]
+    for _ in range(2):
+        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_planner_s_file_hides_no_library(tmp_path):
+    file = tmp_path / "json.py"
+    file.write_text(SOUND)
+    planner_module(str(file))
+    import json
+
+    assert json.dumps([1]) == "[1]"
+
+
+POOL = """
+import multiprocessing
+import numpy as np
+from bezierplan.planners import Plan
+
+pool = None
+
+def plan(problem, rng):
+    global pool
+    if pool is None:
+        pool = multiprocessing.get_context("fork").Pool(1)
+    pool.map(abs, [1])
+    return Plan.of_one(None, np.inf, "none")
+"""
+
+
+@linux
+def test_contract_tests_end_at_a_planner_that_keeps_processes(tmp_path):
+    """Its pool starts those anew that are ended, and would wait for them for ever."""
+    (tmp_path / "keeps.py").write_text(POOL)
+    words = [sys.executable, "-m", "bezierplan", "check-planner", "keeps.py"]
+    done = subprocess.run(
+        words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 1
+    assert "leaves a process behind" in done.stdout
+
+
+SLOW = """
+import time
+from pathlib import Path
+
+def plan(problem, rng):
+    Path("begun").touch()
+    time.sleep(600)
+"""
+
+
+@linux
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("send", [os.kill, os.killpg])
+def test_a_signal_ends_a_command_and_its_planner(number, send, tmp_path):
+    """Sent to the command alone, as schedulers do, or to all of its processes, as terminals do."""
+    (tmp_path / "room.txt").write_text("..\n")
+    (tmp_path / "slow.py").write_text(SLOW)
+    words = [sys.executable, "-m", "bezierplan", *COMMANDS["plan"][:-4], "--planner", "slow.py"]
+    command = subprocess.Popen(
+        words, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    until = time.monotonic() + 60
+    while not (tmp_path / "begun").exists() and time.monotonic() < until:
+        time.sleep(0.05)
+    send(command.pid, number)
+    _, told = command.communicate(timeout=60)
+    interrupted = number == signal.SIGINT
+    assert command.returncode == 128 + number
+    assert told == ("python -m bezierplan: interrupted\n" if interrupted else "")

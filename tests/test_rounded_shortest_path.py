@@ -17,9 +17,10 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import rounded_shortest_path
+from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
-from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
@@ -217,3 +218,17 @@ def test_rounding_is_fast():
             seconds.append(time.process_time() - middle - (middle - begin))
             assert bound.length > 0
         assert min(seconds) < 0.005
+
+
+GAP = [".......", "...#...", "...#...", ".......", "...#...", "...#...", "......."]
+
+
+@pytest.mark.parametrize("turning_radius", [0.0, 0.14, 1.0])
+def test_a_robot_as_wide_as_a_gap_in_which_it_turns(turning_radius):
+    """The round corners of the grown map touch there, and none can shrink."""
+    grid = from_lines(GAP, 1.0, "cell")
+    wide = robot.grow(grid, 0.5)
+    problem = Problem("gap", wide, (0.5, 6.5), (6.5, 0.5))
+    plan = rounded(problem, turning_radius)
+    assert check(curves.bezier_pieces(plan.path), region(wide)).feasible
+    assert plan.objective == pytest.approx(shortest_path(problem).length, rel=1e-4)

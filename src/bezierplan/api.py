@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from glob import escape
+from numbers import Real
 from pathlib import Path as File
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -428,6 +430,7 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     from bezierplan.running import footprints, problems
 
     _check_problem(problem)
+    _check_path(path)
     regions = problems.remembered()
     outline = None if footprint is None else outline_of(footprint)
     footprints.check_map(outline, problem.workspace, 0.0)
@@ -586,6 +589,14 @@ def plan(
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
+    if not _is_number(robot_radius):
+        raise ValueError(f"robot_radius: {robot_radius!r}; expected a number of at least 0")
+    if isinstance(via, str) or not isinstance(via, Sequence | np.ndarray):
+        raise ValueError(f"via: {via!r}; expected places, each of x and y")
+    for place in via:
+        _check_place(place, "via")
+    via = [tuple(map(float, place)) for place in via]
+    settings = {setting: _plain(value) for setting, value in settings.items()}
     (name, module, preset), regions = _method(method, problem, settings), problems.remembered()
     planner = _own_name(module)
     legs.check_planner(planner, planner or name, via, strict, smooth)
@@ -716,8 +727,43 @@ def _own_name(module: Any) -> str:
 
 
 def _check_problem(problem: Problem) -> None:
+    """Raise TypeError for what is no problem, and ValueError for places that are none."""
     if not isinstance(problem, Problem):
         raise TypeError(f"problem: is a {type(problem).__name__}; expected a Problem")
+    if not isinstance(problem.workspace, Workspace):
+        raise TypeError(
+            f"problem: workspace: is a {type(problem.workspace).__name__}; expected a map"
+        )
+    for end in ("start", "target"):
+        _check_place(getattr(problem, end), end)
+
+
+def _check_place(place: Any, name: str) -> None:
+    if not (
+        isinstance(place, Sequence | np.ndarray) and len(place) == 2 and all(map(_is_number, place))
+    ):
+        raise ValueError(f"{name}: {place!r}; expected x and y, two numbers")
+
+
+def _check_path(path: Any) -> None:
+    """Raise TypeError for what is no path, and ValueError for points that are none or too many."""
+    from bezierplan.running import answer
+
+    if not isinstance(path, Path):
+        raise TypeError(f"path: is a {type(path).__name__}; expected a Path")
+    points = np.asarray(path.points)
+    if points.dtype.kind not in "fiu":
+        raise ValueError("path: points: expected an array of numbers, (n, 2)")
+    answer.path_of(Path(path.curve, points.astype(float)))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+
+
+def _plain(value: Any) -> Any:
+    """A setting's value, of numpy's types as one of Python's."""
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _grown(problem: Problem, radius: float) -> Problem:
@@ -740,17 +786,19 @@ def _method(
     settings.
     """
     from bezierplan.planners import is_file, known_planners, planner_module
-    from bezierplan.running import legs
+    from bezierplan.running import interface, legs
     from bezierplan.schema.checked import closest
 
     if method is None:
         method = legs.default(settings)
     if isinstance(method, str) and method in legs.TURNING:
         return method, planner_module(method), legs.preset(method, problem.workspace)
-    if isinstance(method, ModuleType):
-        return method.__name__, method, {}
-    if callable(method):
-        return getattr(method, "__name__", "a function"), _Function(method), {}
+    if isinstance(method, ModuleType) or callable(method):
+        name = getattr(method, "__name__", "a function")
+        module = method if isinstance(method, ModuleType) else _Function(method)
+        if fault := interface.interface_fault(module):
+            raise TypeError(f"method: {name}: {fault}")
+        return name, module, {}
     if not isinstance(method, str):
         raise TypeError(
             f"method: is a {type(method).__name__}; "
@@ -759,7 +807,10 @@ def _method(
     if is_file(method):
         if not File(method).is_file():
             raise ValueError(f"method: {method}: no such file")
-        return method, planner_module(method), {}
+        module, fault = interface.imported(method)
+        if fault:
+            raise ValueError(f"method: {method}: {fault}")
+        return method, module, {}
     if method in known_planners():
         return method, planner_module(method), first_use(method)
     key, _, name = method.partition("/")
@@ -864,7 +915,7 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
             "results/full/song2016"
         )
     runs: dict[str, list[str]] = {}
-    for chunk in chunk_files(runs_folder, f"{experiment}/*/*.parquet"):
+    for chunk in chunk_files(runs_folder, f"{escape(experiment) or '-'}/*/*.parquet"):
         runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
         known = [each.name for each in runs_folder.iterdir()]

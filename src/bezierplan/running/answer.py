@@ -58,7 +58,7 @@ def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
     """
     if type(answer) is not Plan:
         raise Unfit(f"is a {type(answer).__name__}; expected a Plan")
-    path = None if answer.path is None else _path(answer.path)
+    path = None if answer.path is None else path_of(answer.path)
     plan = Plan(
         path=path,
         objective=_objective(answer.objective),
@@ -119,7 +119,8 @@ def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
 # The fields. Each function returns the plain value of a field, or raises Unfit.
 
 
-def _path(path: Any) -> Path:
+def path_of(path: Any) -> Path:
+    """A path as plain values. Raises Unfit."""
     if type(path) is not Path:
         raise Unfit("path: expected None or a Path")
     if type(path.curve) is not str:

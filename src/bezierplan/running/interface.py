@@ -42,16 +42,18 @@ def loaded(planner: str, location: str) -> ModuleType:
     """
     module, fault = None, ""
     if is_file(planner):
-        fault = watchdog.verdict("when it is imported", lambda: _loaded(planner)[1], LIMIT)
+        fault = watchdog.verdict("when it is imported", lambda: imported(planner)[1], LIMIT)
     if not fault:
-        module, fault = _loaded(planner)
+        module, fault = imported(planner)
     if fault:
         raise Fault(f"{location}: {fault}")
     return module
 
 
-def _loaded(planner: str) -> tuple[ModuleType | None, str]:
-    """The module of a planner, and what is wrong with it: empty if nothing is."""
+def imported(planner: str) -> tuple[ModuleType | None, str]:
+    """The module of a planner, which is executed in this process, and what is wrong with it: empty
+    if nothing is.
+    """
     try:
         if is_file(planner):
             import shapely  # noqa: F401, so that a part of it cannot be replaced unnoticed
@@ -130,9 +132,12 @@ def _complaint(function: Callable[..., Any], *given: Any) -> str:
 def interface_fault(module: ModuleType) -> str | None:
     """What a module lacks to be a planner, or None."""
     plan = getattr(module, "plan", None)
-    if not inspect.isfunction(plan):
+    try:
+        if not callable(plan) or isinstance(plan, type):
+            raise ValueError
+        parameters = inspect.signature(plan).parameters.values()
+    except ValueError:  # also where Python knows no signature
         return "no function plan; expected plan(problem, rng, *, <settings>)"
-    parameters = inspect.signature(plan).parameters.values()
     fixed = [
         parameter
         for parameter in parameters

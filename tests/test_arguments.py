@@ -1,0 +1,131 @@
+"""What Python programs may give to the functions of the interface, and what they are told."""
+
+import functools
+
+import numpy as np
+import pytest
+
+import bezierplan as bp
+
+ROOM = bp.Grid(np.zeros((8, 8), dtype=bool), 1.0, "m")
+PROBLEM = bp.Problem("room", ROOM, (0.5, 0.5), (7.5, 7.5))
+DIAGONAL = 7 * 2**0.5
+
+
+def planned(problem, rng):
+    from bezierplan.planners import Plan
+
+    return Plan.of_one(bp.Path("polyline", np.array([problem.start, problem.target])), 1.0, "one")
+
+
+class Planner:
+    def plan(self, problem, rng):
+        return planned(problem, rng)
+
+
+@pytest.mark.parametrize("method", [planned, Planner().plan, functools.partial(planned)])
+def test_what_can_be_called_is_a_method(method):
+    assert bp.plan(PROBLEM, method).length == pytest.approx(DIAGONAL)
+
+
+@pytest.mark.parametrize(
+    ("method", "told"),
+    [
+        (np, "method: numpy: no function plan; expected plan"),
+        (print, "method: print: function plan: expected plan"),
+        (dict, "method: dict: no function plan; expected plan"),
+        (lambda problem: None, "method: <lambda>: function plan: expected plan"),
+        (3, "method: is a int; expected a name"),
+    ],
+)
+def test_what_is_no_method_is_told(method, told):
+    with pytest.raises(TypeError, match=f"^{told}"):
+        bp.plan(PROBLEM, method)
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ("def plan(:\n", r"line 1: SyntaxError"),
+        ("\nimport no_such_library\n", r"line 2: ModuleNotFoundError"),
+        ("x = 1\n", "no function plan"),
+    ],
+)
+def test_a_file_that_is_no_planner_is_told(source, told, tmp_path):
+    file = tmp_path / "broken.py"
+    file.write_text(source)
+    with pytest.raises(ValueError, match=f"^method: {file}: {told}"):
+        bp.plan(PROBLEM, str(file))
+
+
+@pytest.mark.parametrize("via", [[(5.0, 2.0)], np.array([[5.0, 2.0]]), ((5, 2),)])
+def test_way_points_of_any_sequence(via):
+    assert bp.plan(PROBLEM, via=via).via == ((5.0, 2.0),)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ({"via": (5.0, 5.0)}, "via: 5.0; expected x and y, two numbers"),
+        ({"via": "5,5"}, "via: '5,5'; expected places"),
+        ({"via": None}, "via: None; expected places"),
+        ({"via": [(1.0, 1.0, 0.0)]}, r"via: \(1.0, 1.0, 0.0\); expected x and y"),
+        ({"robot_radius": "0.1"}, "robot_radius: '0.1'; expected a number"),
+        ({"robot_radius": True}, "robot_radius: True; expected a number"),
+        ({"robot_radius": None}, "robot_radius: None; expected a number"),
+    ],
+)
+def test_wrong_arguments_are_told_by_name(arguments, told):
+    with pytest.raises(ValueError, match=f"^{told}"):
+        bp.plan(PROBLEM, **arguments)
+
+
+@pytest.mark.parametrize("value", [np.int64(1), np.float32(1.0), 1])
+def test_numbers_of_numpy_are_settings(value):
+    assert bp.plan(PROBLEM, turning_radius=value).settings["turning_radius"] == 1
+
+
+@pytest.mark.parametrize("function", [bp.plan, bp.shortest_path])
+@pytest.mark.parametrize("place", [None, "ab", (1.0,), (1.0, 1.0, 1.57), ("2", "1"), (1j, 0.0)])
+def test_a_place_is_two_numbers(function, place):
+    """A third one, such as a heading, is not dropped in silence."""
+    with pytest.raises(ValueError, match=r"^start: .*; expected x and y, two numbers"):
+        function(PROBLEM._replace(start=place))
+
+
+@pytest.mark.parametrize("place", [(1, 1), [1.0, 1.0], np.array([1.0, 1.0])])
+def test_places_of_any_sequence(place):
+    assert bp.shortest_path(PROBLEM._replace(start=place)).length == pytest.approx(6.5 * 2**0.5)
+
+
+def test_a_map_is_a_map():
+    with pytest.raises(TypeError, match=r"^problem: workspace: is a str; expected a map"):
+        bp.plan(PROBLEM._replace(workspace="room.txt"))
+
+
+def test_points_of_a_path_may_be_whole_or_listed():
+    for points in ([[1, 1], [3, 1]], np.array([[1, 1], [3, 1]])):
+        assert bp.check(PROBLEM, bp.Path("polyline", points)).length == 2.0
+
+
+@pytest.mark.parametrize(
+    ("path", "error", "told"),
+    [
+        (None, TypeError, "path: is a NoneType; expected a Path"),
+        (bp.Path("polyline", np.zeros((3, 3))), ValueError, r"path: points: .*\(n, 2\)"),
+        (bp.Path("polyline", np.zeros((3, 2), complex)), ValueError, "path: points: expected"),
+        (bp.Path("bezier", np.ones((100, 2))), ValueError, "path: points: 100; expected at most"),
+        (bp.Path("bow", np.ones((3, 2))), ValueError, "path: unknown curve 'bow'"),
+    ],
+)
+def test_a_path_that_is_none_is_told(path, error, told):
+    with pytest.raises(error, match=f"^{told}"):
+        bp.check(PROBLEM, path)
+
+
+@pytest.mark.parametrize("name", ["*", "", "[a-z]*"])
+def test_an_experiment_is_a_name_and_no_pattern(name, tmp_path):
+    (tmp_path / "runs" / "routes" / "smooth").mkdir(parents=True)
+    (tmp_path / "runs" / "routes" / "smooth" / "0.parquet").write_bytes(b"")
+    with pytest.raises(ValueError, match=r"^experiment: .*no runs of it"):
+        bp.results(tmp_path, name)
