@@ -593,9 +593,9 @@ def plan(
         raise ValueError(f"robot_radius: {robot_radius!r}; expected a number of at least 0")
     if isinstance(via, str) or not isinstance(via, Sequence | np.ndarray):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
-    for place in via:
-        _check_place(place, "via")
-    via = [tuple(map(float, place)) for place in via]
+    for point in via:
+        _check_place(point, "via")
+    via = [tuple(map(float, point)) for point in via]
     settings = {setting: _plain(value) for setting, value in settings.items()}
     (name, module, preset), regions = _method(method, problem, settings), problems.remembered()
     planner = _own_name(module)
