@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -13,6 +14,7 @@ from bezierplan.planners import planner_module
 from bezierplan.running import interface, watchdog
 from bezierplan.schema import checked
 
+ROOT = Path(__file__).parents[1]
 PLANNER = """
 import json
 
@@ -317,3 +319,37 @@ def test_a_signal_ends_a_command_and_its_planner(number, send, tmp_path):
     interrupted = number == signal.SIGINT
     assert command.returncode == 128 + number
     assert told == ("python -m bezierplan: interrupted\n" if interrupted else "")
+
+
+@linux
+def test_an_interrupt_ends_the_workflow_that_a_command_has_started(tmp_path):
+    """And its jobs, though only the command is interrupted."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
+    command = [sys.executable, "-m", "bezierplan"]
+    subprocess.run([*command, "new", "mine"], cwd=tmp_path, env=environment, check=True)
+    slow = f"    from pathlib import Path\n    import time\n    Path({str(tmp_path / 'begun')!r})"
+    planner = tmp_path / "mine" / "walk.py"
+    lines = planner.read_text().splitlines()
+    after = next(n for n, line in enumerate(lines) if line.startswith("def plan")) + 2
+    lines[after:after] = [f"{slow}.touch()", "    time.sleep(600)"]
+    planner.write_text("\n".join(lines))
+    workflow = subprocess.Popen(
+        [*command, "run", "mine", "--cores", "1"],
+        cwd=tmp_path,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
+    until = time.monotonic() + 120
+    while not (tmp_path / "begun").exists() and time.monotonic() < until:
+        time.sleep(0.1)
+    workflow.send_signal(signal.SIGINT)
+    told, _ = workflow.communicate(timeout=60)
+    assert (workflow.returncode, told.splitlines()[-1]) == (
+        130,
+        "python -m bezierplan: interrupted",
+    )
+    # All that could still write has ended, for it would hold the pipe, and so has the lock.
+    assert not any((tmp_path / ".snakemake" / "locks").glob("*"))

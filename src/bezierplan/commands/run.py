@@ -3,20 +3,17 @@ package's Snakefile and profile.
 """
 
 import json
+import os
 import signal
 import subprocess
 import sys
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
-from contextlib import suppress
 from pathlib import Path
 
 from bezierplan.commands import SNAKEMAKE
 from bezierplan.places import TREE
 from bezierplan.running import forks
 from bezierplan.schema.checked import Fault
-
-# Seconds in which a workflow reacts to its user's interrupt.
-_PATIENCE = 2.0
 
 MANUAL = """
 Runs targets of the workflow; results are written below the working folder, into results/. A word
@@ -64,17 +61,17 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         raise Fault(f"--config: {fault}") from None
     _check_cache(Path(get_appdirs().user_cache_dir))
     workflow = subprocess.Popen(
-        started, stdout=forks.stream_for(sys.stdout), stderr=forks.stream_for(sys.stderr)
+        started,
+        stdout=forks.stream_for(sys.stdout),
+        stderr=forks.stream_for(sys.stderr),
+        process_group=0,
     )
     signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
     try:
         sys.exit(workflow.wait())
     except KeyboardInterrupt:
-        # A terminal interrupts the workflow as well; others interrupt this process alone.
-        with suppress(subprocess.TimeoutExpired):
-            workflow.wait(_PATIENCE)
-        if workflow.poll() is None:
-            workflow.send_signal(signal.SIGINT)
+        # As a terminal does, to the workflow and its jobs.
+        os.killpg(workflow.pid, signal.SIGINT)
         workflow.wait()
         raise
 
