@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -100,8 +101,7 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
 
 def check_step(step: float, length: float) -> None:
     """Raise ValueError for a step that is not above 0, or with too many samples on a length."""
-    if not 0 < step < math.inf:
-        raise ValueError(f"step: {step:g}; expected a number above 0")
+    _check_above_0("step", step)
     if length > step * (MOST_SAMPLES - 1):
         raise ValueError(
             f"step: {step:g}: more than {MOST_SAMPLES:,} points on {length:.6g} units; expected at "
@@ -161,11 +161,17 @@ def _reached(fast: np.ndarray, gains: np.ndarray) -> np.ndarray:
     return reached
 
 
+def _check_above_0(name: str, value: float) -> None:
+    if not isinstance(value, Real) or not 0 < value < math.inf:
+        shown = f"{value:g}" if isinstance(value, Real) else repr(value)
+        raise ValueError(f"{name}: {shown}; expected a number above 0")
+
+
 def check_limits(speed: float | None, accelerations: Mapping[str, float | None]) -> None:
     """Raise ValueError unless all limits given are above 0, and accelerations go with a speed."""
     for name, value in {"speed": speed, **accelerations}.items():
-        if value is not None and not 0 < value < math.inf:
-            raise ValueError(f"{name}: {value:g}; expected a number above 0")
+        if value is not None:
+            _check_above_0(name, value)
         if value is not None and speed is None:
             raise ValueError(f"{name}: {value:g}: without a speed; expected one beside it")
 
