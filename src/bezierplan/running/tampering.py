@@ -96,7 +96,7 @@ def _is_same(now: Any, before: Any) -> bool:
     """Whether a name stands for the same object, or for an equal plain one: time.tzset() makes its
     names and numbers anew.
     """
-    return now is before or (type(now) is type(before) and type(now) in _PLAIN and now == before)
+    return now is before or (type(before) in _PLAIN and repr(now) == repr(before))
 
 
 def _functions(home: ModuleType | type) -> Iterator[FunctionType]:
