@@ -2,8 +2,6 @@
 work.
 """
 
-import subprocess
-
 import pytest
 
 from bezierplan.__main__ import main
@@ -62,8 +60,16 @@ def test_words_that_cannot_be_meant_end_in_one_line(case, tmp_path, monkeypatch,
 def test_without_a_word_about_cores_the_workflow_starts(monkeypatch):
     """They are the profile's."""
     started = []
-    ended = subprocess.CompletedProcess([], 3)
-    monkeypatch.setattr(run.subprocess, "run", lambda words, **_: started.append(words) or ended)
+
+    class Started:
+        def __init__(self, words, **_):
+            started.append(words)
+
+        def wait(self):
+            return 3
+
+    monkeypatch.setattr(run.subprocess, "Popen", Started)
+    monkeypatch.setattr(run.signal, "signal", lambda *_: None)
     with pytest.raises(SystemExit) as found:
         main(["run", "mystudy"])
     assert found.value.code == 3

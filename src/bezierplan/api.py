@@ -427,7 +427,7 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     (True, 4.071, 0.5)
     """
     from bezierplan.geometry import curves, shortest_paths
-    from bezierplan.running import footprints, problems
+    from bezierplan.running import answer, footprints, problems
 
     _check_problem(problem)
     _check_path(path)
@@ -436,7 +436,8 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     footprints.check_map(outline, problem.workspace, 0.0)
     placed = problems.placed(problem, regions)
     bound = shortest_paths.shortest_path(placed.near, blocked=regions(placed.near.workspace))
-    inward = curves.inward(path, placed.frame)
+    points = np.array(path.points, dtype=float)
+    inward = answer.path_of(curves.inward(Path(path.curve, points), placed.frame))
     judged = verdict(placed, inward, bound.length, regions, footprint=outline)
     return Judged(**judged | {"path": path})
 
@@ -746,15 +747,12 @@ def _check_place(place: Any, name: str) -> None:
 
 
 def _check_path(path: Any) -> None:
-    """Raise TypeError for what is no path, and ValueError for points that are none or too many."""
-    from bezierplan.running import answer
-
+    """Raise TypeError for what is no path, and ValueError for points that are none."""
     if not isinstance(path, Path):
         raise TypeError(f"path: is a {type(path).__name__}; expected a Path")
     points = np.asarray(path.points)
-    if points.dtype.kind not in "fiu":
+    if points.dtype.kind not in "fiu" or points.ndim != 2 or points.shape[1] != 2:
         raise ValueError("path: points: expected an array of numbers, (n, 2)")
-    answer.path_of(Path(path.curve, points.astype(float)))
 
 
 def _is_number(value: Any) -> bool:
