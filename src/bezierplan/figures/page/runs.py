@@ -28,7 +28,7 @@ from bezierplan.workspaces.worlds import MovingCircles, World
 MOST_PROBLEMS, MOST_FAILED = 8, 2
 # Points along a path are left out where the path stays within this share of the workspace's longer
 # side. At most so many steps of history.
-_FLAT, _MOST_STEPS = 6e-4, 80
+_FLAT, _MOST_STEPS = 7e-4, 80
 
 
 _RANKED = ["id", "problem", "method", "repeat", "feasible", "length"]
