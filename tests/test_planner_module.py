@@ -253,6 +253,15 @@ def test_a_planner_may_use_libraries_each_time(library, tmp_path):
         assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.parametrize("before", ["", "import sys; del sys.modules[__name__]\n"])
+def test_a_file_that_fails_leaves_no_module(before, tmp_path):
+    file = tmp_path / "fails.py"
+    file.write_text(f"{before}1 / 0\n")
+    with pytest.raises(ZeroDivisionError):
+        planner_module(str(file))
+    assert "planner_fails" not in sys.modules
+
+
 def test_a_planner_s_file_hides_no_library(tmp_path):
     file = tmp_path / "json.py"
     file.write_text(SOUND)

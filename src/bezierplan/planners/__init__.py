@@ -121,7 +121,7 @@ def planner_module(planner: str) -> ModuleType:
     try:
         spec.loader.exec_module(module)
     except BaseException:
-        del sys.modules[name]
+        sys.modules.pop(name, None)  # whatever the file has done before it failed
         raise
     finally:
         sys.path.remove(str(folder))
