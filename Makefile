@@ -86,8 +86,8 @@ outcome: .venv/ready ## everything at scales full and extended, alternatives and
 
 verify-outcome: .venv/ready ## check this installation: minutes of runs, tested against docs/outcome
 	@$(UNLOCK)
-	$(SNAKEMAKE) $$($(RUN) -m bezierplan verify-outcome --targets) $(ARGS)
-	$(RUN) -m bezierplan verify-outcome
+	$(SNAKEMAKE) published $(ARGS)
+	$(RUN) -m bezierplan verify results/full --outcome
 
 lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --extra workflow --group dev pyproject.toml -o environment.txt

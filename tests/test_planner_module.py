@@ -166,10 +166,9 @@ def test_command_whose_planner_exits_says_so(command, place, tmp_path):
         ["list", "--studies", "./none"],
         ["replay", "song2016/none"],
         ["digest", "none"],
-        ["forecast", "none"],
         ["check-planner", "none"],
         ["plan", "none.txt"],
-        ["verify-outcome", "none"],
+        ["verify", "none", "--outcome"],
         ["outcome", "none"],
     ],
 )

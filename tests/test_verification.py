@@ -1,15 +1,17 @@
-"""`make verify-outcome`: equal numbers pass, chance seldom fails, and a real difference is
+"""`verify --outcome`: equal numbers pass, chance seldom fails, and a real difference is
 found.
 """
+
+import re
 
 import numpy as np
 import pandas as pd
 import pytest
 from studies import studies
 
+from bezierplan import __main__
 from bezierplan.analysis import verification
-from bezierplan.commands import verify_outcome
-from bezierplan.schema.checked import Fault
+from bezierplan.commands import verify
 from bezierplan.study import targets
 
 
@@ -95,67 +97,47 @@ def test_independent_samples_of_one_distribution_seldom_fail(name, statistic):
 
 
 @pytest.fixture
-def made(tmp_path, monkeypatch):
-    """A folder with song2016's table as kept."""
-    kept = pd.read_csv(verify_outcome.KEPT)
-    own = kept[(kept["study"] == "song2016") & (kept["table"] == "table1")]
-    file = tmp_path / verify_outcome.RESULTS / "song2016/tables/table1.comparison.csv"
-    file.parent.mkdir(parents=True)
-    own.drop(columns=["study", "table", "primary", "counted"]).to_csv(file, index=False)
-    monkeypatch.chdir(tmp_path)
-    return file
+def made(tmp_path):
+    """A folder with all tables as docs/outcome has them, and the file of song2016's."""
+    outcome = pd.read_csv(verify.OUTCOME)
+    for (study, table), rows in outcome.groupby(["study", "table"]):
+        file = tmp_path / study / "tables" / f"{table}.comparison.csv"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        rows.drop(columns=["study", "table", "primary", "counted"]).to_csv(file, index=False)
+    return tmp_path / "song2016/tables/table1.comparison.csv"
 
 
-def song():
-    return {"song2016": studies()["song2016"]}
+def test_docs_outcome_agrees_with_itself(made):
+    (first, last), sound = verify.against_outcome(made.parents[2])
+    n = re.fullmatch(r"(\d+) numbers compared, \1 equal, 0 different by more than chance", first)[1]
+    assert int(n) > 20
+    assert last.startswith("sound: ")
+    assert sound
 
 
-def test_kept_outcome_agrees_with_itself(made):
-    found = verify_outcome.verified(song())
-    told = verify_outcome.lines(found, verification.failed(found))
-    assert (
-        told[0]
-        == f"{found['p'].notna().sum()} numbers compared, {found['p'].notna().sum()} equal, 0 "
-        "different by more than chance"
-    )
-    assert found["p"].notna().sum() > 20
-    assert told[1].startswith("sound: ")
-
-
-def test_a_wrong_planner_is_found(made):
+def test_a_wrong_planner_ends_the_command_with_status_1(made, capsys):
     """Every objective of one method is half as long again."""
     frame = pd.read_csv(made)
     wrong = (frame["method"] == "smooth") & (frame["metric"] == "objective")
     assert wrong.any()
     frame.loc[wrong, ["value_ours", "low95_ours", "high95_ours"]] *= 1.5
     frame.to_csv(made, index=False)
-    found = verify_outcome.verified(song())
-    told = verify_outcome.lines(found, verification.failed(found))
-    assert any("song2016/table1/" in line and "/smooth/objective/" in line for line in told)
-    assert told[-1].startswith("not sound: ")
+    with pytest.raises(SystemExit) as ended:
+        __main__.main(["verify", str(made.parents[2]), "--outcome"])
+    lines = capsys.readouterr().out.splitlines()
+    assert ended.value.code == 1
+    assert any("song2016/table1/" in line and "/smooth/objective/" in line for line in lines)
+    assert lines[-1].startswith("not sound: ")
 
 
-def test_missing_tables_are_told(made):
+def test_a_missing_table_is_named(made):
     made.unlink()
-    with pytest.raises(
-        FileNotFoundError, match=r"table1\.comparison\.csv: not there; make verify-outcome makes it"
-    ):
-        verify_outcome.verified(song())
-    made.write_text(
-        pd.read_csv(verify_outcome.KEPT).head(1).assign(method="none").to_csv(index=False)
+    with pytest.raises(FileNotFoundError, match=r"table1\.comparison\.csv: not there; make verify"):
+        verify.against_outcome(made.parents[2])
+
+
+def test_docs_outcome_has_the_tables_with_published_numbers():
+    outcome = pd.read_csv(verify.OUTCOME)
+    assert targets.published_tables(studies()).keys() == set(
+        zip(outcome["study"], outcome["table"])
     )
-    with pytest.raises(
-        Fault,
-        match=r"table1\.comparison\.csv: none of its numbers is kept in "
-        r"docs/outcome/numbers_papers_size\.csv",
-    ):
-        verify_outcome.verified(song())
-    with pytest.raises(Fault, match=r"no number of docs/outcome/numbers_papers_size\.csv is here"):
-        verify_outcome.verified({})
-
-
-def test_targets_are_the_tables_with_published_numbers():
-    named = {f"{key}_{table}" for key, table in targets.published_tables(studies())}
-    assert {"song2016_table1", "meledje_table2"} <= named
-    kept = pd.read_csv(verify_outcome.KEPT)
-    assert named == set(kept["study"] + "_" + kept["table"])

@@ -24,17 +24,12 @@ COMMANDS = {
     "replay": "rerun one run, bit-identical, and plot it",
     "digest": "print a checksum of each run table; the order of rows does not matter, and timings "
     "are left out",
-    "verify": "check every stored path and bound of a scale's results again, in fresh processes",
+    "verify": "check every stored path and bound of a scale's results again, in fresh processes, "
+    "or its numbers with docs/outcome",
     "check-planner": "run the contract tests of a planner on small and degenerate problems",
     "plan": "plan one path on a map and check it by exact geometry",
-    "forecast": "estimate run time, disk use and longest jobs of a target",
-    "needed": "list the runs that claims and published numbers need, next to those of scale "
-    "extended",
-    "effort": "profile the last run of the workflow: CPU time by kind of work",
     "new": "make a study of your own, which runs at once",
     "run": "run targets of the workflow, from any folder",
-    "completion": "print what a shell evaluates to complete commands and names",
-    "verify-outcome": "compare numbers made here with docs/outcome: is this installation sound?",
     "outcome": "copy the outcome of results/extended and "
     "results/full to docs/outcome and into the README",
 }
@@ -46,12 +41,11 @@ EXAMPLES = {
         "replay elhoseny2017/moving/moving_slow_0_10/mga_replans/0",
     ),
     "digest": ("digest results/full",),
-    "verify": ("verify results/full --cores 2",),
+    "verify": ("verify results/full --cores 2", "verify results/full --outcome"),
     "check-planner": (
         "check-planner bca --study ma2020",
         "check-planner mystudy/walk.py --settings '{tries: 200}'",
     ),
-    "forecast": ("forecast song2016_table1", "forecast extended --cores 100"),
     "new": ("new mystudy", "new mystudy --from map.yaml --start 1,1 --target 9,9"),
 }
 """Examples that the help of a command shows, where the command does not write its own."""
@@ -137,10 +131,6 @@ def start() -> None:
     """Do what the words of this process say, in a child: a command may execute planners, which can
     end a process in silence.
     """
-    if "_ARGCOMPLETE" in os.environ:
-        from bezierplan.commands import completion
-
-        completion.answer(COMMANDS)
     watchdog.supervise(
         words.plain(f"{PROGRAM} {' '.join(sys.argv[1:])}", words.LONGEST),
         partial(print, file=sys.stderr, flush=True),

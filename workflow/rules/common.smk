@@ -27,7 +27,7 @@ if hasattr(sys.stderr, "reconfigure"):
 from snakemake.cli import get_argument_parser
 from snakemake.iocontainers import Params
 
-from bezierplan.running import effort, forks
+from bezierplan.running import forks
 from bezierplan.schema import checked
 from bezierplan.study import alternatives, experiments, jobs, page, reading, targets
 

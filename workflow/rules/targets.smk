@@ -12,6 +12,7 @@ try:
             "extended",
             "alternatives",
             "interpretations",
+            "published",
             "narrow",
             "default",
         ],
@@ -51,6 +52,16 @@ rule alternatives:
 rule interpretations:
     input:
         lambda wildcards: targets.files_of_interpretations(STUDIES, "full"),
+
+
+# What `make verify-outcome` compares with docs/outcome.
+rule published:
+    input:
+        lambda wildcards: [
+            file
+            for study, table in targets.published_tables(STUDIES)
+            for file in targets.files_of(STUDIES, "full", study, table)
+        ],
 
 
 for study in STUDIES:

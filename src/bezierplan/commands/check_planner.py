@@ -4,17 +4,14 @@ import sys
 from argparse import ArgumentParser
 
 from bezierplan.commands import of_study, settings_in
-from bezierplan.commands.completion import named
-from bezierplan.planners import known_planners
 from bezierplan.running import contract
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Print a planner's contract tests; exit with status 1 if one failed. Raises Fault."""
-    planner = parser.add_argument(
+    parser.add_argument(
         "planner", help="its name, or the path of its file; with --study the name of a method"
     )
-    named(planner, known_planners)
     source = parser.add_mutually_exclusive_group()
     source.add_argument(
         "--settings",

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 
 from bezierplan.analysis.table_kinds import Table
 from bezierplan.commands import add_studies
-from bezierplan.commands.completion import named
-from bezierplan.places import STUDIES
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.study import reading
@@ -21,10 +19,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     is neither a kind nor a study.
     """
     described = f"kinds ({', '.join(KINDS)}) and studies; without any, all of them"
-    named(
-        parser.add_argument("words", nargs="*", metavar="KIND_OR_STUDY", help=described),
-        lambda: [*KINDS, *(folder.name for folder in STUDIES.iterdir())],
-    )
+    parser.add_argument("words", nargs="*", metavar="KIND_OR_STUDY", help=described)
     add_studies(parser)
     parser.add_argument(
         "--settings",

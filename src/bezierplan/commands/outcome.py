@@ -14,7 +14,7 @@ import pandas as pd
 
 from bezierplan.analysis import explained, headline, summary
 from bezierplan.analysis.markdown import table_text
-from bezierplan.commands import forecast, needed, replay
+from bezierplan.commands import replay
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 
@@ -93,8 +93,6 @@ def write() -> None:
             if key in (varied if name == SENSITIVITY else searched):
                 shutil.copyfile(FULL / key / name, kept)
     shutil.copyfile(RESULTS / BASELINE_COMPARISON, KEPT / BASELINE_COMPARISON)
-    needed.table(studies, RESULTS).to_csv(KEPT / needed.KEPT, index=False)
-    forecast.keep(studies, Path())
     for picture in PICTURES:
         shutil.copyfile(FULL / picture, KEPT / picture.replace("/figures/", "_"))
     replay.animate(replay.replay(DRIVE, studies), KEPT / ANIMATION)

@@ -27,7 +27,6 @@ NEUTRAL = {
     for name in (
         "places",
         "running.digest",
-        "running.effort",
         "running.kernel_cache",
         "running.log",
     )

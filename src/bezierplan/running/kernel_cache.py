@@ -31,7 +31,6 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
 
-from bezierplan.running import effort
 from bezierplan.running.digest import kernel_folder
 
 # Seconds between two looks at whether another process still compiles, and how long a process waits
@@ -165,13 +164,12 @@ class Kernel(CPUDispatcher):
                 # passes.
                 sig = tuple(map(unliteral, sig))
             if isinstance(self._cache, NullCache):
-                with effort.spending("compiling"), _rare_garbage_collection():
+                with _rare_garbage_collection():
                     return super().compile(sig)
             if sig in self.overloads or self._cache.keeps(sig, self.targetctx.codegen()):
-                with effort.spending("loading kernels"):
-                    return super().compile(sig)
+                return super().compile(sig)
             folder = Path(self._cache.cache_path)
-            with effort.spending("compiling"), _alone(folder), _rare_garbage_collection():
+            with _alone(folder), _rare_garbage_collection():
                 return super().compile(sig)
 
 
@@ -199,17 +197,12 @@ def _alone(folder: Path) -> Iterator[None]:
         return
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
-        start = time.monotonic()
-        until = start + (PATIENCE if _held else math.inf)
-        busy = 0.0
+        until = time.monotonic() + (PATIENCE if _held else math.inf)
         while not _locked(lock) and time.monotonic() < until:
             if meanwhile and not _held:
-                began = time.monotonic()
                 meanwhile.pop(0)()
-                busy += time.monotonic() - began
             else:
                 time.sleep(LOOK)
-        effort.spent["waiting"] += time.monotonic() - start - busy
         _held.append(folder)
         try:
             yield

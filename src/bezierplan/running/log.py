@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running import effort, watchdog
+from bezierplan.running import watchdog
 from bezierplan.running.watchdog import end_with_parent
 from bezierplan.schema.words import plain, told
 
@@ -36,14 +36,13 @@ def job(snakemake: Any) -> Iterator[Any]:
     the output files.
 
     The block runs in a process that another one watches (`watchdog.supervise`). The files get their
-    final names when the block ends, and the log says what CPU time the job took (`effort`). An
-    exception is written to the job's log in full and ends the process with a one-line message,
-    which is also the last line of the log; so does an end that nothing in the process could report.
+    final names when the block ends. An exception is written to the job's log in full and ends the
+    process with a one-line message, which is also the last line of the log; so does an end that
+    nothing in the process could report.
     """
     log = snakemake.log[0]
     end_with_parent()
     watchdog.supervise(str(snakemake.output[0]), partial(report, log))
-    effort.begin()
     logging.basicConfig(
         filename=log,
         filemode="w",
@@ -53,7 +52,6 @@ def job(snakemake: Any) -> Iterator[Any]:
     try:
         with whole_files(snakemake.output) as output:
             yield output
-        logging.info(effort.line())
     except Exception as error:
         if isinstance(error, OSError) and error.errno in FULL:
             logging.raiseExceptions = False  # the log may lie on the same disk

@@ -1,0 +1,29 @@
+"""`python -m bezierplan list`."""
+
+import pytest
+
+from bezierplan.__main__ import main
+
+
+def listed(capsys, *words):
+    main(["list", *words])
+    return capsys.readouterr().out.splitlines()
+
+
+def test_list_shows_the_kinds_and_studies_that_are_named(capsys):
+    first, *lines = listed(capsys, "methods", "song2016")
+    assert first.startswith("song2016: ")
+    assert {line.split()[0] for line in lines} == {"method"}
+    # One line says what the method is.
+    smooth = next(line for line in lines if line.split()[1] == "smooth")
+    assert "Genetic algorithm over the cells of a grid" in smooth
+    lines = listed(capsys, "claims", "tables")
+    assert {line.split()[0] for line in lines if line.startswith("  ")} == {"claim", "table"}
+
+
+def test_list_says_what_an_unknown_word_may_mean(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["list", "metods"])
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("list: metods: neither a kind nor a study; did you mean methods?")
