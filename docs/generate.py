@@ -330,28 +330,12 @@ def paper_page(study: Any, claims: pd.DataFrame, numbers: pd.DataFrame) -> str:
         table(["entry", "detail", "default", "alternatives", "source"], open_details),
     ]
     parts += [
-        most_likely(study.key),
         "## Tables and figures\n",
         artefacts(study),
         "## Maps\n",
         maps(study),
     ]
     return "\n".join(parts)
-
-
-def most_likely(key: str) -> str:
-    """Under which interpretation a paper's printed numbers are most likely; empty if that was not
-    searched.
-    """
-    from bezierplan.analysis import explained
-
-    files = [
-        OUTCOME / f"{key}_{name}.csv"
-        for name in ("interpretations", "explained", "leave_one_table_out")
-    ]
-    if not all(file.is_file() for file in files):
-        return ""
-    return f"## Which experiment was it?\n\n{explained.sentences(*map(pd.read_csv, files))}\n"
 
 
 def artefacts(study: Any) -> str:

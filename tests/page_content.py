@@ -169,9 +169,6 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
         ],
         baseline_comparison=[baseline_comparison("a", 1.25), baseline_comparison("c", None)],
         baseline_comparison_in_words=HOSTILE,
-        explanations=[explanation("O1=8", 3), explanation("default", 1)],
-        interpretations_in_words="The printed numbers are most likely from O1=8.",
-        explained=[content.Explained(table="table1", numbers=3, default=1, best=3, never=0)],
         labels={"a": HOSTILE, "p": "the room"},
     )
 
@@ -191,12 +188,6 @@ def baseline_comparison(method: str, curvature: float | None) -> content.Baselin
         curvature=curvature,
         cornered=curvature is None,
         **given,
-    )
-
-
-def explanation(interpretation: str, count: int) -> content.Explanation:
-    return content.Explanation(
-        interpretation=interpretation, in_range=count, numbers=3, by_chance=1.2
     )
 
 

@@ -12,12 +12,10 @@ from studies import studies
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import conditions
-from bezierplan.study import choices
 from bezierplan.study.alternatives import (
     alternatives,
     methods_changed,
     methods_of_claims,
-    tried,
     with_alternative,
 )
 from bezierplan.study.jobs import job, problems_job
@@ -136,21 +134,6 @@ def test_alternatives_run_only_what_their_claims_compare(claim, experiment, meth
     assert methods_of_claims(study, claims(study, claim), experiment) == (
         every if methods is None else methods
     )
-
-
-@pytest.mark.parametrize("key", STUDIES)
-def test_every_setting_that_a_paper_leaves_open_is_tried(key):
-    """On claims, or, as a setting of competing methods alone, in the search for an
-    interpretation.
-    """
-    study = STUDIES[key]
-    searched = {choice.id for choice in choices.choices(study)}
-    left = {
-        assumption.id
-        for name, (assumption, _) in alternatives(study).items()
-        if name not in tried(study)
-    }
-    assert left <= searched
 
 
 @pytest.mark.parametrize("key", STUDIES)

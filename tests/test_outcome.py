@@ -132,26 +132,6 @@ def test_outcome_counts_verdicts_of_numbers():
     assert found[["numbers", "agrees", "disagrees", "inconclusive"]].to_list() == [4, 1, 1, 2]
 
 
-def test_interpretations_that_agree_stand_next_to_the_verdict():
-    claims = pd.DataFrame(
-        {"study": "one", "id": ["C1", "C1", "C2", "C3"], "variant": ["", "other", "", ""]}
-    )
-    claims = claims.assign(
-        primary=[True, False, True, True],
-        finding=False,
-        verdict=["supported", "partly", "no effect", "undecided"],
-    )
-    tried = pd.DataFrame(
-        {"study": "one", "claim": ["C1", "C1", "C2"], "changed": [False, False, True]}
-    )
-    found = summary.with_interpretations(claims, tried)
-    assert found["interpretations"].to_list() == ["3 of 3", "", "1 of 2", ""]
-    assert found["verdict"].equals(claims["verdict"])
-    numbers = summary.numbers({("one", "table1"): comparison([1.0], [1.2], ["plain"])})
-    assert headline.outcome(numbers, found).loc["one", "stable"] == "1 of 2"
-    assert "stable" not in headline.outcome(numbers, claims)
-
-
 def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
     claims = pd.DataFrame({"study": "one", "id": ["C1", "C1", "C2"], "variant": ["", "other", ""]})
     extended, full = (

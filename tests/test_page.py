@@ -499,48 +499,6 @@ def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
     assert found.shown_in == ["one/table1"]
 
 
-def test_best_interpretations_and_the_one_in_force_are_shown_with_what_they_explain():
-    tried = pd.DataFrame(
-        {
-            "interpretation": [*(f"O1={n}" for n in range(20)), "default"],
-            "in_range": range(21, 0, -1),
-            "numbers": 30,
-        }
-    )
-    tried = tried.assign(
-        by_chance=0.5,
-        impossible=0,
-        in_words="none",
-        score=range(21, 0, -1),
-        fresh_in_range=20,
-        fresh_score=21.0,
-        tried=21,
-    )
-    explained = pd.DataFrame(
-        {
-            "table": ["a", "a", "b"],
-            "default": [True, False, False],
-            "best": [True, True, False],
-            "interpretations": [9, 2, 0],
-        }
-    ).assign(missed_by=[0.0, 0.0, 1.0], value_published=10.0)
-    leave_one_table_out = pd.DataFrame(
-        {"table": ["a"], "score_line": [np.nan], "score_best": [1.0], "score_default": [0.0]}
-    )
-    found = other.of_interpretations(tried, explained, leave_one_table_out)
-    assert [each.interpretation for each in found["explanations"]] == [
-        *(f"O1={n}" for n in range(10)),
-        "default",
-    ]
-    assert found["interpretations_in_words"].startswith(
-        "Of 21 interpretations, the printed numbers are most likely from"
-    )
-    assert [tuple(each.model_dump().values()) for each in found["explained"]] == [
-        ("a", 2, 1, 2, 0),
-        ("b", 1, 0, 0, 1),
-    ]
-
-
 def test_method_with_corners_has_no_number_of_curvature():
     row = {
         "study": "one",

@@ -18,9 +18,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PROFILE = "https://w3id.org/ro/wfrun/{}/0.5"
-# Logs name places of the machine, and runs of alternatives and interpretations are many files that
-# `snakemake alternatives interpretations` makes again.
-LEFT_OUT = ("logs", "sensitivity", "interpretations")
+# Logs name places of the machine, and runs of alternatives are many files that
+# `snakemake alternatives` makes again.
+LEFT_OUT = ("logs", "sensitivity")
 MEDIA = {
     ".html": "text/html",
     ".csv": "text/csv",

@@ -11,7 +11,6 @@ try:
             "smoke",
             "extended",
             "alternatives",
-            "interpretations",
             "published",
             "narrow",
             "default",
@@ -47,11 +46,6 @@ rule narrow:
 rule alternatives:
     input:
         targets.files_of_sensitivity(STUDIES, "full"),
-
-
-rule interpretations:
-    input:
-        lambda wildcards: targets.files_of_interpretations(STUDIES, "full"),
 
 
 # What `make verify-outcome` compares with docs/outcome.

@@ -16,7 +16,6 @@ COLUMNS = {
     "numbers": "published numbers: agree or identified / disagree / inconclusive",
     "deviation": "typical deviation",
     "claims": "claims: supported / partly / contradicted or no effect / undecided or untestable",
-    "robust": "same verdict under every interpretation",
     "feasible": "feasible runs (baseline)",
     "length": "length over the baseline's",
     "cpu": "CPU time over the baseline's",
@@ -29,11 +28,10 @@ LEGEND = (
     "competing methods. *identified*: it is to the last digit the length of a path that we can "
     "name. *disagree*: it lies outside. *inconclusive*: the interval is too wide or has no end on "
     "that side, or the paper does not define the quantity. *typical deviation*: median of "
-    "|ours - published| / |published|. *partly*: the claim holds in some of its comparisons. *same "
-    "verdict under every interpretation*: of the claims that as many runs as the paper's decide, "
-    "those that no alternative reading of an open detail changes. The baseline is the exact "
-    "shortest path with rounded corners, which needs no search; the last three columns go from the "
-    "lowest to the highest of all methods, our own variants of the paper's included."
+    "|ours - published| / |published|. *partly*: the claim holds in some of its comparisons. The "
+    "baseline is the exact shortest path with rounded corners, which needs no search; "
+    "the last three columns go from the lowest to the highest of all methods, our own variants of "
+    "the paper's included."
 )
 
 _NUMBERS = {
@@ -80,8 +78,7 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
         columns=comparison.VERDICTS, fill_value=0
     )
     counts.insert(0, "numbers", counts.sum(axis=1))
-    table = counts.join(verdicts, how="outer").fillna(0).astype(int)
-    return table.join(_stable(deciding)) if "interpretations" in deciding else table
+    return counts.join(verdicts, how="outer").fillna(0).astype(int)
 
 
 def headline(
@@ -107,7 +104,6 @@ def headline(
             ),
             "deviation": _percent(deviation(counted[counted["study"] == study])),
             "claims": _of(_fewer(row)),
-            "robust": row.get("stable") if isinstance(row.get("stable"), str) else "",
             **_measured(measured[measured["study"] == study]),
         }
         for study, row in counts.loc[sorted(counts.index, key=list(titles).index)].iterrows()
@@ -157,22 +153,6 @@ def beside_baseline(measured: pd.DataFrame) -> str:
     return (
         f"Of {len(reliable)} methods feasible as often as the baseline, "
         f"{baseline_comparison.BASELINE}, {shorter} {gives} a shorter path."
-    )
-
-
-def _stable(claims: pd.DataFrame) -> pd.Series:
-    """How many of a study's claims have the same verdict under all interpretations, out of those on
-    which alternatives were tried, as text; a claim that no runs decide is none of them.
-    """
-    tried = claims[
-        (claims["interpretations"].fillna("") != "") & (claims["verdict"] != "untestable")
-    ]
-    agree = tried["interpretations"].str.split(" of ")
-    stable = (agree.str[0] == agree.str[1]).groupby(tried["study"]).agg(["sum", "size"])
-    return pd.Series(
-        {study: f"{same} of {total}" for study, same, total in stable.itertuples()},
-        name="stable",
-        dtype=object,
     )
 
 

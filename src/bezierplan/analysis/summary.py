@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import baseline_comparison, explained, headline
+from bezierplan.analysis import baseline_comparison, headline
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.jobs import SummaryJob
 from bezierplan.analysis.markdown import table_text
@@ -109,28 +109,6 @@ def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
     )
 
 
-def with_interpretations(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
-    """Claims with one more column after the verdict: `interpretations`, how many interpretations
-    agree with it, such as `9 of 12`: the default and each alternative that was tried and under
-    which the claim is decided; empty for a claim on which none was, and for one that is undecided
-    as read here.
-
-    tried: as from `sensitivity.sensitivity`, of all studies.
-    """
-    tried = tried[tried["changed"].notna()]
-    unchanged = (tried["changed"].astype(str) == "False").groupby(
-        [tried["study"], tried["claim"]]
-    ).agg(["sum", "size"]) + 1
-    words = {key: f"{agree} of {total}" for key, agree, total in unchanged.itertuples()}
-    interpretations = [
-        words.get((study, identity), "") if primary else ""
-        for study, identity, primary in claims[["study", "id", "primary"]].to_numpy()
-    ]
-    columns = list(claims)
-    columns.insert(columns.index("verdict") + 1, "interpretations")
-    return claims.assign(interpretations=interpretations)[columns]
-
-
 def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     """Claims of scale extended with one more column after the verdict: `verdict_papers_size`, that
     of the same claim at scale full.
@@ -149,30 +127,25 @@ def report(
     measured: pd.DataFrame,
     titles: dict[str, str],
     scale: str,
-    interpretations: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
 ) -> str:
     """The summary of a scale as markdown: the headline, the methods compared with the baseline,
     then the claims of each study with their verdicts.
 
-    measured: rows with the columns `baseline_comparison.COLUMNS`. interpretations: the tables of
-    `explained`, if the search for interpretations has been made.
+    measured: rows with the columns `baseline_comparison.COLUMNS`.
     """
     parts = [
         f"{HEADING}{scale}",
         headline.markdown(headline.headline(numbers, claims, measured, titles)),
         "A published number counts if it can be tested and is not derivable from other published "
         "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
-        "identified numbers. *same verdict under every interpretation*: of the claims tested "
-        "under alternative interpretations, at the paper's number of runs, how many never change "
-        "their verdict. `verdict_papers_size`: the verdict from as many runs as the paper made; "
-        "`replication_probability`: how often an experiment of that size shows what the claim "
-        "says. Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: it "
-        "bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
+        "identified numbers. `verdict_papers_size`: the verdict from as many runs as the paper "
+        "made; `replication_probability`: how often an experiment of that size shows what it "
+        "claims. Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: "
+        "it bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
         "gives one. Here each claim has its verdict under the default interpretation; "
         "`numbers.csv` and `claims.csv` have the others too.",
         *baseline_comparison.section(measured, titles),
-        *(explained.section(*interpretations, titles) if interpretations else []),
     ]
     for study, title in titles.items():
         primary = claims[(claims["study"] == study) & claims["primary"]].set_index("id")
@@ -188,8 +161,7 @@ def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
     columns = [
         *("statement", "verdict", "verdict_papers_size", "replication_probability"),
-        *("interpretations", "holds", "where_it_holds", "units_to_decide"),
-        *("published", "effect", "size", "n"),
+        *("holds", "where_it_holds", "units_to_decide", "published", "effect", "size", "n"),
     ]
     shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
     # Read from a file with gaps, whole numbers are floats.

@@ -74,8 +74,8 @@ class TableValue(Model):
     defined: Flag = Field(
         True,
         description="whether the paper says what it counts here; if not, its numbers are shown "
-        "next to ours, but are all inconclusive, and "
-        "`snakemake interpretations` leaves them out; left out: true",
+        "next to ours, but are all inconclusive; "
+        "left out: true",
     )
     label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")
     decimals: Decimals = Field(

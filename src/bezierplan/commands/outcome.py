@@ -1,9 +1,7 @@
 """The outcome kept in the repository: docs/outcome and the README's table.
 
 Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
-samples. Next to each verdict stand the verdict at the paper's own number of runs and, of studies
-whose alternatives were tried, how many interpretations of what the paper leaves open agree; both
-come from scale full.
+samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
 """
 
 import shutil
@@ -12,8 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis import explained, headline, summary
-from bezierplan.analysis.markdown import table_text
+from bezierplan.analysis import headline, summary
 from bezierplan.commands import replay
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
@@ -24,16 +21,8 @@ PICTURES = ("song2016/figures/figure3.png", "song2016/figures/identified.png")
 # The run of the README's animation, and its file.
 DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
-# Tables of each study at scale full.
+# The table of alternatives of each study at scale full.
 SENSITIVITY = "sensitivity.csv"
-INTERPRETATIONS = ("interpretations.csv", "explained.csv", "leave_one_table_out.csv")
-LIKELY = (
-    "Which experiment was it? All details that a paper leaves open were varied together; these "
-    "interpretations make its printed numbers most likely. docs/outcome/summary.md names their "
-    "choices, and the numbers that no interpretation explains. *with new seeds*: judged again by "
-    "runs that did not choose the interpretation, as is its likelihood over the default's. *by "
-    "chance*: expected if printed numbers of one kind are permuted within their table."
-)
 BASELINE_COMPARISON = "baseline_comparison.csv"
 NUMBERS_FULL = "numbers_papers_size.csv"
 SCALES = {
@@ -59,24 +48,9 @@ def write() -> None:
     """
     studies = reading.load(reading.read_config({}))
     titles = {key: study.title for key, study in studies.items()}
-    varied, searched = (
-        [key for key in titles if (FULL / key / name).is_file()]
-        for name in (SENSITIVITY, INTERPRETATIONS[0])
+    claims = summary.with_papers_size(
+        pd.read_csv(RESULTS / "claims.csv"), pd.read_csv(FULL / "claims.csv")
     )
-    tables = (
-        tuple(
-            pd.concat(pd.read_csv(FULL / key / name) for key in searched)
-            for name in INTERPRETATIONS
-        )
-        if searched
-        else None
-    )
-    claims = pd.read_csv(RESULTS / "claims.csv")
-    if varied:
-        claims = summary.with_interpretations(
-            claims, pd.concat(pd.read_csv(FULL / key / SENSITIVITY) for key in varied)
-        )
-    claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     numbers = pd.read_csv(RESULTS / "numbers.csv")
     measured = pd.read_csv(RESULTS / BASELINE_COMPARISON)
     KEPT.mkdir(parents=True, exist_ok=True)
@@ -84,14 +58,13 @@ def write() -> None:
     claims.to_csv(KEPT / "claims.csv", index=False)
     shutil.copyfile(FULL / "numbers.csv", KEPT / NUMBERS_FULL)
     (KEPT / "summary.md").write_text(
-        summary.report(numbers, claims, measured, titles, RESULTS.name, tables), encoding="utf-8"
+        summary.report(numbers, claims, measured, titles, RESULTS.name), encoding="utf-8"
     )
     for key in titles:
-        for name in (SENSITIVITY, *INTERPRETATIONS):
-            kept = KEPT / f"{key}_{name}"
-            kept.unlink(missing_ok=True)  # what was not made again is of another state
-            if key in (varied if name == SENSITIVITY else searched):
-                shutil.copyfile(FULL / key / name, kept)
+        kept, file = KEPT / f"{key}_{SENSITIVITY}", FULL / key / SENSITIVITY
+        kept.unlink(missing_ok=True)  # what was not made again is of another state
+        if file.is_file():
+            shutil.copyfile(file, kept)
     shutil.copyfile(RESULTS / BASELINE_COMPARISON, KEPT / BASELINE_COMPARISON)
     for picture in PICTURES:
         shutil.copyfile(FULL / picture, KEPT / picture.replace("/figures/", "_"))
@@ -110,17 +83,4 @@ def table(kept: Path) -> str:
     )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
-    return (
-        f"{headline.markdown(overview)}\n\nScale `{scale}`: "
-        f"{SCALES[scale]}{_most_likely(kept, list(titles))}"
-    )
-
-
-def _most_likely(kept: Path, studies: list[str]) -> str:
-    """The interpretations under which the papers' numbers are most likely, as far as searched."""
-    files = [file for key in studies if (file := kept / f"{key}_{INTERPRETATIONS[0]}").is_file()]
-    return (
-        f"\n\n{LIKELY}\n\n{table_text(explained.brief(pd.concat(map(pd.read_csv, files))))}"
-        if files
-        else ""
-    )
+    return f"{headline.markdown(overview)}\n\nScale `{scale}`: {SCALES[scale]}"

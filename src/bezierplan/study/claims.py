@@ -12,7 +12,6 @@ from annotated_types import MinLen
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.claim import Claim, ClaimId
-from bezierplan.analysis.search_job import WITHOUT
 from bezierplan.schema.model import (
     MOST_ENTRIES,
     Line,
@@ -24,7 +23,6 @@ from bezierplan.schema.model import (
     listed,
     mapping_or,
     matching,
-    shown,
     wrong,
 )
 from bezierplan.study.experiments import PART, PART_EXPECTED, ProblemName
@@ -68,14 +66,8 @@ class Assumption(Model):
     )
     workspace: dict[Name, Name] = Field(
         {},
-        description="workspace → its key that it governs, instead of a setting: `snakemake "
-        "interpretations` draws the workspace anew",
+        description="workspace → its key that it governs, instead of a setting",
         min_length=1,
-    )
-    table: Literal["within"] = Field(
-        None,
-        description="within: it governs this key of tables, instead of a setting; `all` is then a "
-        "table without the key, every other value its column",
     )
     along: dict[Name, dict[Name, Setting]] = Field(
         {},
@@ -89,16 +81,8 @@ class Assumption(Model):
         "one at a time (`sensitivity.csv`)",
     )
 
-    not_searched: listed(Setting) = Field(
-        [],
-        description="alternatives that `snakemake interpretations` "
-        "leaves out: they take too long, or the reason says why",
-    )
-
     @model_validator(mode="after")
     def _check_setting(self) -> "Assumption":
-        if unknown := [value for value in self.not_searched if value not in self.alternatives]:
-            raise wrong(f"not_searched: {shown(unknown[0])}: not among the alternatives")
         defaults = {
             identity(value)
             for value in (
@@ -113,13 +97,8 @@ class Assumption(Model):
                     f"alternatives: {value!r}: is part of a file's name; expected "
                     f"{PART_EXPECTED}, or a number"
                 )
-        if self.setting and (self.workspace or self.table):
-            raise wrong("setting: beside workspace or table; expected one of them")
-        if self.table and WITHOUT not in (self.default, *self.alternatives):
-            raise wrong(
-                f"default: {shown(self.default)}: expected {WITHOUT}, a table without the key "
-                f"{self.table}, or this among the alternatives"
-            )
+        if self.setting and self.workspace:
+            raise wrong("setting: beside workspace; expected one of them")
         if self.setting is None and self.problems:
             raise wrong(
                 "problems: without setting; expected the planner's setting that is governed there"

@@ -41,8 +41,6 @@ class Study:
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
     baseline_comparison: BaselineComparison | None
-    interpretations_tried: int
-    interpretations_finalists: int
     labels: dict[str, str]
     looks: dict[str, str]
     tables: dict[str, Table]

@@ -172,11 +172,6 @@ class Experiment(Model):
         description="where fewer runs suffice at scale extended: `method`, `problem`, or a varied "
         "setting or preset → value → repeats, a multiple of the chunk",
     )
-    interpretations: Count = Field(
-        None,
-        description="repeats from which `snakemake interpretations` judges an interpretation; by "
-        "default those of full",
-    )
 
     @model_validator(mode="after")
     def _check_size(self) -> "Experiment":
@@ -277,15 +272,4 @@ class ExperimentsFile(Model):
         None,
         description="the baseline with which the summary compares the study's methods: a row of "
         "`baseline_comparison.csv` for each method",
-    )
-    interpretations_tried: Count = Field(
-        60,
-        description="maximum number of interpretations of each method that "
-        "`snakemake interpretations` tries; of methods whose numbers are compared with each "
-        "other, together",
-    )
-    interpretations_finalists: Count = Field(
-        10,
-        description="maximum number of them that it judges by 1,000 runs: those whose likelihood "
-        "is within reach of the best",
     )

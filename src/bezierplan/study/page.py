@@ -28,9 +28,6 @@ from bezierplan.study.targets import Studies
 
 _END = b"</html>"
 
-SEARCHED = ("interpretations", "explained", "leave_one_table_out")
-"""Tables of what the search for an interpretation found."""
-
 
 def file(scale: str) -> str:
     """The page of a scale."""
@@ -112,8 +109,8 @@ def _verified(studies: Studies, scale: str) -> Iterator[tuple[str, str, list[str
 
 
 def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
-    """Params of the page. Alternatives and interpretations are shown if they have been tried: the
-    page does not ask for them.
+    """Params of the page. Alternatives are shown if they have been tried: the page does not ask for
+    them.
 
     root: what stands before the paths of results, with the slash at its end, in a workflow of which
     this one is a module.
@@ -148,14 +145,9 @@ def _outcome(studies: Studies, scale: str) -> list[str]:
 
 
 def _tried(folder: str) -> dict[str, str]:
-    """Tables of a study that are made only if asked for; those of interpretations together."""
-    files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", *SEARCHED)}
-    there = {name: file for name, file in files.items() if Path(file).is_file()}
-    return (
-        there
-        if there.keys() >= set(SEARCHED)
-        else {name: file for name, file in there.items() if name not in SEARCHED}
-    )
+    """Tables of a study that are made only if asked for."""
+    file = f"{folder}/sensitivity.csv"
+    return {"sensitivity": file} if Path(file).is_file() else {}
 
 
 def _artefacts(studies: Studies, scale: str) -> dict[str, list[str]]:

@@ -20,7 +20,7 @@ from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, module_of, versioned_digest
 from bezierplan.running.inputs import BOUNDS, PROBLEMS, Files, named, of_experiments, part
 from bezierplan.schema.model import plain
-from bezierplan.study import alternatives, choices, definition, design, jobs
+from bezierplan.study import alternatives, definition, design, jobs
 from bezierplan.study.definition import Study
 
 Studies = dict[str, Study]
@@ -512,37 +512,6 @@ def sensitivity_params(studies: Studies, scale: str, study: str) -> dict:
     }
 
 
-def interpretations_inputs(studies: Studies, scale: str, study: str) -> dict[str, Any]:
-    """Input files of the search for an interpretation, which makes problems and runs of its own."""
-    own = studies[study]
-    return {"maps": choices.maps(own)} | named(
-        "published", {name: own.published_file(name) for name in choices.printed_tables(own)}
-    )
-
-
-def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
-    """Params of the search for an interpretation."""
-    content = studies[study]
-    job = choices.search_job(content)
-    screened = job.stages["screened"]
-    planners = {
-        module_of(chunk.planner)
-        for table in screened.tables.values()
-        for chunk in table.jobs.values()
-    }
-    kinds = {
-        module
-        for world in screened.worlds.values()
-        for module in _kinds_of_workspace(world.workspaces)
-    }
-    return {
-        "job": plain(job),
-        "folder": definition.relative(content.folder),
-        "published": content_digest(*map(content.published_file, choices.printed_tables(content))),
-        "code": _code("interpretations", *sorted(planners), *sorted(kinds)),
-    }
-
-
 # --------------------------------------------------------------------------------------------------
 # All studies together
 
@@ -699,15 +668,6 @@ def files_of_sensitivity(studies: Studies, scale: str) -> list[str]:
         f"{_folder(scale, key)}/sensitivity.csv"
         for key, study in studies.items()
         if alternatives.tried(study)
-    ]
-
-
-def files_of_interpretations(studies: Studies, scale: str) -> list[str]:
-    """The interpretations of each study that has published numbers and leaves choices open."""
-    return [
-        f"{_folder(scale, key)}/interpretations.csv"
-        for key, study in studies.items()
-        if choices.printed_tables(study) and choices.choices(study)
     ]
 
 

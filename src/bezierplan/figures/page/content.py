@@ -276,30 +276,6 @@ class BaselineComparison(Record):
     cpu: float | None = Field(description="CPU time over the baseline's")
 
 
-class Explanation(Record):
-    """How many published numbers an interpretation of what the paper leaves open explains."""
-
-    interpretation: str = Field(description="its choices; `default` without any")
-    in_range: int = Field(
-        description="numbers in the central 95 % of what "
-        "experiments of the paper's size would print"
-    )
-    numbers: int = Field(description="of how many")
-    by_chance: float | None = Field(
-        description="expected number if those of one kind are permuted within their table"
-    )
-
-
-class Explained(Record):
-    """Numbers of a table that interpretations explain."""
-
-    table: str
-    numbers: int
-    default: int = Field(description="explained under the default interpretation")
-    best: int = Field(description="explained under the best interpretation")
-    never: int = Field(description="explained under no interpretation")
-
-
 class Shown(Record):
     """Runs of a method in the viewer, by their ids in `runs`: on one problem, or on all of an
     experiment.
@@ -347,13 +323,6 @@ class Study(Record):
     baseline_comparison_in_words: str = Field(
         "", description="what follows from `baseline_comparison`"
     )
-    explanations: list[Explanation] = Field(
-        [], description="the best interpretations tried, the best first, and the default"
-    )
-    interpretations_in_words: str = Field(
-        "", description="which interpretation is the most likely, and what none explains"
-    )
-    explained: list[Explained] = []
     shown: list[Shown]
     labels: dict[str, str] = Field(description="name -> how it is printed")
 

@@ -136,13 +136,6 @@ def _study(
         shown=[],
         labels=job.labels,
         **(other.of_baseline_comparison(key, measured) if measured is not None else {}),
-        **(
-            other.of_interpretations(
-                files["interpretations"], files["explained"], files["leave_one_table_out"]
-            )
-            if "interpretations" in files
-            else {}
-        ),
     )
 
 

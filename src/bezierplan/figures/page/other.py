@@ -1,5 +1,5 @@
-"""Content of the page from tables beside those of the paper: its methods, how they compare
-with the baseline, and which interpretations explain it.
+"""Content of the page from tables beside those of the paper: its methods, and how they
+compare with the baseline.
 """
 
 import ast
@@ -11,13 +11,9 @@ import pandas as pd
 
 from bezierplan import planners
 from bezierplan.analysis import baseline_comparison
-from bezierplan.analysis.explained import DEFAULT, sentences
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import address
 from bezierplan.figures.page.page_job import MethodShown
-
-# Interpretations shown of a study, beside the default.
-MOST_INTERPRETATIONS = 10
 
 
 def of_method(study: str, name: str, method: MethodShown) -> content.Method:
@@ -61,38 +57,6 @@ def of_baseline_comparison(study: str, measured: pd.DataFrame) -> dict[str, Any]
     return {
         "baseline_comparison": rows,
         "baseline_comparison_in_words": baseline_comparison.sentence(rows_of_study),
-    }
-
-
-def of_interpretations(
-    tried: pd.DataFrame, explained: pd.DataFrame, leave_one_table_out: pd.DataFrame
-) -> dict[str, Any]:
-    """Fields `explanations`, `interpretations_in_words` and `explained` of a study, from the tables
-    of `analysis.explained`.
-    """
-    named = tried["interpretation"] == DEFAULT
-    shown = pd.concat(
-        [tried[:MOST_INTERPRETATIONS], tried[MOST_INTERPRETATIONS:][named[MOST_INTERPRETATIONS:]]]
-    )
-    tables = [
-        content.Explained(
-            table=str(table),
-            numbers=len(rows),
-            default=int(rows["default"].sum()),
-            best=int(rows["best"].sum()),
-            never=int((rows["interpretations"] == 0).sum()),
-        )
-        for table, rows in explained.groupby("table", sort=False)
-    ]
-    columns = ["interpretation", "in_range", "numbers", "by_chance"]
-    rows = [
-        content.Explanation(**row | {"by_chance": _known(row["by_chance"])})
-        for row in shown[columns].to_dict("records")
-    ]
-    return {
-        "explanations": rows,
-        "interpretations_in_words": sentences(tried, explained, leave_one_table_out),
-        "explained": tables,
     }
 
 
