@@ -35,12 +35,12 @@ extended: .venv/ready ## everything, with hundreds to thousands of runs per meth
 	@$(UNLOCK)
 	$(SNAKEMAKE) extended $(ARGS)
 
-test: lint ## lint, the smoke subset, and all tests (ARGS go to pytest)
+test: lint ## lint, the smoke subset, and the tests (with ALL=1 also those of clusters, archives and the like; ARGS go to pytest)
 	@$(UNLOCK)
 	$(SNAKEMAKE) smoke
-	$(RUN) -m pytest -n auto --dist loadfile $(ARGS)
+	$(RUN) -m pytest -n auto --dist loadfile $(if $(ALL),,-m "not rare") $(ARGS)
 
-lint: .venv/ready ## code style, import layers and types
+lint: .venv/ready-dev ## code style, import layers and types
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m snakefmt --check Snakefile workflow
@@ -49,11 +49,11 @@ lint: .venv/ready ## code style, import layers and types
 	$(RUN) .venv/bin/lint-imports --no-logo --cache-dir .cache/import-linter
 	$(RUN) -m mypy
 
-docs: .venv/ready ## the documentation as a site, into .cache/docs/html; every example is run
+docs: .venv/ready-dev ## the documentation as a site, into .cache/docs/html; every example is run
 	$(RUN) -m sphinx --quiet --fail-on-warning --builder html --doctree-dir .cache/docs/doctrees docs .cache/docs/html
 	@echo 'Documentation: .cache/docs/html/index.html'
 
-wheel: .venv/ready ## a wheel for pip, into dist
+wheel: .venv/ready-dev ## a wheel for pip, into dist
 	$(RUN) -m hatchling build --target wheel
 
 image: ## an image for Docker with the workflow and its environment, named bezierplan
@@ -62,13 +62,12 @@ image: ## an image for Docker with the workflow and its environment, named bezie
 benchmark: .venv/ready ## speed of the inner loops, compared with a lower bound
 	$(RUN) tests/benchmark/run.py $(ARGS)
 
-mutants: .venv/ready ## mutation tests: each fault of tests/mutants must make its test fail (ARGS: --jobs N, words of some faults)
+mutants: .venv/ready-dev ## mutation tests: each fault of tests/mutants must make its test fail (ARGS: --jobs N, words of some faults)
 	$(RUN) tests/mutants/run.py $(ARGS)
 
 compare: .cache/comparison/ready ## our swarm compared with other libraries, all studies' planners with OMPL, into results/comparison
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'
-	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_robots.py'
 
 cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, for profiles/slurm and profiles/cluster
 	@$(call install,$(RUN),-r environment-cluster.txt)
@@ -90,8 +89,9 @@ verify-outcome: .venv/ready ## check this installation: minutes of runs, tested 
 	$(RUN) -m bezierplan verify results/full --outcome
 
 lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versions: ARGS=--upgrade)
-	$(LOCK) $(ARGS) --extra workflow --group dev pyproject.toml -o environment.txt
+	$(LOCK) $(ARGS) --extra workflow pyproject.toml -o environment.txt
 	$(LOCK) $(ARGS) --group build -c environment.txt -o environment-build.txt
+	$(LOCK) $(ARGS) --group dev -c environment.txt -o environment-dev.txt
 	sed -i '/- pip:$$/q' workflow/envs/bezierplan.yaml
 	$(RUN) -m uv pip compile --quiet --no-header --no-annotate --python-version 3.13 --extra workflow -c environment.txt pyproject.toml \
 	  | sed 's/^/      - /' >> workflow/envs/bezierplan.yaml
@@ -99,7 +99,7 @@ lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versi
 	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
 
-newest: .venv/ready ## check whether newer libraries change a result or fail a test, and which (ARGS: other flags of `make lock`)
+newest: .venv/ready-dev ## check whether newer libraries change a result or fail a test, and which (ARGS: other flags of `make lock`)
 	$(RUN) tests/newest/run.py $(ARGS)
 
 clean: ## remove results and caches
@@ -126,6 +126,12 @@ found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2
 	@$(call pip,$(RUN),-r environment-build.txt)
 	@$(call install,$(RUN),--no-binary connection-pool --no-build-isolation -r environment.txt)
 	@$(RUN) -c 'import sysconfig; open(sysconfig.get_path("purelib") + "/bezierplan.pth", "w").write("../../../../src\n")'
+	@touch $@
+
+# What tests, linters and documentation need beside the workflow.
+.venv/ready-dev: environment-dev.txt .venv/ready
+	@echo "Adding to .venv what tests, linters and documentation need"
+	@$(call install,$(RUN),-r environment-dev.txt)
 	@touch $@
 
 # Libraries to compare with and to archive with, apart from what the workflow runs on.

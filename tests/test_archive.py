@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.rare
+
 ROOT = Path(__file__).parents[1]
 SCRIPT, PYTHON = ROOT / "workflow/archive/archive.py", ROOT / ".cache/archive/bin/python"
 

@@ -18,6 +18,8 @@ import slurm
 import trees
 import yaml
 
+pytestmark = pytest.mark.rare
+
 ROOT = Path(__file__).parents[1]
 (LINES,) = re.findall(
     r"^## From a laptop to a cluster$.*?^```sh\n(.*?)^```$",

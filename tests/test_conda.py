@@ -10,8 +10,11 @@ import sys
 import tomllib
 from pathlib import Path
 
+import pytest
 import yaml
 from test_module import ARTEFACTS, CLAIMS, EXPERIMENTS
+
+pytestmark = pytest.mark.rare
 
 ROOT = Path(__file__).parents[1]
 ENVIRONMENT = ROOT / "workflow" / "envs" / "bezierplan.yaml"

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.rare
+
 ROOT = Path(__file__).parents[1]
 HADOLINT = shutil.which("hadolint", path=str(Path(sys.executable).parent))
 needs_hadolint = pytest.mark.skipif(

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+LOCKS = ("environment-build.txt", "environment.txt", "environment-dev.txt")
 TARGETS = {
     "help",
     "reproduce",
@@ -51,7 +52,7 @@ def tree(tmp_path):
     """A copy of what set-up reads, without an environment."""
     folder = tmp_path / "tree"
     folder.mkdir()
-    for name in ("Makefile", "environment.txt", "environment-build.txt"):
+    for name in ("Makefile", *LOCKS):
         shutil.copy2(ROOT / name, folder)
     return folder
 
@@ -62,6 +63,7 @@ def finished(tree):
     (tree / ".venv" / "bin").mkdir(parents=True)
     (tree / ".venv" / "bin" / "python").symlink_to(sys.executable)
     (tree / ".venv" / "ready").touch()
+    (tree / ".venv" / "ready-dev").touch()
     return tree
 
 
@@ -162,21 +164,17 @@ esac
 
 
 @pytest.mark.parametrize(
-    ("code", "asked"), [(0, ["pip", "uv"]), (2, ["pip", "uv", "pip"])], ids=["uv", "uv fails"]
+    ("code", "asked"),
+    [(0, ["pip", "uv", "uv"]), (2, ["pip", "uv", "pip", "uv", "pip"])],
+    ids=["uv", "uv fails"],
 )
 def test_uv_installs_what_is_locked_and_pip_where_uv_cannot(tree, tmp_path, code, asked):
-    answer = make(
-        tree,
-        ".venv/ready",
-        f"PYTHON={executable(tmp_path / 'python', INSTALLER.format(code=code))}",
-    )
+    python = executable(tmp_path / "python", INSTALLER.format(code=code))
+    answer = make(tree, ".venv/ready-dev", f"PYTHON={python}")
     assert answer.returncode == 0, answer.stderr
     lines = (tree / "installed.txt").read_text().splitlines()
     assert [line.split()[0] for line in lines] == asked
-    assert [line.split()[-1] for line in lines] == [
-        "environment-build.txt",
-        *["environment.txt"] * (len(asked) - 1),
-    ]
+    assert list(dict.fromkeys(line.split()[-1] for line in lines)) == list(LOCKS)
     assert all("--require-hashes --only-binary :all:" in line for line in lines)
     assert (tree / ".venv" / "ready").exists()
 
@@ -188,14 +186,21 @@ def test_byte_code_is_kept_whatever_the_environment_says(tree, monkeypatch):
 
 
 def test_a_finished_set_up_is_not_done_again(finished):
-    assert make(finished, "-q", ".venv/ready").returncode == 0
+    assert make(finished, "-q", ".venv/ready-dev").returncode == 0
 
 
-@pytest.mark.parametrize("name", ["environment.txt", "environment-build.txt"])
+@pytest.mark.parametrize("target", ["reproduce", "smoke", "image", "cluster"])
+def test_the_workflow_needs_no_tools_of_tests(finished, target):
+    (finished / ".venv" / "ready-dev").unlink()
+    assert "environment-dev.txt" not in make(finished, "-n", target).stdout
+    assert "environment-dev.txt" in make(finished, "-n", "test").stdout
+
+
+@pytest.mark.parametrize("name", LOCKS)
 def test_another_environment_is_set_up_anew(finished, name):
     later = (finished / ".venv" / "ready").stat().st_mtime + 10
     os.utime(finished / name, (later, later))
-    assert make(finished, "-q", ".venv/ready", f"PYTHON={sys.executable}").returncode == 1
+    assert make(finished, "-q", ".venv/ready-dev", f"PYTHON={sys.executable}").returncode == 1
 
 
 def test_a_half_made_environment_is_set_up_anew(finished):

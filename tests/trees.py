@@ -10,6 +10,7 @@ NAMES = (
     "README.md",
     "environment.txt",
     "environment-build.txt",
+    "environment-dev.txt",
     "environment-cluster.txt",
     "workflow",
     "src",

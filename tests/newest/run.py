@@ -26,7 +26,7 @@ SMOKE, KERNELS = "results/smoke", ".cache/kernels"
 # A compiled kernel depends on these alone.
 COMPILERS = {"llvmlite", "numba", "numpy"}
 # What the workflow and its tests run on; the other locks are those of environments of their own.
-LOCKS = ("environment-build.txt", "environment.txt")
+LOCKS = ("environment-build.txt", "environment.txt", "environment-dev.txt")
 # What a copy does without at the top of the tree. It has what git keeps, for the test of the
 # archive asks git.
 LEFT_OUT = {".venv", ".cache", ".snakemake", "archive"}
@@ -192,7 +192,7 @@ def smoke(folder: Path, libraries: Moved) -> str:
     kernels = next((tree / KERNELS for tree in (LOCKED, ROOT) if (tree / KERNELS).exists()), None)
     if kernels and not COMPILERS & libraries.keys():
         shutil.copytree(kernels, folder / KERNELS)
-    failed = run(folder, "make", ".venv/ready", f"PYTHON={Path(sys.executable).resolve()}")
+    failed = run(folder, "make", ".venv/ready-dev", f"PYTHON={Path(sys.executable).resolve()}")
     if libraries and not failed:
         failed = run(
             folder, ".venv/bin/python", "-m", "snakemake", "smoke", "--until", "runs", "drives"
