@@ -6,6 +6,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
+from bezierplan.analysis import results
+from bezierplan.analysis.papers import drawings
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
 
@@ -37,3 +41,9 @@ def arguments(key: str, function: str) -> dict[str, Any]:
         if function in (getattr(each, key, None) for key in ("function", "data", "name")):
             return each.arguments
     raise KeyError(function)
+
+
+def drawing(key: str, name: str) -> pd.DataFrame:
+    """The marks of a drawing of a study, from its file."""
+    file = FOLDER / key / "published" / f"{name}.csv"
+    return drawings.marks({name: results.published_table(file)}, drawing=name)

@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 from panels import options_of
 from studies import arguments, study
+from studies import drawing as drawn
 
 from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.figures.panels import drawing
@@ -82,7 +83,7 @@ def test_the_curves_beside_the_printed_lengths():
 
 
 def colours(operator):
-    marks = elhoseny2017.crossover_and_mutation(**given("crossover_and_mutation"))
+    marks = drawn("elhoseny2017", "figure1")
     cells = marks[(marks["operator"] == operator) & (marks["mark"] == "cell")]
     assert len(cells) == 16
     return {role: set(own["group"]) for role, own in cells.groupby("role")}
@@ -99,7 +100,7 @@ def test_mutation_changes_one_digit():
     found = colours("mutation")
     assert found["accent"] == {"0011"}
     assert found["muted"] == {"1011", "0111", "0001", "0010"}
-    marks = elhoseny2017.crossover_and_mutation(**given("crossover_and_mutation"))
+    marks = drawn("elhoseny2017", "figure1")
     places = marks[marks["mark"] == "cell"].drop_duplicates("group").set_index("group")[["x", "y"]]
     for child in found["muted"]:
         assert np.abs(places.loc[child] - places.loc["0011"]).sum() == 1, "drawn beside its parent"
@@ -117,7 +118,7 @@ def curve_of(marks):
 
 
 def test_the_genes_of_a_chromosome_are_those_of_its_field():
-    marks = drawing.data(elhoseny2017.chromosome(**given("chromosome")), options_of(drawing))
+    marks = drawing.data(drawn("elhoseny2017", "figure3"), options_of(drawing))
     genes = marks[marks["mark"] == "cell"].sort_values(["gene", "width"])
     assert len(genes) == 50
     assert (genes["value"].to_numpy()[::2] == genes["value"].to_numpy()[1::2]).all()
@@ -144,7 +145,7 @@ def test_the_genes_of_a_chromosome_are_those_of_its_field():
 
 
 def test_ten_points_are_judged_in_turn():
-    marks = drawing.data(elhoseny2017.validation(**given("validation")), options_of(drawing))
+    marks = drawing.data(drawn("elhoseny2017", "figure4"), options_of(drawing))
     circles = marks[marks["mark"] == "circle"]
     assert len(circles) == 3
     assert set(circles["radius"]) == {1.0}

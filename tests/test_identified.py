@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from studies import FOLDER
+from studies import FOLDER, drawing
 
 from bezierplan.analysis import identified, measures
 from bezierplan.analysis.claims import verdicts
@@ -154,3 +154,13 @@ def test_signed_curvature_counts_left_turns_alone():
 def test_generation_by_which_a_share_of_the_improvement_is_made():
     runs = pd.DataFrame({"history": [np.array([110.0, 102, 101, 100]), np.array([5.0, 5])]})
     assert measures.first_generation_improved_by(0.9, runs, {}).tolist() == [2, 0]
+
+
+@pytest.mark.parametrize("ends", ["0_15", "15_255", "240_255", "0_240"])
+def test_drawn_paths_of_song2016_have_the_printed_length(ends):
+    table = pd.read_csv(FOLDER / "song2016/published/table1.csv").query("metric == 'objective'")
+    printed = table.set_index(["problem", "method"])["value"][ends, "nonsmooth"]
+    marks = drawing("song2016", f"identified_{ends}")
+    for _, line in marks[marks["mark"] == "line"].groupby("group"):
+        length = np.hypot(*np.diff(line[["x", "y"]].to_numpy(), axis=0).T).sum()
+        assert length == pytest.approx(printed, abs=5e-5)

@@ -10,7 +10,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from panels import options_of
-from studies import arguments, study
+from studies import drawing as drawn
+from studies import study
 
 from bezierplan.analysis.papers import meledje
 from bezierplan.figures.panels import drawing
@@ -163,9 +164,7 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
 
 
 def test_chromosome_shows_the_numbers_of_the_paper():
-    marks = drawing.data(
-        meledje.chromosome(**arguments("meledje", "chromosome")), options_of(drawing)
-    )
+    marks = drawing.data(drawn("meledje", "figure2"), options_of(drawing))
     genes = marks[
         (marks["part"] == "genes") & (marks["mark"] == "text") & marks["text"].str.isdigit()
     ]
@@ -176,9 +175,7 @@ def test_chromosome_shows_the_numbers_of_the_paper():
 
 
 def test_children_of_the_drawn_crossover_exchange_their_tails():
-    marks = drawing.data(
-        meledje.crossover(**arguments("meledje", "crossover")), options_of(drawing)
-    )
+    marks = drawing.data(drawn("meledje", "figure3"), options_of(drawing))
     texts = marks[marks["mark"] == "text"]
     rows = {
         part: [own["text"].astype(int).to_list() for _, own in of.groupby("y", sort=False)]
@@ -188,22 +185,9 @@ def test_children_of_the_drawn_crossover_exchange_their_tails():
     assert rows["children"] == [one[:3] + other[3:], other[:3] + one[3:]]
 
 
-def test_drawn_mutations_have_the_settings_in_force():
-    given, settings = arguments("meledje", "mutations"), STUDY.resolved("proposed")
-    assert given["any_node"] == (settings["without_obstacle"] == "any_node")
-    assert given["beside_obstacle"] == (settings["obstacle_node"] == "neighbour")
-    assert settings["neighbourhood"] == "eight"
-    assert given["same_signs"] == (settings["direction"] == "same_signs")
-    assert given["whole_path"] == (settings["ref21_test"] == "path")
-    assert (given["keep_better"], given["penalty"]) == (
-        settings["keep_better"],
-        settings["penalty"],
-    )
-
-
 def test_drawn_mutations_mark_the_node_that_changes_the_one_in_its_place_and_the_others():
     marks = drawing.data(
-        meledje.mutations(workspace("operators"), **arguments("meledje", "mutations")),
+        drawn("meledje", "figure4"),
         options_of(drawing),
     )
     for operator, own in marks.groupby("operator"):
@@ -229,9 +213,7 @@ def test_drawn_mutations_mark_the_node_that_changes_the_one_in_its_place_and_the
 def test_drawn_mutations_show_what_is_said_of_them():
     home = workspace("operators")
     ground = ground_of(home, 1.0)
-    marks = drawing.data(
-        meledje.mutations(home, **arguments("meledje", "mutations")), options_of(drawing)
-    )
+    marks = drawing.data(drawn("meledje", "figure4"), options_of(drawing))
     met = {}
     for (operator, label), line in marks[marks["mark"] == "line"].groupby(["operator", "group"]):
         cells = (np.floor(line["y"]) * 10 + np.floor(line["x"])).astype(int).tolist()

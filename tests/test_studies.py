@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from studies import FOLDER as STUDIES
-from studies import KEYS, arguments
+from studies import KEYS, arguments, drawing
 from studies import study as shared
 
 from bezierplan.analysis import audit, metrics
@@ -334,9 +334,7 @@ def test_several_homotopy_classes(runs, mark, classes, counted):
 
 
 def test_ends_are_those_of_the_problems():
-    marks = tharwat2018.ends(
-        problem("equal").workspace, **arguments("tharwat2018", "ends")
-    ).set_index("role")[["x", "y"]]
+    marks = drawing("tharwat2018", "figure5").set_index("role")[["x", "y"]]
     for described in THARWAT["problems"].values():
         assert marks.loc["start"].to_list() == described["start"]
         assert marks.loc["target"].to_list() == described["target"]
@@ -346,23 +344,25 @@ def test_movement_follows_equation_8():
     """The parts of each velocity join head to tail from the particle's place to its next one; C1
     and C2 are the defaults.
     """
-    given = arguments("tharwat2018", "movement")
-    assert all(given[name] == THARWAT["settings"][name] for name in ("inertia", "c1", "c2"))
-    marks = tharwat2018.movement(**given)
-    for number, (x, v, p, r1, r2) in enumerate(given["particles"]):
+    inertia, c1, c2 = (THARWAT["settings"][name] for name in ("inertia", "c1", "c2"))
+    marks = drawing("tharwat2018", "figure2")
+    best = marks.loc[marks["group"] == "G 0", "x"].item()
+    # Of each particle: place, velocity, its best place, and two random numbers.
+    particles = ((1, 1.5, 3, 0.5, 0.3), (13, -1, 11.5, 0.6, 0.25))
+    for number, (x, v, p, r1, r2) in enumerate(particles):
         arrows = [
             marks[marks["group"] == f"{part} {number}"]["x"].to_list()
             for part in ("inertia", "cognition", "social part")
         ]
         assert arrows[0][0] == x
         assert [head for _, head in arrows[:-1]] == [tail for tail, _ in arrows[1:]]
-        moved = x + v + 1.5 * r1 * (p - x) + 1.5 * r2 * (given["best"] - x)
+        moved = x + inertia * v + c1 * r1 * (p - x) + c2 * r2 * (best - x)
         assert arrows[-1][1] == pytest.approx(moved)
         assert marks.loc[marks["group"] == f"new x {number}", "x"].item() == pytest.approx(moved)
 
 
 def test_flow_chart_has_a_box_around_every_step():
-    marks = tharwat2018.flow_chart()
+    marks = drawing("tharwat2018", "figure4")
     boxes = marks[marks["mark"] == "cell"]
     words = marks[(marks["mark"] == "text") & ~marks["text"].isin(["yes", "no"])]
     assert boxes[["x", "y"]].to_numpy().tolist() == words[["x", "y"]].to_numpy().tolist()

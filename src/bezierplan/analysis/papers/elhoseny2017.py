@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-import shapely
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
-from bezierplan.analysis.papers.marks import along, mark, text
-from bezierplan.analysis.papers.validation import curve_through, is_free, verdicts
+from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import path_of, select
 from bezierplan.geometry.cell_length import DIAGONAL, samples
 from bezierplan.geometry.region import region
@@ -30,9 +28,6 @@ from bezierplan.workspaces.seeds import generator
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
     from bezierplan.analysis.claims.kinds.function import Options as Check
-
-# Points in Figure 4 that are nearer to each other, in cells, hide each other's numbers.
-APART = 2.0
 
 
 def said(published: "Published") -> dict[str, float]:
@@ -443,166 +438,3 @@ def radius_errors(published: "Published") -> pd.DataFrame:
         for thousandths in range(5, 81)
     ]
     return pd.DataFrame(rows, columns=["radius", "side", "relative_error"])
-
-
-# --------------------------------------------------------------------------------------------------
-# Drawings
-
-
-def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
-    """Figure 1: marks of the sixteen four-digit chromosomes, once with the crossover of two
-    parents, and once with the mutation of the first; column operator.
-
-    The first two digits give the row and the last two the column, so that neighbours differ in one
-    digit.
-    """
-    rows, columns = ("10", "00", "01", "11"), ("00", "01", "11", "10")
-    at = {row + column: (i, -j) for i, column in enumerate(columns) for j, row in enumerate(rows)}
-    first, second = parents
-    crossed = {
-        head[:cut] + tail[cut:]
-        for cut in range(1, 4)
-        for head, tail in ((first, second), (second, first))
-    }
-    mutated = {first[:digit] + "10"[int(first[digit])] + first[digit + 1 :] for digit in range(4)}
-    marks = []
-    for operator, origins, children in (
-        ("crossover", parents, crossed),
-        ("mutation", parents[:1], mutated),
-    ):
-        for chromosome, (x, y) in at.items():
-            role, label = (
-                ("accent", "parent")
-                if chromosome in origins
-                else ("muted", "possible child")
-                if chromosome in children
-                else ("none", None)
-            )
-            size = {"width": 0.92, "height": 0.92}
-            named = {"group": chromosome, "label": label, "operator": operator}
-            marks.append(mark("cell", role, x, y, **size, **named))
-        marks += [text(*at[name], " ".join(name), operator=operator) for name in at]
-    middle = np.array(at[first])
-    for child in sorted(mutated):
-        arrow = [middle + share * (at[child] - middle) for share in (0.3, 0.68)]
-        marks += along("arrow", "second", arrow, group=f"to {child}", operator="mutation")
-    frame = np.add(
-        [[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[first][1])
-    )
-    named = {"group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
-    return pd.DataFrame([*marks, *along("line", "first", frame, **named)])
-
-
-def chromosome(*, least_distance: float) -> pd.DataFrame:
-    """Figure 3: marks of a field of 25 places, the curve of a valid chromosome in it, and below it
-    the chromosome's genes.
-
-    Every place is a gene; its number grows by one upwards, and by five to the right. The paper
-    gives neither its field nor its points: here one circle covers the central place, and the
-    chromosome is the first valid one among random ones with two control points. least_distance: the
-    smallest allowed distance between control points.
-    """
-    side, number = 4, 2
-    grid = random_field.from_circles(
-        Circles((0, side, 0, side), np.array([[2.0, 2.0]]), np.array([0.8]), "cell")
-    )
-    start, target = (0, 0), (side, side)
-    rng = generator("elhoseny2017/figure3")
-    path, points = None, []
-    while path is None or not is_free(path, grid):
-        drawn = verdicts(rng.integers(0, side + 1, (number, 2)), grid, least_distance)
-        points = [
-            each.point
-            for each in drawn
-            if each.word == "accepted" and each.point not in (start, target)
-        ]
-        path = curve_through(points, start, target) if len(points) == number else None
-    curve = shapely.LineString(grid.in_units(np.column_stack(samples(path, grid))))
-    marks = []
-    gene_width, top = 0.44, 1.4
-    for gene, (x, y) in enumerate(itertools.product(range(side + 1), repeat=2)):
-        value = -1 if grid.occupied[y, x] else int((x, y) in points)
-        role = {-1: "obstacle", 1: "accent", 0: "none"}[value]
-        label = {-1: "obstacle, -1", 1: "control point, 1", 0: None}[value]
-        named = {"group": f"gene {gene}", "label": label, "gene": gene, "value": value}
-        middle = side / 2 + gene_width * (gene - 12)
-        marks += [
-            mark("cell", role, x, y + top, width=1.0, height=1.0, **named),
-            mark("cell", role, middle, 0.0, width=gene_width, height=gene_width, **named),
-            text(middle, 0.0, value),
-        ]
-        corners = [
-            (x + aside, y + above) for aside, above in itertools.product((0.28, -0.28), (0.3, -0.3))
-        ]
-        a, b = max(corners, key=lambda corner: round(curve.distance(shapely.Point(corner)), 6))
-        marks.append(text(a, b + top, gene))
-        if y == 0 or gene == (side + 1) ** 2 - 1:
-            marks.append(text(middle, -0.45, gene))
-    places = [(a, b + top) for a, b in curve.coords]
-    marks += along("line", "second", places, group="curve", label="Bézier curve")
-    marks += [
-        mark("dots", role, a, b + top, group=role, label=role)
-        for role, (a, b) in (("start", start), ("target", target))
-    ]
-    return pd.DataFrame(marks)
-
-
-def validation(
-    *,
-    points: int,
-    least_distance: float,
-    side: int,
-    start: list[int],
-    target: list[int],
-    obstacles: int,
-    radius: float,
-    clear_ends: float,
-) -> pd.DataFrame:
-    """Figure 4: marks of random points in a field, tested in turn, circles of the least distance
-    around the accepted points, and their curve. Further columns: candidate (its number) and
-    verdict.
-
-    The random fields and points shown are the first in which each rule rejects a point, the curve
-    is free, and no two points hide each other's numbers. points: how many. The arguments from side
-    on describe the field, as in a `random_field`.
-    """
-    from scipy.spatial.distance import pdist
-
-    ends = tuple(start), tuple(target)
-    workspace = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
-    for number in itertools.count():
-        described = {"side": side, "start": ends[0], "target": ends[1]}
-        described |= {"obstacles": obstacles, "layout": number}
-        grid = random_field.field(workspace, described, "elhoseny2017/figure4")
-        drawn = generator("elhoseny2017/figure4/points", number).integers(0, side + 1, (points, 2))
-        judged = verdicts(drawn, grid, least_distance)
-        path = curve_through([each.point for each in judged if each.word == "accepted"], *ends)
-        words = {each.word for each in judged}
-        legible = pdist([*drawn.tolist(), *ends]).min() >= APART
-        if words == {"obstacle", "too near", "accepted"} and legible and is_free(path, grid):
-            break
-    marks = [
-        mark("circle", "obstacle", x, y, group="obstacles", label="obstacle", radius=reach)
-        for (x, y), reach in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
-    ]
-    angles = np.linspace(0, 2 * math.pi, 61)
-    circle = least_distance * np.column_stack([np.cos(angles), np.sin(angles)])
-    label = f"distance r = {least_distance:g}"
-    for candidate, (point, word) in enumerate(judged, 1):
-        if word == "accepted":
-            ring = (np.array(point) + circle).tolist()
-            marks += along("line", "muted", ring, group=f"ring {candidate}", label=label)
-    curve = grid.in_units(np.column_stack(samples(path, grid)))
-    marks += along("line", "third", curve, group="curve", label="Bézier curve")
-    looks = {
-        "accepted": ("first", "control point"),
-        "obstacle": ("accent", "on an obstacle"),
-        "too near": ("second", "too near to another"),
-    }
-    for candidate, ((x, y), word) in enumerate(judged, 1):
-        role, label = looks[word]
-        named = {"group": word, "label": label, "candidate": candidate, "verdict": word}
-        marks += [mark("dots", role, x, y, **named), text(x - 0.8, y + 0.7, candidate)]
-    for role, place in zip(("start", "target"), ends, strict=True):
-        marks.append(mark("dots", role, *place, group=role, label=role))
-    return pd.DataFrame(marks)

@@ -13,10 +13,9 @@ import pandas as pd
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.measures import obstacle_clearance
-from bezierplan.analysis.papers.marks import along, mark, text
+from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import path_of, pick, select
 from bezierplan.geometry import curves
-from bezierplan.planners.parts.genetic import swap_tails
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
@@ -37,56 +36,6 @@ SLIGHTLY = 1.5
 # which it counts as zero.
 SPEED_SAMPLES = 20_001
 STILL = 1e-6
-
-
-def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
-    """Marks of Figure 1, column `drawn`: a path with corners, the Bézier curve with these corners
-    as control points, and both.
-
-    points: start, corners and target.
-    """
-    zigzag = np.array(points, dtype=float)
-    steps = curves.sample_matrix("bezier", len(zigzag), 201) @ zigzag
-    corners = _labelled("line", "second", zigzag, "path with corners")
-    curve = _labelled("line", "first", steps, "Bézier curve")
-    dots = [
-        *_labelled("dots", "third", zigzag[1:-1], f"corners P1 to P{len(zigzag) - 2}"),
-        *_labelled("dots", "start", zigzag[:1], "start S"),
-        *_labelled("dots", "target", zigzag[-1:], "target T"),
-    ]
-    parts = {"corners": corners, "curve": curve, "both": corners + curve}
-    return pd.DataFrame(
-        [each | {"drawn": name} for name, lines in parts.items() for each in lines + dots]
-    )
-
-
-def _labelled(kind: str, role: str, points: np.ndarray, label: str) -> list[dict]:
-    return along(kind, role, points, group=label, label=label)
-
-
-def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
-    """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after
-    the crossover's tails are swapped.
-
-    parents: cells, counted from 0 as the planner does; they are shown as equation (10) counts, from
-    1. bits: of a cell number. cut: the number of genes before the cut.
-    """
-    chromosomes = np.array(parents)
-    children = chromosomes.copy()
-    swap_tails(*children, bits * cut, bits)
-    marks = []
-    for drawn, rows in (("before", chromosomes), ("after", children)):
-        shown = {"drawn": drawn}
-        for height, row in zip((1.3, 0.0), rows):
-            # A gene keeps the colour of its original chromosome.
-            for x, gene in enumerate(row):
-                role = "accent" if gene == chromosomes[0, x] else "muted"
-                marks.append(mark("cell", role, x, height, width=0.96, height=0.8, **shown))
-                marks.append(text(x, height, gene + 1, **shown))
-        label = f"cut between genes {cut} and {cut + 1}"
-        line = [(cut - 0.5, -0.7), (cut - 0.5, 2.0)]
-        marks += along("line", "second", line, group=label, label=label, **shown)
-    return pd.DataFrame(marks)
 
 
 def drawn_farther(

@@ -13,7 +13,7 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
-from bezierplan.analysis.papers.marks import along, mark, text
+from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps
@@ -81,90 +81,6 @@ def chaotic_sequences(
             pd.DataFrame({"map": name, "iteration": np.arange(1, iterations + 1), "value": values})
         )
     return pd.concat(frames, ignore_index=True)
-
-
-def ends(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
-    """Figure 5: marks of start and target, for any circles."""
-    ends = {"start": start, "target": target}
-    return pd.DataFrame([mark("dots", role, *at, label=role) for role, at in ends.items()])
-
-
-def movement(
-    *, particles: list[list[float]], best: float, inertia: float, c1: float, c2: float
-) -> pd.DataFrame:
-    """Figure 2: marks of particles that move in one dimension, the three parts of each velocity
-    (eq. 8) from tail to head.
-
-    particles: of each its position x, velocity v, best position p, r1 and r2. best: that of the
-    swarm. inertia, c1, c2: as in eq. 8. Further columns: part (of the velocity, its name) and value
-    (its signed length).
-    """
-    marks = []
-    for number, (x, v, p, r1, r2) in enumerate(particles):
-        line = -5.0 * number  # the height at which the particle moves
-        parts = (
-            ("inertia", "third", "w v", inertia * v),
-            ("cognition", "first", "C1 r1 (p - x)", c1 * r1 * (p - x)),
-            ("social part", "second", "C2 r2 (G - x)", c2 * r2 * (best - x)),
-        )
-        moved = x + sum(part for *_, part in parts)
-        aside = math.copysign(1.0, best - x)  # words are placed beyond the heads
-        marks += along("line", "muted", [(-1.0, line), (15.0, line)], group=f"line {number}")
-        tail = x
-        for height, (name, role, formula, part) in enumerate(parts, start=1):
-            y = line + 0.9 * height
-            named = {"group": f"{name} {number}", "part": name, "value": part}
-            marks += along("arrow", role, [(tail, y), (tail + part, y)], **named)
-            tail += part
-            marks.append(text(moved + aside * 4.3, y, f"{name} {formula}"))
-        for role, position, words, label in (
-            ("first", x, "x", "position"),
-            ("third", p, "p", "best position"),
-            ("start", moved, "new x", "next position"),
-            ("target", best, "G", "best position of the swarm"),
-        ):
-            marks.append(mark("dots", role, position, line, group=f"{words} {number}", label=label))
-            if words != "new x":
-                marks.append(text(position, line - 0.75, words))
-    return pd.DataFrame(marks)
-
-
-def flow_chart() -> pd.DataFrame:
-    """Figure 4: marks of a flow chart of the method (Section 4, Algorithm 1), boxes from top to
-    bottom and arrows between them.
-    """
-    middle, left, right, width, height, step = 0.0, -62.0, 62.0, 190.0, 22.0, 36.0
-    steps = [
-        ("muted", "particles at random positions, velocities 0"),
-        ("none", "particle: control points of a curve (eq. 1)"),
-        ("none", "fitness: length and collisions (eqs. 19 to 22)"),
-        ("none", "best position p of each, best G of all"),
-        ("accent", "last iteration, or G not better for ten?"),
-        ("none", "next number ζ of the map (eqs. 9 to 16)"),
-    ]
-    boxes = [(middle, -step * i, width, role, words) for i, (role, words) in enumerate(steps)]
-    boxes += [
-        (left, -step * 6, 115.0, "accent", "CPSO-I: ζ for r1 (eq. 17)"),
-        (right, -step * 6, 115.0, "accent", "CPSO-II: ζ for r2 (eq. 18)"),
-        (middle, -step * 7, width, "none", "move all particles within the field (eqs. 7, 8)"),
-        (middle, -step * 8, width, "muted", "path of G"),
-    ]
-    below, above = -height / 2, height / 2
-    edge = left - 65.0
-    ways = [
-        *([(middle, -step * i + below), (middle, -step * (i + 1) + above)] for i in range(5)),
-        *([(side, -step * 5 + below), (side, -step * 6 + above)] for side in (left, right)),
-        *([(side, -step * 6 + below), (side, -step * 7 + above)] for side in (left, right)),
-        [(-width / 2, -step * 7), (edge, -step * 7), (edge, -step), (-width / 2, -step)],
-        [(width / 2, -step * 4), (-edge, -step * 4), (-edge, -step * 8), (width / 2, -step * 8)],
-    ]
-    marks = [mark("cell", role, x, y, width=wide, height=height) for x, y, wide, role, _ in boxes]
-    marks += [text(x, y, words) for x, y, _, _, words in boxes]
-    for number, way in enumerate(ways):
-        marks += along("line", "note", way[:-1], group=number) if len(way) > 2 else []
-        marks += along("arrow", "note", way[-2:], group=number)
-    marks += [text(-edge - 14, -step * 4 + 7, "yes"), text(middle + 12, -step * 4.5, "no")]
-    return pd.DataFrame(marks)
 
 
 def gauss_above(
