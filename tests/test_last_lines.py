@@ -2,60 +2,49 @@
 page.
 """
 
-import io
-import time
+from pathlib import Path
 
-from rich.console import Console
+import pytest
 
-from snakemake_logger_plugin_bezierplan import LogHandler, headline, unknown_target
+import snakemake_logger_plugin_bezierplan as plugin
 
 SUMMARY = (
     "# Outcome at scale full\n\n**Of 3 published numbers, 1 agrees. Of 2 claims, 2 are "
     "supported.**\n\n**Other** words\n"
 )
+ROUTE, PAGE = Path("results/full/song2016/runs/routes/0.parquet"), Path("results/full/index.html")
 
 
-def last_lines(folders, pages):
-    handler = LogHandler.__new__(LogHandler)
-    handler.console, handler.started = (
-        Console(file=io.StringIO(), width=200),
-        time.monotonic() - 203.77,
-    )
-    handler.folders, handler.pages = set(folders), set(pages)
-    handler.show_end()
-    return handler.console.file.getvalue().splitlines()
-
-
-def test_the_last_line_names_the_page_after_what_came_out(tmp_path):
-    (tmp_path / "summary.md").write_text(SUMMARY, encoding="utf-8")
-    page = tmp_path / "index.html"
-    assert last_lines(["results/full"], [page]) == [
-        "Results: results/full",
-        "Time: 0:03:24",
-        "Of 3 published numbers, 1 agrees.",
-        "Of 2 claims, 2 are supported.",
-        f"Open {page} in a browser: file://{page}",
-    ]
-
-
-def test_without_a_page_or_a_summary_nothing_is_said_of_them(tmp_path):
-    assert last_lines(["results/full/song2016"], []) == [
+def test_the_last_line_names_the_page_after_what_came_out(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert plugin.last_lines({ROUTE}, 203.77) == [
         "Results: results/full/song2016",
         "Time: 0:03:24",
     ]
-    assert headline(tmp_path) == []
+    page = f"Open {PAGE} in a browser: file://{tmp_path / PAGE}"
+    assert plugin.last_lines({PAGE}, 1) == ["Results: results/full", "Time: 0:00:01", page]
+    PAGE.parent.mkdir(parents=True)
+    PAGE.with_name("summary.md").write_text(SUMMARY)
+    assert plugin.last_lines({PAGE}, 1)[2:] == [
+        "Of 3 published numbers, 1 agrees.",
+        "Of 2 claims, 2 are supported.",
+        page,
+    ]
 
 
-def test_mistyped_target_is_told_with_the_nearest_name(monkeypatch):
-    monkeypatch.setattr("snakemake_logger_plugin_bezierplan.KNOWN", {"all", "song2016_figure4"})
-    told = unknown_target(
-        "No rule to produce song2016_figure44 (if you use input functions make sure that they "
-        "don't raise exceptions)."
-    )
-    assert told.startswith(
-        "song2016_figure44: no target; did you mean song2016_figure4? known: all, "
-    )
-    assert unknown_target("No rule to produce results/full/x.csv (if").startswith(
-        "results/full/x.csv: no rule makes this file; "
-    )
-    assert unknown_target("something else") == ""
+@pytest.mark.parametrize(
+    ("message", "reason"),
+    [
+        (
+            "No rule to produce song2016_figure44 (if you use input functions make sure that",
+            "song2016_figure44: no target; did you mean song2016_figure4? known: all, ",
+        ),
+        ("No rule to produce results/full/x.csv (if", "results/full/x.csv: no rule makes this"),
+        ("something else", ""),
+    ],
+)
+def test_a_mistyped_target_gets_the_nearest_name(message, reason, monkeypatch):
+    monkeypatch.setattr(plugin, "KNOWN", {"all", "song2016_figure4"})
+    answer = plugin.unknown_target(message)
+    assert answer.startswith(reason)
+    assert bool(answer) == bool(reason)
