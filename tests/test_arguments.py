@@ -131,9 +131,7 @@ def test_an_experiment_is_a_name_and_no_pattern(name, tmp_path):
         bp.results(tmp_path, name)
 
 
-@pytest.mark.parametrize(
-    "arguments", [{"step": "1"}, {"speed": "1"}, {"speed": 1.0, "acceleration": [1]}, {"step": 0}]
-)
+@pytest.mark.parametrize("arguments", [{"step": "1"}, {"step": 0}])
 def test_wrong_numbers_of_a_file_are_told_by_name(arguments, tmp_path):
     name = [*arguments][-1]
     with pytest.raises(ValueError, match=f"^{name}: .*; expected a number above 0"):

@@ -19,7 +19,6 @@ BORDER = [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]]
 ROS = "image: room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\n"
 CELLS = "....\n.##.\n....\n"
 MOVING_AI = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n"
-SCEN = "version 1\n0\troom.map\t4\t3\t0\t0\t3\t2\t4.2\n"
 
 
 def feature(rings, role="obstacle", **more):
@@ -50,7 +49,6 @@ def folder(tmp_path, monkeypatch):
         "room.yaml": ROS,
         "room.txt": CELLS,
         "room.map": MOVING_AI,
-        "room.scen": SCEN,
         "room.geojson": ONE,
         "line.py": "",
     }.items():
@@ -78,6 +76,12 @@ def refused(capsys, *words):
 LONG = "a" * 5000
 # A map's name, its text or bytes, and the line that tells what is wrong with it.
 MAPS = {
+    "an unknown cell of MovingAI": (
+        "map",
+        MOVING_AI.replace(".@@.", ".@ ."),
+        "below the word map: line 2: unknown character ' '",
+    ),
+    "a width of words": ("map", MOVING_AI.replace("width 4", "width 0_4"), "3 x 4 cells follow"),
     # GeoJSON: what JSON allows, and a map must not.
     "a key twice": (
         "geojson",
@@ -104,7 +108,7 @@ MAPS = {
     "1e308": (
         "geojson",
         ONE.replace("[6, 4]", "[1e308, 4]"),
-        "1e+308 is not a coordinate; expected finite numbers of at most 3e+07",
+        "1e+308 is not a coordinate; expected finite numbers of at most 100000",
     ),
     "a huge integer": (
         "geojson",
@@ -115,11 +119,6 @@ MAPS = {
         "geojson",
         ONE.replace("[6, 4]", f"[{'9' * 5000}, 4]"),
         "not a GeoJSON feature collection",
-    ),
-    "a map of a country": (
-        "geojson",
-        ONE.replace("[10, 0], [10, 10]", "[1e6, 0], [1e6, 10]"),
-        "the border: 1e+06 x 10 units; expected at",
     ),
     "a truth": (
         "geojson",
@@ -201,56 +200,6 @@ MAPS = {
     "zeros and ones": ("txt", "0000\n0110\n", "line 1: unknown character '0'"),
     "a long line of words": ("txt", LONG + "\n", "line 1: unknown character 'a'"),
     # MovingAI.
-    "a space for a cell": (
-        "map",
-        MOVING_AI.replace(".@@.", ".@ ."),
-        "line 6: unknown character ' '",
-    ),
-    "a tab for a cell": (
-        "map",
-        MOVING_AI.replace(".@@.", ".@\t."),
-        "line 6: unknown character '\\t'",
-    ),
-    "a letter of another script": (
-        "map",
-        MOVING_AI.replace(".@@.", ".@\u0422."),
-        "line 6: unknown character",
-    ),
-    "a width with an underscore": (
-        "map",
-        MOVING_AI.replace("width 4", "width 0_4"),
-        "'width 0_4'; expected width and a whole number",
-    ),
-    "a width in other digits": (
-        "map",
-        MOVING_AI.replace("width 4", "width \u0664"),
-        "expected width and a whole number",
-    ),
-    "an endless width": (
-        "map",
-        MOVING_AI.replace("width 4", f"width {'9' * 5000}"),
-        "expected width and a whole number",
-    ),
-    "a negative height": (
-        "map",
-        MOVING_AI.replace("height 3", "height -3"),
-        "expected height and a whole number",
-    ),
-    "a decimal height": (
-        "map",
-        MOVING_AI.replace("height 3", "height 3.0"),
-        "expected height and a whole number",
-    ),
-    "a height of 0": (
-        "map",
-        MOVING_AI.replace("height 3", "height 0"),
-        "expected height and a whole number",
-    ),
-    "a vertical tab for a line's end": (
-        "map",
-        MOVING_AI.replace("....\n.@", "....\x0b.@"),
-        "height: 3; but 2 lines of cells follow",
-    ),
     # ROS.
     "an image elsewhere": (
         "yaml",
@@ -315,21 +264,6 @@ MAPS = {
         ROS.replace("resolution: 0.5", "resolution: '0.5'"),
         "resolution: '0.5'; expected a number",
     ),
-    "a yaw in quotes": (
-        "yaml",
-        ROS.replace("[-1.0, 2.0, 0.0]", "[-1.0, 2.0, '0.3']"),
-        "origin: yaw '0.3'; expected a number of radians",
-    ),
-    "a yaw in words": (
-        "yaml",
-        ROS.replace("0.0]", "north]"),
-        "origin: yaw north; expected a number of radians",
-    ),
-    "a yaw of inf": (
-        "yaml",
-        ROS.replace("0.0]", ".inf]"),
-        "origin: yaw inf; expected a number of radians",
-    ),
     "an origin of one": ("yaml", ROS.replace("[-1.0, 2.0, 0.0]", "[1]"), "expected [x, y, yaw]"),
     "negate of two": ("yaml", ROS + "negate: 2\n", "negate: 2; expected 0 or 1"),
     "nested YAML": ("yaml", ROS + "other: " + "[" * 1000 + "\n", "nested more than 20 levels deep"),
@@ -386,18 +320,6 @@ LINES = {
         ["room.txt", *ENDS, "--most-pixels", "5"],
         "--most-pixels: only for a ROS map or an image; room.txt is cells of a text",
     ),
-    "a scenario of a text": (
-        ["room.txt", "--scenario", "room.scen:1"],
-        "--scenario: only for a MovingAI grid; room.txt is cells",
-    ),
-    "a scenario of 0": (
-        ["room.map", "--scenario", "room.scen:0"],
-        "expected FILE:NUMBER of a .scen file, numbered from 1",
-    ),
-    "an endless scenario": (
-        ["room.map", "--scenario", f"room.scen:{'9' * 5000}"],
-        "expected FILE:NUMBER of a .scen file",
-    ),
     "an endless radius": (
         ["room.txt", *ENDS, "--settings", "{turning_radius: .inf}"],
         "inf; expected a finite number from 0 to 100000",
@@ -424,41 +346,9 @@ LINES = {
         ["room.txt", "--start", "1_0,1", "--target", "3.5,2.5"],
         "--start: 1_0,1; expected X,Y",
     ),
-    "a heading in degrees": (
-        ["room.txt", "--start", "1,1,90", "--target", "3.5,2.5"],
-        "--start: 1,1,90: a heading of 90; expected radians, from -6.283 to 6.283",
-    ),
-    "a heading of nan": (
-        ["room.txt", "--start", "1,1,nan", "--target", "3.5,2.5"],
-        "--start: 1,1,nan; expected X,Y or X,Y,THETA",
-    ),
     "four numbers": (
         ["room.txt", "--start", "1,1,0,0", "--target", "3.5,2.5"],
         "--start: 1,1,0,0; expected X,Y",
-    ),
-    "a heading at a way point": (
-        ["room.txt", *ENDS, "--via", "1,1,0"],
-        "--via: 1,1,0; expected X,Y",
-    ),
-    "a heading for another planner": (
-        ["room.txt", "--start", "1,1,0", "--target", "3.5,2.5", "--planner", "prm"],
-        "--start: 1,1,0: a heading is only for dubins_search; the planner is prm",
-    ),
-    "a heading twice": (
-        ["room.txt", "--start", "1,1,0", "--target", "3.5,2.5", "--settings", "{start_heading: 1}"],
-        "--settings: start_heading: given with --start as well; expected once",
-    ),
-    "an endless heading": (
-        ["room.txt", *ENDS, "--settings", "{start_heading: .inf}"],
-        "start_heading: inf; expected a finite number from",
-    ),
-    "an offset beside a heading": (
-        ["room.txt", *ENDS, "--settings", "{start_heading: 0, offset: 1}"],
-        "--settings: offset: unknown",
-    ),
-    "no turning radius": (
-        ["room.txt", *ENDS, "--settings", "{target_heading: 0, turning_radius: 0}"],
-        "turning_radius: 0; expected a number from 1e-06 to 100000",
     ),
     "a negative margin": (
         ["room.geojson", *ENDS, "--margin", "-1"],
@@ -478,7 +368,7 @@ LINES = {
     ),
     "a resolution of a map": (
         ["room.yaml", *ENDS, "--resolution", "1"],
-        "only for an image or an SVG drawing; room.yaml is a ROS",
+        "only for an image; room.yaml is a ROS",
     ),
     "an image without a resolution": (
         ["room.png", *ENDS],

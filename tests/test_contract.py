@@ -32,10 +32,7 @@ def settings_in_force() -> dict[str, dict]:
     return found
 
 
-OWN = {"dubins_search": {"turning_radius": 0.2, "start_heading": 0.5, "target_heading": None}}
-"""A planner that only the command and the interface use, with settings."""
-
-SETTINGS = settings_in_force() | OWN
+SETTINGS = settings_in_force()
 
 WALK = """
 import math

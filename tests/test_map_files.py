@@ -6,13 +6,9 @@ import re
 
 import numpy as np
 import pytest
-import shapely
 from PIL import Image
 
 import bezierplan as bp
-from bezierplan.geometry import shortest_paths
-from bezierplan.running import problems
-from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files
 
 YAML = (
@@ -22,10 +18,6 @@ YAML = (
 # Grey values, the top row first: free, unknown and occupied.
 PIXELS = np.array([[254, 254, 254, 254], [254, 205, 0, 254], [254, 254, 254, 254]], dtype=np.uint8)
 MAP = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@@W.\n.TO..\nGS...\n"
-SCEN = (
-    "version "
-    "1\n0\troom.map\t5\t4\t0\t0\t4\t3\t7.00000000\n0\troom.map\t5\t4\t0\t3\t3\t2\t4.00000000\n"
-)
 
 
 def ros_map(folder, yaml=YAML, pixels=PIXELS, image="room.png", **options):
@@ -34,14 +26,9 @@ def ros_map(folder, yaml=YAML, pixels=PIXELS, image="room.png", **options):
     return files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml", **options}, folder)
 
 
-def moving_ai(folder, text=MAP, scen=SCEN):
+def moving_ai(folder, text=MAP):
     (folder / "room.map").write_text(text)
-    (folder / "room.map.scen").write_text(scen)
-    return files.load(described(), folder)
-
-
-def described():
-    return {"kind": "moving_ai", "unit": "cell", "file": "room.map", "scenarios": "room.map.scen"}
+    return files.load({"kind": "moving_ai", "unit": "cell", "file": "room.map"}, folder)
 
 
 def test_a_ros_map(tmp_path):
@@ -199,65 +186,12 @@ def courtyard(x, y, role=True):
     return json.dumps({"type": "FeatureCollection", "features": features})
 
 
-UTM = (391000.25, 5820000.5)
-
-
-@pytest.mark.parametrize("radius", [0.0, 1.0])
-def test_projected_coordinates_keep_their_digits(tmp_path, radius):
-    found = []
-    for place in ((0.0, 0.0), UTM):
-        (tmp_path / "court.geojson").write_text(courtyard(*place))
-        room = bp.read_map(tmp_path / "court.geojson", robot_radius=radius)
-        ends = [(place[0] + x, place[1] + y) for x, y in ((2, 2), (18, 8))]
-        problem = bp.Problem("court", room, *ends)
-        answer = bp.plan(problem, turning_radius=0.7)
-        assert answer.feasible
-        assert answer.problem.start == problem.start
-        assert np.abs(bp.shortest_path(problem).points[-1] - ends[1]).max() < 1e-9
-        assert bp.check(problem, answer.path).length == pytest.approx(answer.length, abs=1e-8)
-        answer.to_csv(tmp_path / "path.csv", step=0.1)
-        points = np.loadtxt(tmp_path / "path.csv", delimiter=",", skiprows=1)[:, 1:3]
-        obstacles = shapely.union_all(
-            [
-                shapely.box(place[0] + a, place[1] + b, place[0] + a + 1, place[1] + b + 7)
-                for a, b in ((8, 0), (14, 3))
-            ]
-        )
-        assert shapely.LineString(points).distance(obstacles) >= radius - 2e-8 - (
-            0.1**2 / 8 / 0.7 if not radius else 0.01
-        )
-        assert points[0].tolist() == list(ends[0])
-        found.append((answer, points - place))
-    near, far = found
-    assert far[0].length == pytest.approx(near[0].length, abs=1e-8)
-    assert far[0].clearance == pytest.approx(near[0].clearance, abs=1e-8)
-    assert np.abs(far[1] - near[1]).max() < 2e-8
-
-
-def test_far_maps_of_every_kind(tmp_path):
-    # In a study.
-    with pytest.raises(
-        ValueError, match=r"is not a coordinate; expected finite numbers of at most 100000 in size"
-    ):
-        ros_map(tmp_path, YAML.replace("[-1.0, 2.0, 0.0]", f"[{UTM[0]}, {UTM[1]}, 0.0]"))
-    room = bp.read_map(tmp_path / "room.yaml")
-    problem = bp.Problem(
-        "far", room, (UTM[0] + 0.25, UTM[1] + 0.75), (UTM[0] + 1.75, UTM[1] + 0.75)
-    )
-    assert bp.plan(problem, turning_radius=0.1).length == pytest.approx(
-        1 + 2 * math.hypot(0.25, 0.25), abs=0.05
-    )
-    with pytest.raises(
-        ValueError,
-        match=r"start: \(0.0, 0.0\): outside the workspace; expected x from 391000.25 to "
-        r"391002.25 and y",
-    ):
-        bp.plan(problem._replace(start=(0.0, 0.0)))
-    (tmp_path / "wide.geojson").write_text(courtyard(0, 0).replace("20", "391000"))
-    with pytest.raises(
-        ValueError,
-        match=r"wide\.geojson: the border: 391000 x 10 units; expected at most 100000 on a side",
-    ):
+def test_coordinates_far_from_the_origin_are_refused(tmp_path):
+    told = r"is not a coordinate; expected finite numbers of at most 100000 in size"
+    with pytest.raises(ValueError, match=told):
+        ros_map(tmp_path, YAML.replace("[-1.0, 2.0, 0.0]", "[391000.25, 5820000.5, 0.0]"))
+    (tmp_path / "wide.geojson").write_text(courtyard(391000.25, 5820000.5))
+    with pytest.raises(ValueError, match=r"wide\.geojson: feature 0 \(border\): 391000 " + told):
         bp.read_map(tmp_path / "wide.geojson")
 
 
@@ -351,39 +285,21 @@ def test_what_is_no_image_is_refused(tmp_path):
         files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
 
 
-def test_a_moving_ai_map_and_its_scenarios(tmp_path):
-    grid = moving_ai(tmp_path)
-    assert grid.occupied.tolist() == [
+def test_a_moving_ai_map(tmp_path):
+    assert moving_ai(tmp_path).occupied.tolist() == [
         [False] * 5,
         [False, True, True, False, False],
         [False, True, True, True, False],
         [False] * 5,
     ]
-    one = files.scenario(described(), 1, grid, tmp_path)
-    assert (one.start, one.target) == ((0.5, 3.5), (4.5, 0.5))
-    job = Descriptions("s", {"p": {"workspace": "w", "scenario": 2}}, {"w": described()})
-    problem = problems.build_all(job, tmp_path)["p"]
-    assert (problem.start, problem.target) == ((0.5, 0.5), (3.5, 1.5))
-    length = shortest_paths.lattice_path(grid.occupied, (0, 0), (1, 3), math.sqrt(2), "none").length
-    assert length == pytest.approx(4.0)
 
 
 MAP_FAULTS = {
-    "type": (("type octile", "type tile"), "line 1: type tile; expected type octile"),
-    "height": (
-        ("height 4", "height four"),
-        "line 2: 'height four'; expected height and a whole number",
-    ),
-    "no width": (("width 5\n", ""), "line 3: 'map'; expected width"),
-    "word": (("map\n", "cells\n"), "line 4: expected the word map"),
-    "rows": (("GS...\n", ""), "height: 4; but 3 lines of cells follow"),
-    "ragged": (("GS...", "GS.."), "line 8 has 4 cells; expected 5"),
-    "character": (("GS...", "GX..."), "line 8: unknown character 'X'"),
-    "size": (
-        ("height 4\nwidth 5", "height 99999\nwidth 99999"),
-        "line 2: 99999 x 99999 cells; expected at most",
-    ),
-    "empty": ((MAP, ""), "line 1: 'the file ends'; expected type"),
+    "type": (("type octile\n", ""), "line 1: expected four lines with type octile, height,"),
+    "rows": (("GS...\n", ""), "line 2: height 4, width 5; but 3 x 5 cells follow"),
+    "ragged": (("GS...", "GS.."), "below the word map: line 4 has 4 cells, the first line has 5"),
+    "character": (("GS...", "GX..."), "below the word map: line 4: unknown character 'X'"),
+    "empty": ((MAP, ""), "line 1: expected four lines"),
 }
 
 
@@ -394,64 +310,6 @@ def test_map_fault_is_one_line(tmp_path, fault):
     with pytest.raises(ValueError, match=told) as found:
         moving_ai(tmp_path, MAP.replace(old, new, 1))
     assert str(found.value).startswith("room.map: ")
-
-
-SCEN_FAULTS = {
-    "another map": (
-        ("room.map", "hall.map"),
-        "line 2: map hall.map; expected a scenario of room.map",
-    ),
-    "another size": (
-        ("5\t4\t0\t0", "6\t4\t0\t0"),
-        "line 2: a map of 6 x 4 cells; room.map has 5 x 4",
-    ),
-    "start in an obstacle": (
-        ("5\t4\t0\t0", "5\t4\t1\t1"),
-        "line 2: start 1 1: expected a free cell",
-    ),
-    "target outside": (("4\t3\t7.0", "5\t3\t7.0"), "line 2: target 5 3: expected a free cell"),
-    "words": (("7.00000000", "long"), "line 2: expected bucket, map"),
-    "version": (("version 1", "scenarios"), "line 1: expected version 1"),
-}
-
-
-@pytest.mark.parametrize("fault", SCEN_FAULTS)
-def test_scenario_fault_is_one_line(tmp_path, fault):
-    (old, new), told = SCEN_FAULTS[fault]
-    grid = moving_ai(tmp_path, scen=SCEN.replace(old, new, 1))
-    with pytest.raises(ValueError, match=told) as found:
-        files.scenario(described(), 1, grid, tmp_path)
-    assert str(found.value).startswith("room.map.scen: ")
-
-
-def test_a_scenario_that_is_not_there(tmp_path):
-    grid = moving_ai(tmp_path)
-    with pytest.raises(ValueError, match="scenario 3; expected a number from 1 to 2"):
-        files.scenario(described(), 3, grid, tmp_path)
-
-
-def test_an_optimal_length_of_another_map_is_told(tmp_path):
-    moving_ai(tmp_path, scen=SCEN.replace("7.00000000", "9.5"))
-    job = Descriptions("s", {"p": {"workspace": "w", "scenario": 1}}, {"w": described()})
-    with pytest.raises(
-        ValueError, match=r"room\.map\.scen: line 2: optimal length 9\.5; on room\.map it is 7"
-    ):
-        problems.build_all(job, tmp_path)
-
-
-@pytest.mark.parametrize("off", [2e-3, -2e-3, 0.5, 1.0])
-def test_a_scenario_with_another_optimal_length_is_told(tmp_path, off):
-    moving_ai(tmp_path)
-    file = tmp_path / "room.map.scen"
-    *before, row = file.read_text().splitlines()[:2]
-    words = row.split()
-    words[-1] = str(float(words[-1]) + off)
-    file.write_text("\n".join([*before, "\t".join(words)]) + "\n")
-    job = Descriptions("s", {"p": {"workspace": "w", "scenario": 1}}, {"w": described()})
-    with pytest.raises(
-        ValueError, match=r"room.map.scen: line 2: optimal length .*; on room.map it is"
-    ):
-        problems.build_all(job, tmp_path)
 
 
 def test_a_robots_radius_leaves_cells_free_that_are_as_far(tmp_path):

@@ -68,15 +68,10 @@ def test_without_a_planner_it_is_the_rounded_shortest_path(capsys):
 ASKED = {
     "nothing more": ([], {}),
     "a radius": (["--robot-radius", "0.3"], {"robot_radius": 0.3}),
-    "a footprint": (
-        ["--footprint", "[[0.4, 0.2], [-0.4, 0.2], [-0.4, -0.2], [0.4, -0.2]]"],
-        {"footprint": [(0.4, 0.2), (-0.4, 0.2), (-0.4, -0.2), (0.4, -0.2)]},
-    ),
     "way points": (
-        ["--via", "18,15", "--via", "2,15", "--via-order", "shortest", "--smooth", "continuous"],
-        {"via": [(18.0, 15.0), (2.0, 15.0)], "via_order": "shortest", "smooth": "continuous"},
+        ["--via", "2,15", "--via", "18,15"],
+        {"via": [(2.0, 15.0), (18.0, 15.0)]},
     ),
-    "headings": (["--settings", "{start_heading: 1.5}"], {"start_heading": 1.5}),
     "a planner": (
         ["--planner", "chaotic_pso", "--seed", "2"],
         {"method": "chaotic_pso", "seed": 2},
@@ -108,7 +103,7 @@ def test_the_command_and_the_function_plan_alike(asked, capsys, tmp_path):
     assert told["feasible"].startswith("yes") == answer.feasible
 
 
-@pytest.mark.parametrize("name", ["rounded_shortest_path", "dubins_search"])
+@pytest.mark.parametrize("name", ["rounded_shortest_path", "prm"])
 def test_a_planner_of_one_s_own_may_have_any_name(name, capsys, tmp_path):
     """That of one of this package, whose settings and way points it does not have."""
     file = tmp_path / f"{name}.py"
@@ -245,24 +240,8 @@ def test_other_kinds_of_map(capsys, tmp_path):
     )
     assert found["shortest"] == "4.82843 m"
     (tmp_path / "room.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n.@.\n")
-    (tmp_path / "room.scen").write_text("version 1\n0 room.map 3 2 0 1 2 1 4\n")
-    scenario = ["--scenario", f"{tmp_path / 'room.scen'}:1"]
-    assert planned(capsys, tmp_path / "room.map", *scenario)["feasible"] == "yes"
-    assert "expected a number from 1 to 1" in refused(
-        capsys, tmp_path / "room.map", "--scenario", f"{tmp_path / 'room.scen'}:2"
-    )
-
-
-def test_a_scenario_that_was_written_on_windows_and_faults_named_as_given(
-    capsys, tmp_path, monkeypatch
-):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "room.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n.@.\n")
-    (tmp_path / "room.scen").write_text("version 1\n0\tmaps\\room.map\t3\t2\t0\t1\t2\t1\t4\n")
-    assert planned(capsys, "room.map", "--scenario", "room.scen:1")["feasible"] == "yes"
-    (tmp_path / "room.scen").write_text("version 1\n0\thall.map\t3\t2\t0\t1\t2\t1\t4\n")
-    told = refused(capsys, "room.map", "--scenario", "room.scen:1")
-    assert told.startswith("room.scen: line 2: map hall.map; expected a scenario of room.map")
+    found = planned(capsys, tmp_path / "room.map", "--start", "0.5,0.5", "--target", "2.5,0.5")
+    assert found["shortest"] == "2.41421 cell"
 
 
 def test_blanks_at_the_end_of_lines_of_cells_say_nothing(capsys, tmp_path):
@@ -279,9 +258,8 @@ def test_blanks_at_the_end_of_lines_of_cells_say_nothing(capsys, tmp_path):
 @pytest.mark.parametrize("suffix", ["csv", "geojson", "yaml"])
 def test_a_path_of_no_length_is_written_too(capsys, tmp_path, suffix):
     out = tmp_path / f"path.{suffix}"
-    speed = ["--speed", "1", "--acceleration", "1"] if suffix == "csv" else []
     here = ["--start", "2,10", "--target", "2,10"]
-    assert planned(capsys, GAPS, *here, "--out", out, *speed)["feasible"] == "yes"
+    assert planned(capsys, GAPS, *here, "--out", out)["feasible"] == "yes"
     if suffix == "csv":
         rows = np.loadtxt(out, delimiter=",", skiprows=1)
         assert rows[:, :3].tolist() == [[0.0, 2.0, 10.0]] * 2
@@ -342,17 +320,9 @@ FAULTS = {
         "--out: nowhere/path.svg: no folder nowhere; expected one that exists",
     ),
     "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
-    "scenario and ends": (
-        [GAPS, *ENDS, "--scenario", "a.scen:1"],
-        "--scenario: a.scen:1: has a start and a target of its own",
-    ),
     "radius": (
         ["a.yaml", *ENDS, "--robot-radius", "-1"],
         "--robot-radius: -1; expected 0 or a number of at least 1e-06",
-    ),
-    "scenario": (
-        [GAPS, "--scenario", "a.scen:1"],
-        "--scenario: only for a MovingAI grid; .*gaps.geojson is polygons",
     ),
 }
 

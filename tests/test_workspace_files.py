@@ -589,7 +589,6 @@ def test_layout_that_cannot_be_drawn_is_given_up():
 
 def test_files_that_a_description_may_leave_out_are_files_of_the_study():
     assert kinds.file_keys(kinds.kinds()["grid"]) == ["file", "heights"]
-    assert kinds.file_keys(kinds.kinds()["moving_ai"]) == ["file", "scenarios"]
 
 
 def test_a_name_is_looked_up_whether_its_key_may_be_left_out_or_not():

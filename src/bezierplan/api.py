@@ -20,8 +20,6 @@ import numpy as np
 
 import bezierplan
 from bezierplan.workspaces.circles import Circles as Circles
-from bezierplan.workspaces.footprint import Footprint
-from bezierplan.workspaces.footprint import footprint as outline_of
 from bezierplan.workspaces.grid import Grid as Grid
 from bezierplan.workspaces.polygons import Polygons as Polygons
 from bezierplan.workspaces.problem import Path, Problem, Workspace
@@ -31,15 +29,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from bezierplan.geometry.samples import Samples
-    from bezierplan.planners import Plan
     from bezierplan.running.planning import Course, Task
-    from bezierplan.running.problems import Placed, Regions
+    from bezierplan.running.problems import Regions
 
 __all__ = bezierplan.__all__
 
 Method = str | Callable[..., Any] | ModuleType
 Via = Sequence[tuple[float, float]]
-Corners = Sequence[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -49,26 +45,22 @@ class Judged:
     Attributes
     ----------
     problem : Problem
-        On the map for the robot's centre: of the kind that was given, and if that is turned, so.
+        On the map for the robot's centre.
     path : Path or None
-        In the world, as all points and headings are; None if there is none to judge.
+        None if there is none to judge.
     length : float
         Exact arc length, in the map's unit; nan without a path.
     feasible : bool
-        Whether the path stays out of every obstacle and within the border; with a footprint,
-        whether that does.
+        Whether the path stays out of every obstacle and within the border.
     collision : tuple of float or None
-        The first point (x, y) of the path at which it or the footprint enters an obstacle.
+        The first point (x, y) of the path at which it enters an obstacle.
     depth : float
         How deeply the path itself enters, in the map's unit; 0 if it does not.
     clearance : float
-        Least distance of the path, or of the footprint along it, to an obstacle or the border of
-        the map itself, in the map's unit; 0 if it enters one.
+        Least distance of the path to an obstacle or the border of the map itself, in the map's
+        unit; 0 if it enters one.
     robot_radius : float
-        The clearance that a feasible path keeps, in the map's unit; of a footprint, the radius of
-        the circle within it.
-    footprint : Footprint or None
-        The robot's outline, which turns with the direction of travel.
+        The clearance that a feasible path keeps, in the map's unit.
     curvature : float
         Largest absolute curvature of samples, in 1/unit; corners have none.
     curvature_bound : float
@@ -97,7 +89,6 @@ class Judged:
     corners: bool
     shortest: float
     robot_radius: float
-    footprint: Footprint | None
     via: tuple[tuple[float, float], ...]
 
     @property
@@ -125,13 +116,9 @@ class Judged:
         ValueError
             If there is no path, or for an `n` or `step` out of range.
         """
-        from bezierplan.geometry import curves, samples
-        from bezierplan.workspaces.frames import frame_of
+        from bezierplan.geometry import samples
 
-        frame = frame_of(self.problem.workspace)
-        found = samples.along(curves.inward(self._path(), frame), n, step)
-        x, y = frame.outward(np.column_stack([found.x, found.y])).T
-        return found._replace(x=x, y=y, heading=frame.outward_headings(found.heading))
+        return samples.along(self._path(), n, step)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are
@@ -146,12 +133,10 @@ class Judged:
 
             axes = plt.figure(layout="constrained").add_subplot()
         regions = problems.remembered()
-        placed = problems.placed(self.problem, regions)
-        parts = legs.legs(placed, self.via, regions)
-        bound = legs.whole(legs.shortest(parts, regions(placed.near.workspace)))
+        parts = legs.legs(self.problem, self.via, regions)
+        bound = legs.whole(legs.shortest(parts, regions(self.problem.workspace)))
         own = self.problem._replace(workspace=original(self.problem.workspace))
-        shortest = placed.frame.outward(bound.points)
-        drawn_path.draw(axes, own, self.path, shortest, self.collision)
+        drawn_path.draw(axes, own, self.path, bound.points, self.collision)
         return axes
 
     def to_picture(self, file: str | File) -> None:
@@ -162,17 +147,8 @@ class Judged:
 
         drawn_path.save(File(file), self.plot)
 
-    def to_csv(
-        self,
-        file: str | File,
-        *,
-        step: float | None = None,
-        speed: float | None = None,
-        lateral_acceleration: float | None = None,
-        acceleration: float | None = None,
-    ) -> None:
-        """Write distance, x, y, heading and curvature along the path, and with a speed also speed
-        and time.
+    def to_csv(self, file: str | File, *, step: float | None = None) -> None:
+        """Write distance, x, y, heading and curvature along the path.
 
         Parameters
         ----------
@@ -180,38 +156,15 @@ class Judged:
             A .csv file.
         step : float, optional
             As in `sample`, by default a thousandth of the length.
-        speed : float, optional
-            The largest speed, in the map's unit a second.
-        lateral_acceleration : float, optional
-            The largest acceleration across the path, in units a second squared: speed is at most
-            the root of this over the curvature.
-        acceleration : float, optional
-            The largest acceleration along the path, in units a second squared; with one, the path
-            begins and ends at rest.
 
         Raises
         ------
         ValueError
-            If there is no path, for a number that is not above 0, for an acceleration without a
-            speed, and for a lateral one on a path with corners, where none is small enough.
+            If there is no path.
         """
-        from bezierplan.geometry import path_files, samples
+        from bezierplan.geometry import path_files
 
-        limits = {"lateral_acceleration": lateral_acceleration, "acceleration": acceleration}
-        samples.check_limits(speed, limits)
-        if lateral_acceleration is not None and self.corners:
-            raise ValueError(
-                f"lateral_acceleration: {lateral_acceleration:g}: the path has corners, which no "
-                f"speed keeps it at; expected a turning radius that is kept"
-            )
-        points = self._spaced(step)
-        more = {}
-        if speed is not None:
-            allowed = samples.speeds(
-                points, speed, lateral_acceleration or math.inf, acceleration or math.inf
-            )
-            more = {"speed": allowed, "time": samples.times(points, allowed)}
-        path_files.write_csv(File(file), points, more)
+        path_files.write_csv(File(file), self._spaced(step))
 
     def to_geojson(self, file: str | File, *, step: float | None = None) -> None:
         """Write the path as a GeoJSON feature of kind LineString, with the verdict among its
@@ -261,14 +214,8 @@ class Answer(Judged):
     stop : str
         Why it ended.
     turning_radius : float
-        Radius of the tightest turn, where the planner is `rounded_shortest_path` or
-        `dubins_search`: 0 where a corner is left, infinite without turns; nan of other planners.
-    planned_radius : float
-        Radius of the disc for which the path was planned, in the map's unit: with a footprint, from
-        the circle within it to that around it.
-    offset : float
-        Least distance of the path from what the shortest path turns around, where the setting
-        `offset` asks for one; nan elsewhere.
+        Radius of the tightest turn, where the planner is `rounded_shortest_path`: 0 where a corner
+        is left, infinite without turns; nan of other planners.
     """
 
     method: str
@@ -279,8 +226,6 @@ class Answer(Judged):
     history: np.ndarray = field(repr=False)
     stop: str
     turning_radius: float
-    planned_radius: float
-    offset: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -313,9 +258,8 @@ def read_map(
     Parameters
     ----------
     file : str or Path
-        GeoJSON polygons (.geojson, .json), as GIS programs write them, also in projected
-        coordinates; an occupancy map of ROS's map_server (.yaml), or an image alone (.png, .pgm,
-        .bmp); a MovingAI grid (.map), cells as text (.txt), or shapes of a drawing (.svg).
+        GeoJSON polygons (.geojson, .json); an occupancy map of ROS's map_server (.yaml), or an
+        image alone (.png, .pgm, .bmp); a MovingAI grid (.map), or cells as text (.txt).
     cell : float, optional
         Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that
         need cells.
@@ -330,7 +274,7 @@ def read_map(
         Of GeoJSON without a border: how far the border lies from the obstacles, in the map's unit.
     resolution : float, optional
         Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and
-        dark pixels are occupied. Of a drawing: length of a user unit, 1 by default.
+        dark pixels are occupied.
     unknown : {"occupied", "free"}, optional
         What pixels of a ROS map or an image count as that are unknown; occupied by default.
     most_pixels : int, optional
@@ -339,10 +283,7 @@ def read_map(
     Returns
     -------
     Grid or Polygons
-        With a `robot_radius`, a grid has the grown obstacles as polygons in its field `drawn`. A
-        ROS map that is turned is a grid with a `yaw`: its cells, bounds and polygons are told as
-        before it is turned about its `origin`, but start, target, way points and headings, and all
-        that is answered, are in the world.
+        With a `robot_radius`, a grid has the grown obstacles as polygons in its field `drawn`.
 
     Raises
     ------
@@ -389,12 +330,12 @@ def shortest_path(problem: Problem) -> Shortest:
 
     _check_problem(problem)
     regions = problems.remembered()
-    _, near, frame = problems.placed(problem, regions)
-    bound = shortest_paths.shortest_path(near, blocked=regions(near.workspace))
-    return Shortest(bound.length, frame.outward(bound.points))
+    placed = problems.placed(problem, regions)
+    bound = shortest_paths.shortest_path(placed, blocked=regions(placed.workspace))
+    return Shortest(bound.length, bound.points)
 
 
-def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Judged:
+def check(problem: Problem, path: Path) -> Judged:
     """Judge any path by exact geometry.
 
     Parameters
@@ -402,9 +343,6 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     problem : Problem
     path : Path
         A curve kind and its control points (n, 2); its ends need not be those of the problem.
-    footprint : sequence of tuple of float, optional
-        Corners (x, y) of the robot, a convex polygon, in the map's unit: x ahead and y to the left
-        of the point that follows the path. At a corner of the path the robot turns on the spot.
 
     Returns
     -------
@@ -414,8 +352,7 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     ------
     ValueError
         For a curve kind that is unknown, points of the wrong shape, or coordinates that are not
-        finite or too large; for a footprint that is not convex, or on a map that has grown by a
-        robot's radius.
+        finite or too large.
 
     Examples
     --------
@@ -426,58 +363,51 @@ def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Jud
     >>> judged.feasible, round(judged.length, 3), round(judged.clearance, 3)
     (True, 4.071, 0.5)
     """
-    from bezierplan.geometry import curves, shortest_paths
-    from bezierplan.running import answer, footprints, problems
+    from bezierplan.geometry import shortest_paths
+    from bezierplan.running import answer, problems
 
     _check_problem(problem)
     _check_path(path)
     regions = problems.remembered()
-    outline = None if footprint is None else outline_of(footprint)
-    footprints.check_map(outline, problem.workspace, 0.0)
     placed = problems.placed(problem, regions)
-    bound = shortest_paths.shortest_path(placed.near, blocked=regions(placed.near.workspace))
+    bound = shortest_paths.shortest_path(placed, blocked=regions(placed.workspace))
     points = np.array(path.points, dtype=float)
-    inward = answer.path_of(curves.inward(Path(path.curve, points), placed.frame))
-    judged = verdict(placed, inward, bound.length, regions, footprint=outline)
+    judged = verdict(placed, answer.path_of(Path(path.curve, points)), bound.length, regions)
     return Judged(**judged | {"path": path})
 
 
 def verdict(
-    problem: Placed,
+    problem: Problem,
     path: Path | None,
     shortest: float,
     regions: Regions,
     via: Via = (),
-    footprint: Footprint | None = None,
 ) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
-    path: in the frame of the map. shortest: length of the exact shortest path. regions: the blocked
-    regions of maps. Raises ValueError if the path is feasible and yet closer to the map's own
-    obstacles than the robot's radius, so that the checker is wrong.
+    shortest: length of the exact shortest path. regions: the blocked regions of maps. Raises
+    ValueError if the path is feasible and yet closer to the map's own obstacles than the robot's
+    radius, so that the checker is wrong.
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
     from bezierplan.geometry import checker, curves
-    from bezierplan.geometry.checker.footprint import check_footprint
     from bezierplan.geometry.curvature_bound import largest_curvature
     from bezierplan.workspaces import robot
-    from bezierplan.workspaces.grown import grown_of, original
+    from bezierplan.workspaces.grown import grown_of
 
-    world, near, frame = problem
-    grown = grown_of(near.workspace)
+    grown = grown_of(problem.workspace)
     asked = {
-        "problem": world,
+        "problem": problem,
         "robot_radius": grown.radius if grown else 0.0,
         "via": tuple(via),
         "shortest": shortest,
-        "footprint": footprint,
     }
     if path is None:
         numbers = ("length", "depth", "clearance", "curvature", "curvature_bound", "curvature_jump")
         nothing = {"path": None, "feasible": False, "collision": None, "corners": False}
         return asked | nothing | dict.fromkeys(numbers, math.nan)
     pieces = curves.bezier_pieces(path)
-    verdict = checker.check(pieces, regions(near.workspace))
+    verdict = checker.check(pieces, regions(problem.workspace))
     clearance = (
         checker.check(pieces, regions(grown.original)).clearance if grown else verdict.clearance
     )
@@ -488,16 +418,11 @@ def verdict(
         )
     jump = curves.curvature_jump(path)
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
-    feasible, collision_at = verdict.feasible, verdict.collision_at
-    if footprint and feasible:
-        feasible, collision_at, clearance, _ = check_footprint(
-            pieces, regions(original(near.workspace)), footprint
-        )
-    collision = None if feasible else frame.outward(curves.point_at(path, collision_at))
+    collision = None if verdict.feasible else curves.point_at(path, verdict.collision_at)
     return asked | {
-        "path": curves.outward(path, frame),
+        "path": path,
         "length": curves.length(path),
-        "feasible": feasible,
+        "feasible": verdict.feasible,
         "collision": None if collision is None else tuple(collision.tolist()),
         "depth": verdict.depth,
         "clearance": clearance,
@@ -514,10 +439,7 @@ def plan(
     *,
     seed: int = 0,
     robot_radius: float = 0.0,
-    footprint: Corners | None = None,
     via: Via = (),
-    via_order: str = "given",
-    smooth: str = "arcs",
     strict: bool = False,
     **settings: Any,
 ) -> Answer:
@@ -536,28 +458,14 @@ def plan(
     robot_radius : float
         Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if
         the map was read with one.
-    footprint : sequence of tuple of float, optional
-        In place of a radius: corners (x, y) of the robot, a convex polygon, x ahead and y to the
-        left of the point that follows the path. Discs are planned for, from the circle within the
-        footprint to that around it, until the footprint itself is free along the path.
     via : sequence of tuple of float
-        Way points (x, y), in their order: the path joins paths from one to the next. For the
-        planners without a method, `dubins_search` and `shortest_path`.
-    via_order : {"given", "shortest"}
-        Whether the path passes the way points as they are given, or in the order in which the exact
-        shortest path through all of them is shortest; of at most 12.
-    smooth : {"arcs", "continuous"}
-        Whether the path turns along arcs, or with a curvature that rises and falls along
-        transitions, wherever there is room for these. For the planners without a method and
-        `dubins_search`.
+        Way points (x, y), in their order: the path joins paths from one to the next, with a corner
+        where their directions differ. For the planner without a method and `shortest_path`.
     strict : bool
-        Whether a turning radius that cannot be kept everywhere is an error, a footprint that is
-        free along no path, and a curvature that should be continuous and jumps. For the planners
-        without a method and `dubins_search`.
+        Whether a turning radius that cannot be kept everywhere is an error. For the planner
+        without a method.
     **settings
-        Settings in place of the method's own. Without a method: `turning_radius`; `start_heading`
-        and `target_heading`, directions at the ends, in radians counterclockwise from the x-axis,
-        None for any.
+        Settings in place of the method's own. Without a method: `turning_radius` and `offset`.
 
     Returns
     -------
@@ -585,7 +493,8 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    from bezierplan.running import footprints, legs, planning, problems, tours
+    from bezierplan.running import legs, planning, problems
+    from bezierplan.workspaces import robot
 
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
@@ -598,105 +507,39 @@ def plan(
         _check_place(point, "via")
     via = [tuple(map(float, point)) for point in via]
     settings = {setting: _plain(value) for setting, value in settings.items()}
-    (name, module, preset), regions = _method(method, problem, settings), problems.remembered()
+    (name, module, preset), regions = _method(method, problem), problems.remembered()
     planner = _own_name(module)
-    legs.check_planner(planner, planner or name, via, strict, smooth)
-    tours.check_order(via_order, via)
-    outline = None if footprint is None else outline_of(footprint)
-    footprints.check_map(outline, problem.workspace, robot_radius)
+    legs.check_planner(planner, planner or name, via, strict)
     chosen = preset | settings
-
-    def place(radius: float, first: Course | None) -> Course:
-        grown = _grown(problem, robot_radius if outline is None else radius)
-        placed = problems.placed(grown, regions, getattr(module, "workspaces", None))
-        if first is None:
-            _check_settings(name, module, chosen, placed.near)
-        order = first.via if first else tours.ordered(via_order, placed, via, regions)
-        return planning.course(placed, order, regions)
+    grown = problem._replace(workspace=robot.grow(problem.workspace, robot_radius))
+    placed = problems.placed(grown, regions, getattr(module, "workspaces", None))
+    _check_settings(name, module, chosen, placed)
+    course = planning.course(placed, via, regions)
 
     # A user's file is executed in this process, as all that a program imports.
-    task = planning.Task(f"planner {name}", planner, module.plan, chosen, smooth, seed)
-    answer, _ = answered(task, name, outline, place, regions)
+    task = planning.Task(f"planner {name}", planner, module.plan, chosen, seed)
+    answer, _ = answered(task, name, course, regions)
     if strict:
-        check_strict(answer, smooth)
+        check_strict(answer)
     return answer
 
 
-def answered(
-    task: Task,
-    method: str,
-    outline: Footprint | None,
-    place: Callable[[float, Course | None], Course],
-    regions: Regions,
-) -> tuple[Answer, float]:
+def answered(task: Task, method: str, course: Course, regions: Regions) -> tuple[Answer, float]:
     """The answer to a task, by the name of a method, and the CPU seconds that the planner took.
 
-    outline: the robot's footprint, for which paths are planned for larger and larger discs, until
-    the footprint is free along one. place: the course for a disc of a radius, which it may ignore
-    without an outline; it also gets the course for the smallest disc, None for that one itself,
-    whose map and shortest path all are judged by. It raises ValueError for a disc without room.
     Raises ValueError, beginning with the task's name, if the planner fails or the verdict on its
     path is impossible.
     """
-    from bezierplan.running import footprints, planning
+    from bezierplan.geometry import shortest_paths
+    from bezierplan.running import legs, planning
     from bezierplan.running.watchdog import PlannerFailure
 
-    def attempt(radius: float, first: tuple | None) -> tuple[Course, Answer, float] | None:
-        try:
-            course = place(radius, first[0] if first else None)
-        except ValueError:
-            if first is None:
-                raise
-            return None
-        try:
-            plan, seconds = planning.planned(task, course)
-        except PlannerFailure as failure:
-            raise ValueError(str(failure)) from failure
-        if first and plan.path is None:
-            return None
-        home = first[0] if first else course
-        return course, _judged(task, method, course, plan, home, regions, outline), seconds
-
-    if outline is None:
-        found = attempt(0.0, None)
-    else:
-        found = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
-    _, answer, seconds = found
-    return answer, seconds
-
-
-def check_strict(answer: Answer, smooth: str) -> None:
-    """Raise ValueError, beginning with a name, for a path that is not all that was asked for.
-    smooth: as it was asked for.
-    """
-    from bezierplan.running import footprints, legs
-
-    unit, settings = answer.problem.workspace.unit, answer.settings
-    footprints.check_held(answer.footprint, answer.feasible)
-    legs.check_continuous(smooth, answer.curvature_jump, answer.curvature_bound, unit)
-    legs.check_kept(settings["turning_radius"], answer.turning_radius, unit)
-    legs.check_offset(settings.get("offset"), answer.offset, unit)
-
-
-def _judged(
-    task: Task,
-    method: str,
-    course: Course,
-    plan: Plan,
-    home: Course,
-    regions: Regions,
-    outline: Footprint | None,
-) -> Answer:
-    """The answer with its verdict. home: the course on whose map and by whose shortest path the
-    path is judged.
-    """
-    from bezierplan.geometry import shortest_paths
-    from bezierplan.running import legs
-    from bezierplan.workspaces.grown import grown_of
-
-    shortest, grown = home.shortest, grown_of(course.problem.near.workspace)
+    shortest = course.shortest
     try:
-        judged = verdict(home.problem, plan.path, shortest.length, regions, course.via, outline)
+        plan, seconds = planning.planned(task, course)
+        judged = verdict(course.problem, plan.path, shortest.length, regions, course.via)
+    except PlannerFailure as failure:
+        raise ValueError(str(failure)) from failure
     except ValueError as fault:
         raise ValueError(f"{task.name}: {fault}") from None
     if judged["feasible"] and judged["length"] < shortest_paths.least_length(shortest):
@@ -704,11 +547,9 @@ def _judged(
             f"{task.name}: its path is {judged['length']:.12g} long and feasible, but no free path "
             f"is shorter than {shortest.length:.12g}: the checker or the bound is wrong"
         )
-    return Answer(
+    answer = Answer(
         **judged,
-        turning_radius=legs.kept(task.planner, plan, task.settings),
-        planned_radius=grown.radius if grown else 0.0,
-        offset=plan.extra.get("least_offset", math.nan),
+        turning_radius=legs.kept(task.planner, plan),
         method=method,
         settings=task.settings,
         claimed_feasible=plan.claimed_feasible,
@@ -717,6 +558,15 @@ def _judged(
         history=plan.history,
         stop=plan.stop,
     )
+    return answer, seconds
+
+
+def check_strict(answer: Answer) -> None:
+    """Raise ValueError, beginning with a name, for a path that does not keep its turning radius."""
+    from bezierplan.running import legs
+
+    unit = answer.problem.workspace.unit
+    legs.check_kept(answer.settings["turning_radius"], answer.turning_radius, unit)
 
 
 def _own_name(module: Any) -> str:
@@ -764,12 +614,6 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _grown(problem: Problem, radius: float) -> Problem:
-    from bezierplan.workspaces import robot
-
-    return problem._replace(workspace=robot.grow(problem.workspace, radius))
-
-
 class _Function:
     """A planner's function in the place of its module."""
 
@@ -777,20 +621,16 @@ class _Function:
         self.plan = function
 
 
-def _method(
-    method: Method | None, problem: Problem, settings: Mapping[str, Any]
-) -> tuple[str, Any, dict[str, Any]]:
-    """Name, module and settings of a method; without one, of a planner that has the given
-    settings.
-    """
+def _method(method: Method | None, problem: Problem) -> tuple[str, Any, dict[str, Any]]:
+    """Name, module and settings of a method."""
     from bezierplan.planners import is_file, known_planners, planner_module
     from bezierplan.running import interface, legs
     from bezierplan.schema.checked import closest
 
     if method is None:
-        method = legs.default(settings)
-    if isinstance(method, str) and method in legs.TURNING:
-        return method, planner_module(method), legs.preset(method, problem.workspace)
+        method = legs.ROUNDED
+    if method == legs.ROUNDED:
+        return method, planner_module(method), legs.preset(problem.workspace)
     if isinstance(method, ModuleType) or callable(method):
         name = getattr(method, "__name__", "a function")
         module = method if isinstance(method, ModuleType) else _Function(method)
@@ -961,12 +801,10 @@ def replay(run: str) -> Answer:
         )
     names = planner_settings(planner_module(row["planner"]))
     problem = made.problems[row["problem"]]
-    home = problems.Placed(problem, problem)
-    judged = verdict(home, path_of(row), shortest_path(problem).length, problems.remembered())
+    judged = verdict(problem, path_of(row), shortest_path(problem).length, problems.remembered())
     return Answer(
         **judged,
         turning_radius=float(row.get("least_radius", math.nan)),
-        planned_radius=judged["robot_radius"],
         method=f"{study}/{method}",
         settings={name: row[name] for name in names},
         claimed_feasible=bool(row["claimed_feasible"]),

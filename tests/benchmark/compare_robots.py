@@ -1,14 +1,13 @@
-"""OMPL beside the baselines for a robot with a width, and for one with a turning radius: the third
-part of `make compare`.
+"""OMPL beside the baseline for a robot with a width: the third part of `make compare`.
 
 On the six maps of polygons of elhoseny2017, or on maps of any kind that `plan` reads, each given as
-FILE X,Y X,Y RADIUS TURNING_RADIUS (start, target): CPU time of one core until a path that the
+FILE X,Y X,Y RADIUS (start, target): CPU time of one core until a path that the
 checker accepts is within 2 % of the shortest, the median of the seeds, and how many times that of
 ours. Budgets double, so OMPL's times are known to a factor of two; ours are of one run.
 
-* A disc: the map grows by its radius. `rounded_shortest_path` is set beside OMPL's planners with
-  its simplifier, as in compare_planners.py; its time includes that of the exact shortest path, with
-  which all are compared. OMPL's paths are polylines.
+The map grows by the radius. `rounded_shortest_path` is set beside OMPL's planners with its
+simplifier, as in compare_planners.py; its time includes that of the exact shortest path, with which
+all are compared. OMPL's paths are polylines.
 * A turning radius, with headings at both ends: `dubins_search` beside OMPL's planners in its space
   of Dubins paths, whose motions the same exact test of the same paths checks. No shortest path is
   known here: the shortest that any of them found stands for it. In its space of Reeds and Shepp a
@@ -34,7 +33,7 @@ from anytime import time_table
 from bezierplan.figures import sheet
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import Region, region
-from bezierplan.planners import dubins_search
+from bezierplan.planners import rounded_shortest_path
 from bezierplan.running import legs
 from bezierplan.workspaces import map_files
 from bezierplan.workspaces.problem import Path, Problem
@@ -53,15 +52,12 @@ FOLDER = ROOT / "results" / "comparison"
 
 
 class Course(NamedTuple):
-    """A map file, start and target (2,), the robot's radius and its turning radius, in the map's
-    unit.
-    """
+    """A map file, start and target (2,), and the robot's radius, in the map's unit."""
 
     file: File
     start: tuple[float, ...]
     target: tuple[float, ...]
     radius: float = 0.2
-    turning_radius: float = 0.4
 
 
 COURSES = (
@@ -72,11 +68,9 @@ COURSES = (
     Course(MAPS / "hidden_U.geojson", (10.0, 3.0), (10.0, 27.0)),
     Course(MAPS / "square_spiral.geojson", (2.5, 2.5), (12.5, 7.5)),
 )
-HEADINGS = (math.pi, math.pi)
 
 WITHIN = 0.02
 SEEDS, TIMES = 50, 0.64 / 2.0 ** np.arange(9, -1, -1)
-TURNING_SEEDS, TURNING_TIMES = 5, 4.0 / 2.0 ** np.arange(8, -1, -1)
 
 OURS = "ours"
 
@@ -102,10 +96,9 @@ def length_of(at: Arena, path: Path) -> float:
     return curves.length(path) if checker.check(pieces, at.blocked).feasible else math.inf
 
 
-def ours(at: Arena, planner: str, settings: dict) -> Iterator[Attempt]:
+def ours(at: Arena, settings: dict) -> Iterator[Attempt]:
     before = time.process_time()
-    bound = shortest_paths.shortest_path(at.problem, blocked=at.blocked)
-    plan = legs.solved(planner, [at.problem], [bound], at.blocked, settings)
+    plan = rounded_shortest_path.plan(at.problem, np.random.default_rng(0), **settings)
     seconds = time.process_time() - before
     yield seconds, length_of(at, plan.path) if plan.path else math.inf
 
@@ -115,46 +108,21 @@ def disc(course: Course) -> pd.DataFrame:
     at = arena(course, course.radius)
     bound = shortest_paths.shortest_path(at.problem, blocked=at.blocked).length
     is_free = ompl_planners.segment_test(at.blocked)
-    settings = legs.preset(legs.ROUNDED, at.problem.workspace)
+    settings = legs.preset(at.problem.workspace)
 
     def with_ompl(planner: str) -> Iterator[Attempt]:
         for seconds, points in ompl_planners.attempts(planner, at.problem, is_free, TIMES):
             yield seconds, math.inf if points is None else length_of(at, Path("polyline", points))
 
-    rivals = {OURS: lambda: ours(at, legs.ROUNDED, settings)}
+    rivals = {OURS: lambda: ours(at, settings)}
     rivals |= {
         planner: lambda planner=planner: with_ompl(planner) for planner in ompl_planners.PLANNERS
     }
     return attempts_of(f"{course.file.stem}, disc", rivals, SEEDS, bound)
 
 
-def turning(course: Course) -> pd.DataFrame:
-    """Attempts of all planners with a turning radius."""
-    at, radius = arena(course, 0.0), course.turning_radius
-    is_free = ompl_planners.dubins_test(at.blocked, radius)
-    settings = {
-        "turning_radius": radius,
-        "start_heading": HEADINGS[0],
-        "target_heading": HEADINGS[1],
-    }
-
-    def with_ompl(planner: str) -> Iterator[Attempt]:
-        for seconds, poses in ompl_planners.turning_attempts(
-            planner, at.problem, radius, HEADINGS, is_free, TURNING_TIMES
-        ):
-            pieces = [] if poses is None else dubins_search.chain_of(poses, radius, 1, at.blocked)
-            yield seconds, curves.length_of(pieces) if len(pieces) else math.inf
-
-    rivals = {OURS: lambda: ours(at, legs.DRIVEN, settings)}
-    rivals |= {
-        planner: lambda planner=planner: with_ompl(planner)
-        for planner in ompl_planners.TURNING_PLANNERS
-    }
-    return attempts_of(f"{course.file.stem}, turning", rivals, TURNING_SEEDS, None)
-
-
-def attempts_of(problem: str, rivals: dict, seeds: int, bound: float | None) -> pd.DataFrame:
-    """A row an attempt; the excess is that over a length, or over the least that was found."""
+def attempts_of(problem: str, rivals: dict, seeds: int, bound: float) -> pd.DataFrame:
+    """A row an attempt; the excess is that over the bound, a length."""
     for run in rivals.values():
         next(iter(run()), None)  # compiles
     rows = [
@@ -164,10 +132,7 @@ def attempts_of(problem: str, rivals: dict, seeds: int, bound: float | None) -> 
         for seconds, length in run()
     ]
     attempts = pd.DataFrame(rows)
-    attempts["excess"] = (
-        attempts["length"] / (attempts["length"].min() if bound is None else bound) - 1
-    )
-    return attempts
+    return attempts.assign(excess=attempts["length"] / bound - 1)
 
 
 def printed(table: pd.DataFrame) -> str:
@@ -188,18 +153,17 @@ def printed(table: pd.DataFrame) -> str:
 
 def courses(words: list[str]) -> list[Course]:
     """The courses that the command line names; without words those of elhoseny2017."""
-    if len(words) % 5:
-        sys.exit("compare_robots: expected FILE X,Y X,Y RADIUS TURNING_RADIUS for each map")
-    named = [words[first : first + 5] for first in range(0, len(words), 5)]
+    if len(words) % 4:
+        sys.exit("compare_robots: expected FILE X,Y X,Y RADIUS for each map")
+    named = [words[first : first + 4] for first in range(0, len(words), 4)]
     return [
         Course(
             File(file),
             tuple(map(float, start.split(","))),
             tuple(map(float, target.split(","))),
             float(radius),
-            float(turning_radius),
         )
-        for file, start, target, radius, turning_radius in named
+        for file, start, target, radius in named
     ] or list(COURSES)
 
 
@@ -212,10 +176,9 @@ def main() -> None:
         "that get there)\n"
     )
     found = []
-    for contest in (disc, turning):
-        for course in entered:
-            found.append(contest(course))
-            print(printed(time_table(found[-1], (WITHIN,))), flush=True)
+    for course in entered:
+        found.append(disc(course))
+        print(printed(time_table(found[-1], (WITHIN,))), flush=True)
     attempts = pd.concat(found, ignore_index=True)
     sheet.write_data(attempts, FOLDER / "robots.csv")
     sheet.write_data(time_table(attempts, (WITHIN,)), FOLDER / "robots_times.csv")

@@ -1,9 +1,8 @@
 """Planners of OMPL on our problems, with OMPL's defaults and its path simplifier.
 
-States are points and motions are straight, or states are poses and motions are Dubins paths. A
-motion is valid if the certified checker's own search for a collision finds none on it, so OMPL
-needs no resolution and its paths are as exact as ours. A test is a call from C++ into Python, which
-runs a compiled kernel.
+States are points and motions are straight. A motion is valid if the certified checker's own search
+for a collision finds none on it, so OMPL needs no resolution and its paths are as exact as ours. A
+test is a call from C++ into Python, which runs a compiled kernel.
 """
 
 import math
@@ -16,7 +15,6 @@ from ompl import base, geometric, util
 
 from bezierplan.geometry.checker import first_collision
 from bezierplan.geometry.region import Region, from_origin
-from bezierplan.planners.parts import dubins
 from bezierplan.workspaces.problem import Problem
 
 PLANNERS = {
@@ -25,11 +23,7 @@ PLANNERS = {
     "Informed RRT*": geometric.InformedRRTstar,
 }
 
-TURNING_PLANNERS = {"BIT*": geometric.BITstar, "RRT*": geometric.RRTstar}
-"""Those that find a way for a robot with a turning radius on maps of polygons in seconds."""
-
 SegmentTest = Callable[[float, float, float, float], bool]
-DubinsTest = Callable[[float, float, float, float, float, float], bool]
 
 # OMPL is not asked for less, in seconds: it would do nothing but start and stop.
 _SHORTEST_SLICE = 5e-4
@@ -61,87 +55,6 @@ def segment_test(blocked: Region) -> SegmentTest:
     return is_free
 
 
-def dubins_test(blocked: Region, radius: float) -> DubinsTest:
-    """A test whether the shortest Dubins path of a radius from (x, y, heading) to another pose
-    stays out of a blocked region.
-    """
-    shift = from_origin(np.zeros(2), blocked)
-
-    @njit
-    def is_free(x, y, heading, end_x, end_y, end_heading):
-        words, pieces = np.empty((dubins.WORDS, 8)), np.empty((dubins.MOST_PIECES, 4, 2))
-        one, other = (
-            np.array([x + shift[0], y + shift[1], heading]),
-            np.array([end_x + shift[0], end_y + shift[1], end_heading]),
-        )
-        dubins.words_between(one, other, radius, words)
-        count = dubins.pieces_of(one, other, words[np.argmin(words[:, 7])], radius, pieces)
-        return first_collision(pieces[:count], blocked)[0] == math.inf
-
-    is_free(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return is_free
-
-
-class DubinsMotions(base.MotionValidator):
-    """The test of Dubins paths as OMPL calls it."""
-
-    def __init__(self, information: base.SpaceInformation, is_free: DubinsTest) -> None:
-        super().__init__(information)
-        self.is_free = is_free
-
-    def checkMotion(self, begin: base.State, end: base.State) -> bool:
-        return self.is_free(*_pose(begin), *_pose(end))
-
-
-def turning_attempts(
-    planner: str,
-    problem: Problem,
-    radius: float,
-    headings: tuple[float, float],
-    is_free: DubinsTest,
-    times: np.ndarray,
-) -> Iterator[tuple[float, np.ndarray | None]]:
-    """As `attempts`, of poses (n, 3) that Dubins paths of a radius join, with headings at both
-    ends. They are not simplified: OMPL's simplifier takes distances to be the same both ways, and
-    they are not.
-    """
-    begin = time.process_time()
-    space = base.DubinsStateSpace(radius)
-    information = _information(space, problem, DubinsMotions, is_free)
-    definition = base.ProblemDefinition(information)
-    ends = []
-    for (x, y), heading in zip((problem.start, problem.target), headings):
-        state = space.allocState()
-        state.setXY(x, y)
-        state.setYaw(heading)
-        space.enforceBounds(state)  # a heading of pi is out of bounds, and OMPL would not say so
-        ends.append(state)
-    definition.setStartAndGoalStates(*ends)
-    definition.setOptimizationObjective(base.PathLengthOptimizationObjective(information))
-    search = TURNING_PLANNERS[planner](information)
-    search.setProblemDefinition(definition)
-    search.setup()
-    searched = time.process_time() - begin
-    for until in times:
-        while searched < until:
-            before = time.process_time()
-            search.solve(
-                base.timedPlannerTerminationCondition(max(until - searched, _SHORTEST_SLICE))
-            )
-            searched += time.process_time() - before
-        found = definition.hasExactSolution()
-        yield (
-            searched,
-            np.array([_pose(state) for state in definition.getSolutionPath().getStates()])
-            if found
-            else None,
-        )
-
-
-def _pose(state: base.State) -> tuple[float, float, float]:
-    return state.getX(), state.getY(), state.getYaw()
-
-
 class Motions(base.MotionValidator):
     """The test of straight motions as OMPL calls it."""
 
@@ -167,7 +80,7 @@ def attempts(
     """
     begin = time.process_time()
     space = base.RealVectorStateSpace(2)
-    information = _information(space, problem, Motions, is_free)
+    information = _information(space, problem, is_free)
     objective = base.PathLengthOptimizationObjective(information)
     definition = base.ProblemDefinition(information)
     definition.setStartAndGoalStates(_state(space, problem.start), _state(space, problem.target))
@@ -201,15 +114,14 @@ def attempts(
 def _information(
     space: base.StateSpace,
     problem: Problem,
-    kind: type[base.MotionValidator],
-    is_free: SegmentTest | DubinsTest,
+    is_free: SegmentTest,
 ) -> base.SpaceInformation:
     """A space within the bounds of a map, with a test of motions, which is that of states as
     well.
     """
     space.setBounds(_bounds(problem))
     information = base.SpaceInformation(space)
-    motions = kind(information, is_free)
+    motions = Motions(information, is_free)
     information.setMotionValidator(motions)
     information.setStateValidityChecker(lambda state: motions.checkMotion(state, state))
     information.setup()

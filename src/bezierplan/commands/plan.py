@@ -16,22 +16,17 @@ from bezierplan import api
 from bezierplan.commands import of_study, settings_in
 from bezierplan.geometry import checker, samples
 from bezierplan.planners import is_file, known_planners, planner_module
-from bezierplan.running import footprints, interface, legs, planning, problems, tours
-from bezierplan.running.problems import Placed, Regions
-from bezierplan.schema import checked
+from bezierplan.running import interface, legs, planning, problems
+from bezierplan.running.problems import Regions
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
 from bezierplan.workspaces import map_files, robot, ros
-from bezierplan.workspaces.footprint import Footprint, footprint
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
-from bezierplan.workspaces.text_file import is_count
 
 PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
-LIMITS = ("speed", "lateral_acceleration", "acceleration")
 
 MANUAL = f"""
 Plans one path on a map and checks it by exact geometry. Prints its length, its excess over the
@@ -45,43 +40,20 @@ the robot:
                     maps of all kinds: obstacles grow by R, round at corners to a ten-thousandth of
                     R, and the shortest path is that of the robot's centre. Cells with more than
                     {robot.MOST_CORNERS:,} corners grow by whole cells
-  --footprint F     in place of a radius, the corners of a convex polygon, as nav2 writes them:
-                    [[x, y], ...], x ahead and y to the left of the point that follows the path.
-                    The path is planned for discs, from the circle within the footprint to that
-                    around it, until the footprint, turned by the path's heading, is free all along;
-                    that is certified, not sampled. At a corner of the path the robot turns on the
-                    spot. With --strict a path along which it is not free is refused
-  turning radius    a setting of the default planner. Where rounding has no room for it, a path that
-                    keeps it is searched; if none is found, the radius that is kept is printed
-                    next to it. With --strict such a path is refused. A search ends after a fixed
-                    number of places, not of seconds: that it finds nothing is no proof. So with the
-                    setting offset, the distance from corners: what is kept of it is printed
-  --smooth continuous
-                    transitions between lines and arcs, along which the curvature rises and falls,
-                    wherever there is room for them. The largest curvature that is printed is
-                    certified for every path, and not that of samples
-  headings          --start X,Y,THETA and --target X,Y,THETA: the direction of travel there, in
-                    radians, counterclockwise from the x-axis. The path turns no tighter than the
-                    turning radius: the shortest one without obstacles, if it is free (Dubins), or
-                    else one by a search (hybrid A*), pulled tight
-  --via X,Y         way points in the given order, or with --via-order shortest in the order of
-                    the exact shortest path through all of them, at most {tours.MOST_POINTS}. At a
-                    way point the path turns no tighter than elsewhere, if the search finds such a
-                    path; otherwise it has a corner there
+  turning radius    a setting of the default planner. Where rounding has no room for it, the radius
+                    that is kept is printed next to it. With --strict such a path is refused
+  --via X,Y         way points in the given order, with a corner where the path turns there
 
 maps:
-  .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what
+  .geojson   polygons, as GIS programs write them, in a unit of length: what
              has no properties.role is an obstacle; the border is the polygon with the role border,
              of any shape, or the file's bbox, or --margin around the obstacles; planners that need
              cells get --cell and --rule
   .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as
-             occupied, or with --unknown free as free. On a map that is turned, by the yaw of its
-             origin, places and headings are those of the world
+             occupied, or with --unknown free as free
   .png .pgm  an image alone, also .bmp, .jpg and .tif, with --resolution; dark pixels are occupied,
              and the lower left corner is at 0,0
-  .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the
-             length of a user unit (default: 1)
-  .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
+  .map       a MovingAI grid
   .txt       cells of . (free) and # (occupied), the top row first, of the side --cell
 
 planners:
@@ -92,9 +64,7 @@ planners:
 files:
   .svg, .png       a picture
   .csv             distance, x, y, heading and curvature at equal distances along the path, at most
-                   --step apart; with --speed V also speed and time. The speed is at most V and,
-                   with --lateral-acceleration A, the square root of A / curvature; with
-                   --acceleration the robot begins and ends at rest
+                   --step apart
   .geojson         the same points as a line; .yaml  as a nav_msgs/Path message of ROS
 """
 
@@ -163,12 +133,10 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("map", type=File, metavar="MAP", help="a map file")
     parser.add_argument(
         "--start",
-        metavar="X,Y[,THETA]",
-        help="where the path begins, in the map's unit; the heading there, in radians",
+        metavar="X,Y",
+        help="where the path begins, in the map's unit",
     )
-    parser.add_argument(
-        "--target", metavar="X,Y[,THETA]", help="where it ends, and the heading there"
-    )
+    parser.add_argument("--target", metavar="X,Y", help="where it ends")
     parser.add_argument(
         "--via",
         action="append",
@@ -176,23 +144,11 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         metavar="X,Y",
         help="a place to pass on the way; may be given several times",
     )
-    parser.add_argument(
-        "--via-order",
-        choices=tours.ORDERS,
-        default=tours.ORDERS[0],
-        help="pass these places as given, or in the order of the shortest path through all",
-    )
-    parser.add_argument(
-        "--scenario",
-        metavar="FILE:NUMBER",
-        help="start and target of a MovingAI scenario, numbered from 1",
-    )
     chosen = parser.add_mutually_exclusive_group()
     chosen.add_argument(
         "--planner",
         metavar="NAME",
-        help="a planner, or the path of a planner's file (default: rounded_shortest_path, with "
-        "headings dubins_search)",
+        help="a planner, or the path of a planner's file (default: rounded_shortest_path)",
     )
     chosen.add_argument(
         "--like", metavar="STUDY/METHOD", help="planner and settings of a study's method"
@@ -224,21 +180,9 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         help="the distance that the path keeps from obstacles and border",
     )
     parser.add_argument(
-        "--footprint",
-        metavar="'[[X, Y], ...]'",
-        help="the robot's outline, a convex polygon, in place of a radius",
-    )
-    parser.add_argument(
-        "--smooth",
-        choices=legs.SMOOTH,
-        default=legs.SMOOTH[0],
-        help="turn along arcs, or with continuous curvature",
-    )
-    parser.add_argument(
         "--strict",
         action="store_true",
-        help="refuse a path that turns tighter than the turning radius, whose curvature jumps, or "
-        "on which the footprint is not free",
+        help="refuse a path that turns tighter than the turning radius",
     )
     parser.add_argument(
         "--margin",
@@ -250,7 +194,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         "--resolution",
         type=float,
         metavar="SIDE",
-        help="side of a pixel of an image without a YAML file, or a user unit of an .svg",
+        help="side of a pixel of an image without a YAML file",
     )
     parser.add_argument(
         "--unknown",
@@ -276,21 +220,6 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         metavar="D",
         help="largest distance between points in the file (default: the length / 1000)",
     )
-    parser.add_argument(
-        "--speed", type=float, metavar="V", help="largest speed: adds speed and time to a .csv"
-    )
-    parser.add_argument(
-        "--lateral-acceleration",
-        type=float,
-        metavar="A",
-        help="largest acceleration across the path, which limits the speed in turns",
-    )
-    parser.add_argument(
-        "--acceleration",
-        type=float,
-        metavar="A",
-        help="largest acceleration along the path, which then begins and ends at rest",
-    )
     try:
         _plan(parser.parse_args(_joined(words)))
     except NoPath as told:
@@ -300,54 +229,39 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 def _plan(arguments: Namespace) -> None:
     _check_words(arguments)
-    places, headings = _places(arguments)
-    planner, settings = _planner(arguments, headings)
+    with _as_options(arguments):
+        places = {end: map_files.point(end, getattr(arguments, end)) for end in ("start", "target")}
+    planner, settings = _planner(arguments)
     module, regions = planner_module(planner), problems.remembered()
     with _as_options(arguments):
-        legs.check_planner(planner, planner, arguments.via, arguments.strict, arguments.smooth)
+        legs.check_planner(planner, planner, arguments.via, arguments.strict)
         via = [map_files.point("via", text) for text in arguments.via]
-        tours.check_order(arguments.via_order, via)
-        outline = _footprint(arguments)
         described, home = _map(arguments, planner)
         _check_no_input(arguments, described)
-        if outline:
-            home = _for_disc_within(home, outline)
-        problem = _problem(arguments, described, planner, places, home, regions)
-        legs.legs(problem, via, regions)
-        via = tours.ordered(arguments.via_order, problem, via, regions)
+        problem = _problem(planner, places, home, regions)
         if arguments.step is not None:  # known before planning: no path is shorter than that
-            samples.check_step(arguments.step, math.dist(problem.near.start, problem.near.target))
-        legs.legs(problem, via, regions)  # two places that are the same may be neighbours only now
-    if planner in legs.TURNING:
-        settings = legs.preset(planner, problem.near.workspace) | settings
+            samples.check_step(arguments.step, math.dist(problem.start, problem.target))
+        course = planning.course(problem, via, regions)
+    if planner == legs.ROUNDED:
+        settings = legs.preset(problem.workspace) | settings
     interface.check_settings(module, settings, "--settings")
     if hasattr(module, "serves"):
-        interface.asked(module.serves, f"--planner: {planner}", problem.near)
+        interface.asked(module.serves, f"--planner: {planner}", problem)
+    _check_reached(course)
     task = planning.Task(
         f"--planner: {planner}",
         planner,
         module.plan,
         settings,
-        arguments.smooth,
         arguments.seed,
         foreign=is_file(planner),
         timed=True,
     )
-
-    def place(radius: float, first: planning.Course | None) -> planning.Course:
-        placed = problem
-        if first:
-            grown = robot.grow(original(home), radius)
-            placed = _problem(arguments, described, planner, places, grown, regions)
-        course = planning.course(placed, via, regions)
-        _check_reached(course)
-        return course
-
-    answer, seconds = api.answered(task, planner, outline, place, regions)
+    answer, seconds = api.answered(task, planner, course, regions)
     if arguments.strict:
         try:
             with _as_options(arguments):
-                api.check_strict(answer, arguments.smooth)
+                api.check_strict(answer)
         except ValueError as told:
             raise NoPath(str(told)) from None
     if arguments.out and answer.path:  # what cannot be written is told alone
@@ -356,9 +270,7 @@ def _plan(arguments: Namespace) -> None:
                 _write(arguments, answer)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(arguments.out, error) from None
-        except ValueError as told:  # such as a speed for a path with corners
-            raise NoPath(str(told)) from None
-    for name, text in _told(answer, arguments.smooth, seconds):
+    for name, text in _told(answer, seconds):
         print(f"{name:16}{text}")
     if answer.path is None:
         unwritten = f"; {arguments.out} is not written" if arguments.out else ""
@@ -367,42 +279,19 @@ def _plan(arguments: Namespace) -> None:
         raise NoPath(f"--planner: {planner}: its path is not feasible")
 
 
-def _for_disc_within(home: Workspace, outline: Footprint) -> Workspace:
-    """A map for the circle within a footprint. Raises Fault if that has no room."""
-    try:
-        return robot.grow(home, footprints.radii(outline)[0])
-    except ValueError as error:
-        told = str(error).removeprefix("robot_radius: ")
-        raise Fault(f"--footprint: the circle within it, of radius {told}") from None
-
-
 def _check_reached(course: planning.Course) -> None:
     """Raise NoPath for a target to which no free way leads."""
     if not np.isfinite(course.shortest.length):
-        x, y = course.problem.world.target
+        x, y = course.problem.target
         raise NoPath(
             f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one "
             "that can be reached"
         )
 
 
-def _footprint(arguments: Namespace) -> Footprint | None:
-    """The footprint that is asked for. Raises ValueError, naming the option, for one that is none,
-    or beside a radius.
-    """
-    if arguments.footprint is None:
-        return None
-    if arguments.robot_radius is not None:
-        raise Fault(
-            "--footprint: given beside --robot-radius, "
-            "which is a footprint of its own; expected one of them"
-        )
-    return footprint(checked.parse(arguments.footprint, "--footprint"))
-
-
 def _check_words(arguments: Namespace) -> None:
     """Raise Fault for options that are wrong whatever the map is."""
-    for name in ("like", "planner", "scenario", "start", "target"):
+    for name in ("like", "planner", "start", "target"):
         if getattr(arguments, name) == "":
             raise Fault(f"--{name}: ''; expected some text")
     if arguments.out:
@@ -411,11 +300,6 @@ def _check_words(arguments: Namespace) -> None:
         raise Fault(f"--unit: {arguments.unit!r}; expected a name of one line")
     if arguments.seed < 0:
         raise Fault(f"--seed: {arguments.seed}; expected a whole number of at least 0")
-    if arguments.scenario and (arguments.start or arguments.target):
-        raise Fault(
-            f"--scenario: {arguments.scenario}: has a start and a target of its own; expected no "
-            "--start and no --target beside it"
-        )
     if arguments.step is not None and not 0 < arguments.step < math.inf:
         raise Fault(f"--step: {arguments.step:g}; expected a number above 0")
     if arguments.step is not None and (
@@ -425,13 +309,6 @@ def _check_words(arguments: Namespace) -> None:
             f"--step: {arguments.step:g}: only for --out with a file that ends in "
             f"{', '.join(OUT[len(PICTURES) :])}"
         )
-    limits = {name: getattr(arguments, name) for name in LIMITS}
-    with _as_options(arguments):
-        samples.check_limits(limits.pop("speed"), limits)
-    if arguments.speed is not None and (
-        arguments.out is None or arguments.out.suffix.lower() != ".csv"
-    ):
-        raise Fault(f"--speed: {arguments.speed:g}: only for --out with a file that ends in .csv")
 
 
 @contextmanager
@@ -445,7 +322,7 @@ def _as_options(arguments: Namespace) -> Iterator[None]:
         name, colon, told = str(error).partition(":")
         if colon and name in vars(arguments):
             raise Fault(f"--{name.replace('_', '-')}:{told}") from None
-        if colon and name in ("turning_radius", "offset"):
+        if colon and name == "turning_radius":
             raise Fault(f"--settings: {name}:{told}") from None
         raise
 
@@ -478,26 +355,15 @@ def _unwritable(out: File, error: OSError) -> Fault:
     return Fault(f"--out: {out}: cannot be written ({error.strerror or type(error).__name__})")
 
 
-def _told(answer: api.Answer, smooth: str, seconds: float) -> list[tuple[str, str]]:
+def _told(answer: api.Answer, seconds: float) -> list[tuple[str, str]]:
     """The names and values to print. seconds: of CPU time that the planner took."""
     home, planner, settings = answer.problem.workspace, answer.method, answer.settings
-    searched = f"in a search of {answer.evaluations:,}"
     unit = home.unit
     told = ", ".join(
         f"{name} {'any' if value is None else value}" for name, value in settings.items()
     )
     lines = [("planner", planner), ("settings", told or "none")]
-    if answer.footprint:
-        within, around = answer.footprint.inscribed, answer.footprint.circumscribed
-        lines.append(
-            (
-                "footprint",
-                f"{len(answer.footprint.corners)} corners, circles of {within:.6g} {unit} within "
-                f"and {around:.6g} around it",
-            )
-        )
-        lines.append(("planned for", f"a disc of {answer.planned_radius:.6g} {unit}"))
-    elif answer.robot_radius:
+    if answer.robot_radius:
         whole = (
             f", by whole cells of {home.cell:g} {unit}"
             if isinstance(home, Grid) and not home.drawn
@@ -509,15 +375,12 @@ def _told(answer: api.Answer, smooth: str, seconds: float) -> list[tuple[str, st
         order = " ".join(f"{x:.12g},{y:.12g}" for x, y in answer.via)
         lines.append(("way points", order))
     if answer.path is None:
-        told = answer.stop
-        if planner in legs.TURNING:
-            told += f" {searched} places"
-        return [*lines, ("path", f"none ({told})"), ("CPU time", f"{seconds:.3g} s")]
+        return [*lines, ("path", f"none ({answer.stop})"), ("CPU time", f"{seconds:.3g} s")]
     gap = _told_number(100 * abs(answer.gap), 3)
     side = "below" if answer.gap < 0 and gap != "0" else "above"
     lines.append(("length", f"{answer.length:.6g} {unit}, {gap} % {side} the shortest path"))
-    lines.append(("curvature", _told_curvature(answer, smooth)))
-    if planner in legs.TURNING:
+    lines.append(("curvature", _told_curvature(answer)))
+    if planner == legs.ROUNDED:
         asked = settings["turning_radius"]
         kept = answer.turning_radius
         met = legs.keeps_radius(asked, kept)
@@ -525,44 +388,12 @@ def _told(answer: api.Answer, smooth: str, seconds: float) -> list[tuple[str, st
             (
                 "turning radius",
                 f"{asked:.6g} {unit} asked"
-                + (
-                    " and kept"
-                    if met
-                    else f", {kept:.6g} {unit} kept: no more {searched} paths and places"
-                ),
+                + (" and kept" if met else f", {kept:.6g} {unit} kept: no room for more"),
             )
         )
-        if not math.isnan(answer.offset):
-            wish, least = settings["offset"], answer.offset
-            lines.append(
-                (
-                    "offset",
-                    f"{wish:.6g} {unit} asked"
-                    + (
-                        " and kept"
-                        if legs.keeps_offset(wish, least)
-                        else f", {_told_number(least, 6)} {unit} kept at a corner: no room"
-                    ),
-                )
-            )
-    lines.append(
-        (
-            "clearance",
-            f"{_told_number(answer.clearance, 6)} "
-            f"{unit}{' of the footprint' if answer.footprint else ''}",
-        )
-    )
+    lines.append(("clearance", f"{_told_number(answer.clearance, 6)} {unit}"))
     if answer.feasible:
         lines.append(("feasible", "yes"))
-    elif answer.footprint and not answer.depth:
-        x, y = answer.collision
-        lines.append(
-            (
-                "feasible",
-                f"no: the footprint enters an obstacle at {x:.6g},{y:.6g}; nor is it free on the "
-                "paths of larger discs",
-            )
-        )
     else:
         x, y = answer.collision
         what = (
@@ -576,7 +407,7 @@ def _told(answer: api.Answer, smooth: str, seconds: float) -> list[tuple[str, st
     return [*lines, ("CPU time", f"{seconds:.3g} s")]
 
 
-def _told_curvature(judged: api.Judged, smooth: str) -> str:
+def _told_curvature(judged: api.Judged) -> str:
     unit, bound = judged.problem.workspace.unit, judged.curvature_bound
     if math.isfinite(bound):
         told = f"at most {_told_number(bound, 6)} / {unit}"
@@ -587,14 +418,6 @@ def _told_curvature(judged: api.Judged, smooth: str) -> str:
         )
     if judged.corners:
         return f"{told}, and corners"
-    if smooth == "continuous":
-        continuous = legs.is_continuous(judged.curvature_jump, bound)
-        told += (
-            ", continuous"
-            if continuous
-            else f", jumps by up to {judged.curvature_jump:.3g} "
-            f"/ {unit} where transitions have no room"
-        )
     return told
 
 
@@ -605,41 +428,19 @@ def _told_number(value: float, digits: int) -> str:
     return f"{value:.{digits}g}" if abs(value) > checker.TOLERANCE else "0"
 
 
-def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str, float]]:
-    """Start and target, as far as given, and the headings there, by the names of their settings."""
-    places, headings = {}, {}
-    with _as_options(given):
-        for end in () if given.scenario else ("start", "target"):
-            places[end], heading = map_files.pose(end, getattr(given, end))
-            if heading is not None:
-                headings[f"{end}_heading"] = heading
-    return places, headings
-
-
-def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dict[str, Any]]:
+def _planner(arguments: Namespace) -> tuple[str, dict[str, Any]]:
     """The planner and its settings, as far as they are known without the map."""
     changed = settings_in(arguments.settings)
-    if twice := headings.keys() & changed.keys():
-        raise Fault(
-            f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as "
-            "well; expected once"
-        )
     if arguments.like:
         planner, preset = _like(arguments.like)
     else:
-        planner = arguments.planner or legs.default(headings.keys() | changed.keys())
+        planner = arguments.planner or legs.ROUNDED
         if not is_file(planner) and planner not in known_planners():
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
         interface.loaded(planner, f"--planner: {planner}")
-        preset = {} if planner in legs.TURNING or is_file(planner) else api.first_use(planner)
-    if headings and planner != legs.DRIVEN:
-        end = min(headings).removesuffix("_heading")
-        raise Fault(
-            f"--{end}: {getattr(arguments, end)}: a heading is only for {legs.DRIVEN}; the "
-            f"planner is {planner}"
-        )
+        preset = {} if planner == legs.ROUNDED or is_file(planner) else api.first_use(planner)
     interface.refuse_unknown(planner_module(planner), changed, "--settings")
-    return planner, preset | changed | headings
+    return planner, preset | changed
 
 
 def _like(name: str) -> tuple[str, dict[str, Any]]:
@@ -655,20 +456,18 @@ def _map(arguments: Namespace, planner: str) -> tuple[dict[str, Any], Workspace]
     served = getattr(planner_module(planner), "workspaces", None)
     if arguments.robot_radius is not None:
         robot.check_radius(arguments.robot_radius)
-    names = ("cell", "rule", "unit", "margin", "resolution", "unknown", "most_pixels", "scenario")
+    names = ("cell", "rule", "unit", "margin", "resolution", "unknown", "most_pixels")
     options = {name: getattr(arguments, name) for name in names}
     described = map_files.described(arguments.map, **options, cells=map_files.needs_cells(served))
     return described, map_files.read(arguments.map, described, arguments.robot_radius)
 
 
 def _problem(
-    arguments: Namespace,
-    described: dict[str, Any],
     planner: str,
     places: dict[str, tuple[float, float]],
     home: Workspace,
     regions: Regions,
-) -> Placed:
+) -> Problem:
     """The map with start and target."""
     served = getattr(planner_module(planner), "workspaces", None)
     met = "polygons" if isinstance(robot.suited(home, served), Polygons) else "grid"
@@ -677,19 +476,7 @@ def _problem(
             f"--planner: {planner}: "
             f"serves workspaces of kind {', '.join(served)}, and a map is {met}"
         )
-    if arguments.scenario:
-        places = _scenario(arguments, described, original(home))
     return problems.placed(Problem("", home, places["start"], places["target"]), regions, served)
-
-
-def _scenario(options: Namespace, described: dict, workspace: Workspace) -> dict:
-    """Start and target of a scenario, as a problem describes them."""
-    file, _, number = options.scenario.rpartition(":")
-    if not (file and is_count(number)):
-        raise Fault(
-            f"--scenario: {options.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1"
-        )
-    return problems.scenario(described | {"scenarios": file}, int(number), workspace, File())
 
 
 def _write(arguments: Namespace, judged: api.Judged) -> None:
@@ -701,7 +488,7 @@ def _write(arguments: Namespace, judged: api.Judged) -> None:
     if suffix in PICTURES:
         judged.to_picture(out)
     elif suffix == ".csv":
-        judged.to_csv(out, step=step, **{name: getattr(arguments, name) for name in LIMITS})
+        judged.to_csv(out, step=step)
     elif suffix == ".geojson":
         judged.to_geojson(out, step=step)
     else:

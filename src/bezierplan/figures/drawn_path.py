@@ -8,8 +8,7 @@ import numpy as np
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import paths, workspace
-from bezierplan.workspaces.frames import Frame, corners, frame_of, inward_map
-from bezierplan.workspaces.problem import Path, Problem, Workspace
+from bezierplan.workspaces.problem import Path, Problem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,32 +27,13 @@ def draw(
     """The map, the exact shortest path (n, 2), the path, if any, and the first collision, if
     any.
     """
-    frame = frame_of(problem.workspace)
-    if frame.yaw:
-        _shade_turned(axes, inward_map(problem.workspace, frame), frame)
-    else:
-        workspace.shade(axes, workspace.parts(problem.workspace))
+    workspace.shade(axes, workspace.parts(problem.workspace))
     workspace.scale(axes, problem.workspace.unit)
     drawn = {"path": paths.steps(path)} if path else {}
     drawn |= {"bound": shortest, "start": [problem.start], "target": [problem.target]}
     if collision:
         drawn["collision"] = [collision]
     paths.draw_parts(axes, paths.table(drawn), narrow=False, clip=True)
-
-
-def _shade_turned(axes: Axes, home: Workspace, frame: Frame) -> None:
-    """A map in its frame, drawn where it is in the world, with its border."""
-    from matplotlib.transforms import Affine2D
-
-    before = set(axes.get_children())
-    workspace.shade(axes, workspace.parts(home))
-    turn = Affine2D().rotate(frame.yaw).translate(*frame.offset)
-    for artist in set(axes.get_children()) - before:
-        artist.set_transform(turn + axes.transData)
-    around = corners(home, frame)
-    axes.fill(*around.T, fill=False, edgecolor=style.CELL_LINE, linewidth=0.6, zorder=0.6)
-    axes.set_xlim(around[:, 0].min(), around[:, 0].max())
-    axes.set_ylim(around[:, 1].min(), around[:, 1].max())
 
 
 def save(file: File, drawn: Callable[[Axes], object]) -> None:

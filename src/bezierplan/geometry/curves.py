@@ -16,12 +16,10 @@ A `cubic_chain` is any chain of cubic Bézier pieces, each beginning where the p
 """
 
 import math
-from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
-from bezierplan.workspaces.frames import Frame
 from bezierplan.workspaces.problem import Path
 
 _DEGREE = {"polyline": 1, "piecewise_quadratic": 2, "piecewise_cubic": 3, "bezier": None}
@@ -160,29 +158,6 @@ def bezier_pieces(path: Path) -> np.ndarray:
     if path.curve == "polyline" and len(points) > 1:
         return points[_legs(len(points))]
     return piece_matrix(path.curve, len(points)) @ points
-
-
-def inward(path: Path, frame: Frame) -> Path:
-    """A path of the world in a frame."""
-    return _in_other(path, frame.inward, frame.inward_vectors)
-
-
-def outward(path: Path, frame: Frame) -> Path:
-    """A path in a frame as one of the world."""
-    return _in_other(path, frame.outward, frame.outward_vectors)
-
-
-def _in_other(
-    path: Path,
-    points_in: Callable[[np.ndarray], np.ndarray],
-    vectors_in: Callable[[np.ndarray], np.ndarray],
-) -> Path:
-    """A path in other coordinates. Of a `ferguson` curve every other control point is a tangent."""
-    points = np.array(path.points, dtype=float)
-    if path.curve != "ferguson":
-        return Path(path.curve, points_in(points))
-    points[::2], points[1::2] = points_in(points[::2]), vectors_in(points[1::2])
-    return Path(path.curve, points)
 
 
 def bernstein(degree: int, t: np.ndarray) -> np.ndarray:

@@ -11,19 +11,19 @@ import numpy as np
 from bezierplan.geometry.samples import Samples
 
 
-def write_csv(file: Path, samples: Samples, more: Mapping[str, np.ndarray]) -> None:
+def write_csv(file: Path, samples: Samples) -> None:
     """A heading row, then distance, x, y, heading and curvature of each sample, with nine digits;
-    large coordinates with more. more: further columns (n,), by name.
+    large coordinates with more.
     """
     largest = max(np.abs(samples.x).max(), np.abs(samples.y).max(), 1.0)
     place = f"%.{9 + int(math.log10(largest))}g"
-    formats = ["%.9g", place, place, "%.9g", "%.9g", *["%.9g"] * len(more)]
+    formats = ["%.9g", place, place, "%.9g", "%.9g"]
     np.savetxt(
         file,
-        np.column_stack([*samples, *more.values()]),
+        np.column_stack(samples),
         fmt=formats,
         delimiter=",",
-        header=",".join([*Samples._fields, *more]),
+        header=",".join(Samples._fields),
         comments="",
     )
 

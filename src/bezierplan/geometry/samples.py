@@ -1,7 +1,6 @@
-"""A path as a robot follows it: points along it, with heading, curvature and the speed allowed."""
+"""A path as a robot follows it: points along it, with heading and curvature."""
 
 import math
-from collections.abc import Mapping
 from numbers import Real
 from typing import NamedTuple
 
@@ -109,105 +108,10 @@ def check_step(step: float, length: float) -> None:
         )
 
 
-def speeds(
-    samples: Samples,
-    limit: float,
-    lateral: float = math.inf,
-    acceleration: float = math.inf,
-) -> np.ndarray:
-    """The largest speed at each sample that some limits allow.
-
-    Parameters
-    ----------
-    samples : Samples
-        Of `along`.
-    limit : float
-        Of the speed, in units a second.
-    lateral : float
-        Of the acceleration across the path, in units a second squared.
-    acceleration : float
-        Of the change of speed, in units a second squared; with one, the path begins and ends at
-        rest.
-
-    Returns
-    -------
-    (n,) array
-        Speeds in units a second.
-
-    Raises
-    ------
-    ValueError
-        For limits that are not above 0.
-    """
-    for name, value in (("limit", limit), ("lateral", lateral), ("acceleration", acceleration)):
-        if not value > 0:
-            raise ValueError(f"{name}: {value}; expected a number above 0")
-    bend = np.abs(samples.curvature)
-    fast = np.minimum(
-        limit, np.sqrt(np.divide(lateral, bend, out=np.full(len(bend), math.inf), where=bend > 0))
-    )
-    if math.isinf(acceleration):
-        return fast
-    gains = 2 * acceleration * np.diff(samples.distance)
-    ahead = _reached(fast, gains)
-    return _reached(ahead[::-1], gains[::-1])[::-1]
-
-
-def _reached(fast: np.ndarray, gains: np.ndarray) -> np.ndarray:
-    """Speeds (n,), from rest, at most those given, whose squares grow by at most gains (n - 1,)."""
-    reached = np.zeros(len(fast))
-    for k, gain in enumerate(gains):
-        reached[k + 1] = min(fast[k + 1], math.sqrt(reached[k] ** 2 + gain))
-    return reached
-
-
 def _check_above_0(name: str, value: float) -> None:
     if not isinstance(value, Real) or not 0 < value < math.inf:
         shown = f"{value:g}" if isinstance(value, Real) else repr(value)
         raise ValueError(f"{name}: {shown}; expected a number above 0")
-
-
-def check_limits(speed: float | None, accelerations: Mapping[str, float | None]) -> None:
-    """Raise ValueError unless all limits given are above 0, and accelerations go with a speed."""
-    for name, value in {"speed": speed, **accelerations}.items():
-        if value is not None:
-            _check_above_0(name, value)
-        if value is not None and speed is None:
-            raise ValueError(f"{name}: {value:g}: without a speed; expected one beside it")
-
-
-def times(samples: Samples, speed: np.ndarray) -> np.ndarray:
-    """When each sample is passed, at speeds that change evenly in time between two samples.
-
-    Parameters
-    ----------
-    samples : Samples
-        Of `along`.
-    speed : (n,) array
-        At each of them, in units a second, as of `speeds`.
-
-    Returns
-    -------
-    (n,) array
-        Seconds from the first sample.
-
-    Raises
-    ------
-    ValueError
-        If the robot stands at two samples in a row that are not in the same place.
-
-    Examples
-    --------
-    >>> straight = along(Path("polyline", np.array([[0.0, 0.0], [4.0, 0.0]])), n=3)
-    >>> speed = speeds(straight, limit=2.0, acceleration=1.0)
-    >>> speed.round(9).tolist(), times(straight, speed).round(9).tolist()
-    ([0.0, 2.0, 0.0], [0.0, 2.0, 4.0])
-    """
-    apart, both = np.diff(samples.distance), speed[1:] + speed[:-1]
-    if ((both == 0) & (apart > 0)).any():
-        raise ValueError("step: the robot rests at two samples in a row; expected a smaller one")
-    taken = np.divide(2 * apart, both, out=np.zeros(len(apart)), where=both > 0)
-    return np.concatenate([[0.0], np.cumsum(taken)])
 
 
 def _lengths(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

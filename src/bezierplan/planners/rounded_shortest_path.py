@@ -9,8 +9,6 @@ shrink, in the end to the corner itself: the shortest path is free, so this ends
 """
 
 import math
-from collections.abc import Callable
-from functools import cache, partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -19,7 +17,7 @@ from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import first_collision
 from bezierplan.geometry.region import Region, from_origin, region
 from bezierplan.kernels import compiled
-from bezierplan.planners import About, Plan, Range, dubins_search
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
@@ -42,17 +40,6 @@ _SMALLEST = 0.01
 # An arc of at most this angle is one cubic piece, which deviates outwards from its circle by at
 # most 4e-6 of the radius.
 _PIECE_ANGLE = math.pi / 4
-
-# Wishes that are tried where the turning radius is not kept, for each halving, and the relative
-# difference that decides no further.
-_STEPS_PER_OCTAVE = 4
-_SAME_RADIUS = 1e-4
-
-# The same where each try is a search.
-_SAME_SEARCHED = 0.02
-
-# The smallest wish that is tried, as a share of the map's circumference.
-_SMALLEST_WISH = 1e-5
 
 # A point of the shortest path this close to a circle, in units, lies on it.
 _ON_CIRCLE = 1e-3
@@ -110,122 +97,6 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     return _answer(
         problem, shortest_paths.shortest_path(problem), region(problem.workspace), settings
     )
-
-
-@with_settings(Settings)
-def gentlest(
-    problem: Problem,
-    rng: np.random.Generator | None,
-    settings: Settings,
-    bound: shortest_paths.Bound,
-    blocked: Region,
-) -> Plan:
-    """The same, but where the circles have no room for the turning radius, a path that keeps it is
-    searched (`dubins_search`).
-
-    If none is found, the largest radius is kept that is: of the circles (`_largest`), or of a
-    search (`_widest`). So a larger wish gives no tighter turn than a smaller one, except where a
-    search with just that one finds a path. bound, blocked: the exact shortest path and the region
-    of the map.
-    """
-    first = _answer(problem, bound, blocked, settings)
-    if math.isinf(bound.length) or first.extra["tight_turns"] == 0:
-        return first
-    turns = len(turns_of(bound.points, problem.workspace).side)
-    ahead = cache(partial(dubins_search.lattice_of, problem, bound, blocked))
-
-    def search(radius: float, only_radius: bool) -> Plan:
-        poses = dubins_search.Settings(radius, math.nan, math.nan)
-        found = dubins_search.searched(problem, poses, bound, blocked, ahead, only_radius)
-        return found._replace(
-            path=found.path if found.claimed_feasible else None,
-            extra={"turns": turns, "tight_turns": 0, "least_radius": radius},
-        )
-
-    asked = search(settings.turning_radius, only_radius=False)
-    if asked.path:
-        return asked
-    best = _largest(problem, bound, blocked, settings, first)
-    wider, places = _widest(problem, search)
-    tries = best.evaluations + asked.evaluations + places
-    if wider and wider.extra["least_radius"] > best.extra["least_radius"]:
-        best = wider
-    kept = best.extra["least_radius"] >= settings.turning_radius
-    return best._replace(
-        evaluations=tries, extra=best.extra | {"tight_turns": 0 if kept else turns}
-    )
-
-
-def _widest(problem: Problem, search: Callable[[float, bool], Plan]) -> tuple[Plan | None, int]:
-    """The path with the largest radius for which a search finds one, to `_SAME_SEARCHED`, and the
-    number of places that were searched.
-
-    The radii that are tried are the same whatever the turning radius. After
-    `dubins_search.MOST_EXPANDED` places no further one is tried.
-    """
-    x_low, x_high, y_low, y_high = problem.workspace.bounds
-    failed = 2 * (x_high - x_low + y_high - y_low)
-    smallest = _SMALLEST_WISH * failed
-    wish, kept, best, places = dubins_search.easiest_radius(problem), 0.0, None, 0
-    while (
-        failed > kept * (1 + _SAME_SEARCHED)
-        and wish > smallest
-        and places < dubins_search.MOST_EXPANDED
-    ):
-        found = search(wish, True)
-        places += found.evaluations
-        if found.path:
-            best, kept = found, wish
-        else:
-            failed = wish
-        wish = math.sqrt(kept * failed) if best else 0.5 * failed
-    return best, places
-
-
-def _largest(
-    problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings, first: Plan
-) -> Plan:
-    """The rounded path with the largest radius for which the circles have room, or the `first` one
-    if its tightest turn is as wide.
-    """
-    x_low, x_high, y_low, y_high = problem.workspace.bounds
-    around = 2 * (x_high - x_low + y_high - y_low)
-    failed, tries, kept = min(settings.turning_radius, around), first.evaluations, None
-    number = math.ceil(math.log2(failed) * _STEPS_PER_OCTAVE) - 1
-    while kept is None or failed - kept[0] > _SAME_RADIUS * failed:
-        wish = 2 ** (number / _STEPS_PER_OCTAVE) if kept is None else 0.5 * (kept[0] + failed)
-        if wish < _SMALLEST_WISH * around:
-            return first._replace(evaluations=tries)
-        number -= 1
-        wished = settings._replace(turning_radius=wish)
-        may_fit, looked_at = _may_fit(problem, bound, blocked, wished)
-        found = _answer(problem, bound, blocked, wished) if may_fit else None
-        tries += looked_at + (found.evaluations if found else 0)
-        if found is None or found.extra["tight_turns"]:
-            failed = wish
-        else:
-            kept = wish, found
-    best = kept[1]
-    if best.extra["least_radius"] <= first.extra["least_radius"] * (1 + _SAME_RADIUS):
-        best = first
-    return best._replace(evaluations=tries)
-
-
-def _may_fit(
-    problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings
-) -> tuple[bool, int]:
-    """Whether `_answer` may have no tight turns, and the number of paths tried for it: circles
-    never grow again, so as soon as one has shrunk below the turning radius they have no room.
-    """
-    looked_at = 0
-    centres, *_ = _discs(problem.workspace)
-    for workspace in (problem.workspace, None) if len(centres) else (None,):
-        turns = turns_of(bound.points, workspace)
-        points, _, tries, _ = _rounded(problem, turns, blocked, settings, give_up=True)
-        looked_at += tries
-        if len(points):
-            return True, looked_at
-    return False, looked_at
 
 
 def _answer(
@@ -317,7 +188,7 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 
 
 def _rounded(
-    problem: Problem, turns: Turns, blocked: Region, settings: Settings, give_up: bool = False
+    problem: Problem, turns: Turns, blocked: Region, settings: Settings
 ) -> tuple[np.ndarray, np.ndarray, int, bool]:
     """Control points of the rounded path, radius (n,) of each turn, the number of paths tried, and
     whether the path is free.
@@ -325,7 +196,7 @@ def _rounded(
     Where two circles of the same sense get in each other's way, they become one turn and are pulled
     inwards in the same direction. Where that does not help, circles are pulled inwards less, and
     only then shrink. There are no points if that does not help either, as around two round corners
-    of a grown map that touch; with `give_up`, also if one has to be below the turning radius.
+    of a grown map that touch.
     """
     count = len(turns.side)
     # Share of the desired radius, share of the way inwards up to the corner's clearance, and
@@ -335,8 +206,6 @@ def _rounded(
     while True:
         tries += 1
         radii, centres = _circles(turns, begins, share, pulled, settings)
-        if give_up and _is_tight(radii, settings).any():
-            return np.empty((0, 2)), radii, tries, False
         legs, sweeps, bent_back, crowded = _string(problem, turns, centres, radii)
         if bent_back.any() and _join(begins, bent_back, turns):
             continue

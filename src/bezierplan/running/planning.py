@@ -2,18 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
 from bezierplan.running import answer, apart, legs, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
-from bezierplan.running.problems import Placed, Regions
+from bezierplan.running.problems import Regions
 from bezierplan.workspaces.problem import Problem
 
 T = TypeVar("T")
@@ -26,32 +24,27 @@ class Task(NamedTuple):
     """What to plan with.
 
     name: how messages about the planner begin. planner: its name in this package, empty for
-    another one. plan: its function. settings: all of them, headings in the world. smooth: one of
-    `legs.SMOOTH`. seed: of its random numbers. foreign: whether it is executed in a process of its
-    own. timed: whether it is called a second time if it is fast, since the first call also loads
-    compiled code.
+    another one. plan: its function. settings: all of them. seed: of its random numbers. foreign:
+    whether it is executed in a process of its own. timed: whether it is called a second time if it
+    is fast, since the first call also loads compiled code.
     """
 
     name: str
     planner: str
     plan: Callable[..., Any]
     settings: dict[str, Any]
-    smooth: str
     seed: int
     foreign: bool = False
     timed: bool = False
 
 
 class Course(NamedTuple):
-    """A problem with way points in the world, its legs in the map's frame with their exact shortest
-    paths, and the region that is blocked for all.
-    """
+    """A problem with way points, and its legs with their exact shortest paths."""
 
-    problem: Placed
+    problem: Problem
     via: Sequence[tuple[float, float]]
     parts: list[Problem]
     bounds: list[shortest_paths.Bound]
-    blocked: Region
 
     @property
     def shortest(self) -> shortest_paths.Bound:
@@ -59,35 +52,19 @@ class Course(NamedTuple):
         return legs.whole(self.bounds)
 
 
-def course(problem: Placed, via: Sequence[tuple[float, float]], regions: Regions) -> Course:
+def course(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions) -> Course:
     """The course of a problem. Raises ValueError for a way point that is not free."""
-    parts, blocked = legs.legs(problem, via, regions), regions(problem.near.workspace)
-    return Course(problem, via, parts, legs.shortest(parts, blocked), blocked)
+    parts = legs.legs(problem, via, regions)
+    return Course(problem, via, parts, legs.shortest(parts, regions(problem.workspace)))
 
 
 def planned(task: Task, course: Course) -> tuple[Plan, float]:
     """A planner's answer to a course, as plain values (`answer.accepted`), and its CPU seconds.
     Raises PlannerFailure, beginning with the task's name, for an answer that is none.
     """
-    settings = legs.inward(task.settings, course.problem.frame)
-    taken = {*TAKEN, *settings}
+    taken = {*TAKEN, *task.settings}
     try:
-        if task.planner in legs.TURNING:
-            plan, seconds = _timed(
-                partial(
-                    legs.solved,
-                    task.planner,
-                    course.parts,
-                    course.bounds,
-                    course.blocked,
-                    settings,
-                    task.smooth,
-                ),
-                task.timed,
-            )
-            whole = course.parts[0]._replace(target=course.parts[-1].target)
-            return answer.accepted(plan, whole, taken), seconds
-        given, seconds = _asked(task, course.parts, settings)
+        given, seconds = _asked(task, course.parts)
         return legs.joined(
             [answer.accepted(plan, part, taken) for plan, part in zip(given, course.parts)]
         ), seconds
@@ -95,14 +72,12 @@ def planned(task: Task, course: Course) -> tuple[Plan, float]:
         raise watchdog.PlannerFailure(f"{task.name}: its answer: {unfit}") from None
 
 
-def _asked(
-    task: Task, parts: Sequence[Problem], settings: dict[str, Any]
-) -> tuple[list[Any], float]:
+def _asked(task: Task, parts: Sequence[Problem]) -> tuple[list[Any], float]:
     """What a planner answers to each leg, of which it gets a copy, and its CPU seconds."""
     loans = [lend({part.name: part})[part.name] for part in parts]
 
     def plan(leg: int) -> Any:
-        return task.plan(loans[leg].problem, np.random.default_rng(task.seed), **settings)
+        return task.plan(loans[leg].problem, np.random.default_rng(task.seed), **task.settings)
 
     def fault() -> str:
         return next(filter(None, (loan.thorough_fault() for loan in loans)), "")

@@ -7,9 +7,9 @@ bounds: `columns.Bound`.
 """
 
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from bezierplan.geometry.region import Region, blocks, region
 from bezierplan.running.columns import Bound
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files, lattice, robot
-from bezierplan.workspaces.frames import WORLD, Frame, corners, frame_of, inward_map
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import grown_of, original
 from bezierplan.workspaces.problem import Problem, Workspace
@@ -46,61 +45,35 @@ def remembered() -> Regions:
     return find
 
 
-class Placed(NamedTuple):
-    """A problem in the world, and in the frame in which it is computed with."""
-
-    world: Problem
-    near: Problem
-    frame: Frame = WORLD
-
-
 def placed(
     problem: Problem, regions: Regions = region, served: Collection[str] | None = None
-) -> Placed:
-    """A problem of the world whose start and target are known to be free, in its frame on the map
-    that suits a planner of some kinds of workspace, None for all.
+) -> Problem:
+    """A problem whose start and target are known to be free, on the map that suits a planner of
+    some kinds of workspace, None for all.
 
     Raises ValueError as `build` does.
     """
-    frame = frame_of(problem.workspace)
-    home = robot.suited(inward_map(problem.workspace, frame), served)
-    ends = {"start": problem.start, "target": problem.target}
-    near = build(problem.name, ends, home, regions, frame)
-    start, target = (_pair(end) for end in (problem.start, problem.target))
-    return Placed(problem._replace(start=start, target=target), near, frame)
+    home = robot.suited(problem.workspace, served)
+    return build(problem.name, {"start": problem.start, "target": problem.target}, home, regions)
 
 
-# A place of a turned map that is this close to its border, in units, is on it: projected
-# coordinates are no finer.
-_ON_BORDER = 1e-8
-
-
-def build(
-    name: str,
-    description: dict,
-    workspace: Workspace,
-    regions: Regions = region,
-    frame: Frame = WORLD,
-) -> Problem:
+def build(name: str, description: dict, workspace: Workspace, regions: Regions = region) -> Problem:
     """A problem from its description: start and target, (x, y) in units, or start_cell and
     target_cell, cell numbers of a grid.
 
-    frame: of the workspace, and so of the problem; start and target are told in the world. Raises
-    ValueError, naming key and value, unless they lie in free space.
+    Raises ValueError, naming key and value, unless they lie in free space.
     """
-    start, target = (
-        _end(end, description, workspace, regions, frame) for end in ("start", "target")
-    )
+    start, target = (_end(end, description, workspace, regions) for end in ("start", "target"))
     return Problem(name, workspace, start, target)
 
 
 def _end(
-    end: str, description: dict, workspace: Workspace, regions: Regions, frame: Frame
+    end: str, description: dict, workspace: Workspace, regions: Regions
 ) -> tuple[float, float]:
     key = end if end in description else f"{end}_cell"
     value = description[key]
     if key == end:
-        point = _pair(frame.inward(_pair(value)))
+        point = float(value[0]), float(value[1])
     elif isinstance(workspace, Grid):
         try:
             point = workspace.centre(value)
@@ -110,10 +83,11 @@ def _end(
         raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
     grown, home = grown_of(workspace), original(workspace)
     x_low, x_high, y_low, y_high = home.bounds
-    if frame.yaw:
-        point = _on_border(point[0], x_low, x_high), _on_border(point[1], y_low, y_high)
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
-        raise ValueError(f"{key}: {value}: outside the workspace; {_within(home, frame)}")
+        raise ValueError(
+            f"{key}: {value}: outside the workspace; expected x from {x_low:.12g} to {x_high:.12g} "
+            f"and y from {y_low:.12g} to {y_high:.12g}"
+        )
     if blocks(regions(home), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
     if grown and blocks(regions(workspace), point):
@@ -133,25 +107,6 @@ def _end(
             f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell"
         )
     return point
-
-
-def _pair(value: Sequence[float] | np.ndarray) -> tuple[float, float]:
-    return float(value[0]), float(value[1])
-
-
-def _on_border(value: float, low: float, high: float) -> float:
-    nearest = min(max(value, low), high)
-    return nearest if abs(value - nearest) < _ON_BORDER else value
-
-
-def _within(workspace: Workspace, frame: Frame) -> str:
-    """Where the places of a map are, in the world."""
-    around = corners(workspace, frame)
-    if frame.yaw:
-        places = " ".join(f"{x:.9g},{y:.9g}" for x, y in around)
-        return f"expected a place of the turned map, whose corners are {places}"
-    (x_low, y_low), (x_high, y_high) = around[0], around[2]
-    return f"expected x from {x_low:.12g} to {x_high:.12g} and y from {y_low:.12g} to {y_high:.12g}"
 
 
 def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
@@ -179,38 +134,11 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
             workspace = _suitable(
                 kinds[home].candidates(*arguments), described.workspaces[home], description
             )
-        if "scenario" in description:
-            description = description | scenario(
-                described.workspaces[home], description["scenario"], workspace, folder
-            )
         # Start and target are looked up in the region of the same map, as are those of all problems
         # on a map from a file; drawn maps are as many as problems, and so are not kept.
         regions = of_fixed if home in fixed else remembered()
         problems[name] = build(name, description, workspace, regions)
     return problems
-
-
-# Tolerance between our optimal length of a scenario and the printed one, in cells.
-_SAME_OPTIMUM = 1e-3
-
-
-def scenario(description: dict, number: int, workspace: Workspace, folder: Path) -> dict:
-    """Start and target of a scenario. Raises ValueError if it does not fit our map or length."""
-    from bezierplan.geometry import shortest_paths
-
-    assert isinstance(workspace, Grid)  # only a kind of grids has scenarios
-    printed = files.scenario(description, number, workspace, folder)
-    start, target = _cell(workspace, printed.start), _cell(workspace, printed.target)
-    length = shortest_paths.lattice_path(
-        workspace.occupied, start, target, math.sqrt(2), "none"
-    ).length
-    if not abs(length - printed.optimal) <= _SAME_OPTIMUM:
-        place = f"{description['scenarios']}: line {number + 1}"
-        raise ValueError(
-            f"{place}: optimal length {printed.optimal:g}; "
-            f"on {description['file']} it is {length:.8g}"
-        )
-    return {"start": printed.start, "target": printed.target}
 
 
 # Tolerance between the shortest lattice path's length and the wanted one, in cells.

@@ -88,9 +88,6 @@ class Problem(Model):
         None, description="on grids, the number of a cell: from 0, row by row from the bottom left"
     )
     target_cell: Whole = Field(None, description="likewise")
-    scenario: Count = Field(
-        None, description="in a workspace of kind `moving_ai`, the number of a scenario, from 1"
-    )
     settings: Settings = Field(
         {},
         description="settings for this problem; they take precedence over the study's, a method's "
@@ -128,13 +125,10 @@ class Problem(Model):
 
     @model_validator(mode="after")
     def _check_ends(self) -> "Problem":
-        ends = self.model_fields_set & {"start", "target", "start_cell", "target_cell", "scenario"}
-        if ends not in ({"start", "target"}, {"start_cell", "target_cell"}, {"scenario"}):
+        ends = self.model_fields_set & {"start", "target", "start_cell", "target_cell"}
+        if ends not in ({"start", "target"}, {"start_cell", "target_cell"}):
             given = " and ".join(sorted(ends)) or "neither"
-            raise wrong(
-                f"{given}: expected either start and target, "
-                "or start_cell and target_cell, or scenario"
-            )
+            raise wrong(f"{given}: expected either start and target, or start_cell and target_cell")
         if ("layouts" in self.model_fields_set) != ("obstacles" in self.model_fields_set):
             raise wrong("layouts and obstacles go together")
         return self

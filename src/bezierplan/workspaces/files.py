@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bezierplan.workspaces import grid, moving_ai, random_field
+from bezierplan.workspaces import grid, random_field
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -40,22 +40,6 @@ def sources(description: dict, folder: Path) -> list[Path]:
     return [folder / description[key] for key in file_keys(kind.Options) if key in description]
 
 
-def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> moving_ai.Scenario:
-    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file
-    and what is expected.
-    """
-    if "scenarios" not in description:
-        raise ValueError(
-            f"scenario: {number}: the workspace has no scenarios; expected a .scen file there"
-        )
-    from bezierplan.workspaces.kinds import naming
-
-    with naming(description["scenarios"]):
-        return moving_ai.scenario(
-            folder / description["scenarios"], number, workspace, Path(description["file"]).name
-        )
-
-
 def to_json(workspace: Workspace) -> str:
     """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its
     circles, whatever the number of its cells.
@@ -80,8 +64,6 @@ def to_json(workspace: Workspace) -> str:
         content = _circles_content(workspace)
     else:
         content = _polygons_content(workspace)
-    if isinstance(workspace, Grid) and workspace.yaw:
-        content["yaw"] = workspace.yaw
     return json.dumps(content | {"unit": workspace.unit})
 
 
@@ -131,7 +113,6 @@ def from_json(text: str) -> Workspace:
             grid.from_lines(content["rows"], content["cell"], unit),
             origin=tuple(content.get("origin", (0.0, 0.0))),
             grown=_grown(content),
-            yaw=content.get("yaw", 0.0),
         )
         return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])
@@ -145,7 +126,6 @@ def from_json(text: str) -> Workspace:
             cells,
             origin=tuple(content["origin"]),
             drawn=polygons,
-            yaw=content.get("yaw", 0.0),
         )
     table = np.array(content["circles"], dtype=float).reshape(-1, 3)
     circles = Circles(bounds, table[:, :2], table[:, 2], unit, _grown(content))

@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan.workspaces.limits import (
-    LARGEST,
     SMALLEST_ANGLE,
     SMALLEST_FEATURE,
     SMALLEST_GAP,
@@ -49,13 +48,11 @@ class Shape(NamedTuple):
     rings: Rings
 
 
-def polygons_from_geojson(
-    text: str, unit: str, margin: float | None = None, largest: float = LARGEST
-) -> Polygons:
+def polygons_from_geojson(text: str, unit: str, margin: float | None = None) -> Polygons:
     """Polygons from the text of a GeoJSON file.
 
-    margin: between obstacles and border, in units, of a file without a border of its own. largest:
-    size of a coordinate. Warns of heights that are dropped, of obstacles without a geometry, and of
+    margin: between obstacles and border, in units, of a file without a border of its own.
+    Warns of heights that are dropped, of obstacles without a geometry, and of
     obstacles that are cut at the border.
 
     Raises ValueError, naming the feature, for text that is not GeoJSON, an unknown role, a geometry
@@ -76,14 +73,13 @@ def polygons_from_geojson(
         raise ValueError(f"more than {MOST_POSITIONS:,} positions; expected at most so many")
     shapes = _flat(shapes)
     for shape in shapes:
-        check_numbers(np.concatenate(shape.rings), shape.name, largest)
+        check_numbers(np.concatenate(shape.rings), shape.name)
     obstacles = [shape for shape in shapes if shape.role == "obstacle"]
     limits, outside = _border(
         [shape for shape in shapes if shape.role == "border"],
         obstacles,
         content.get("bbox"),
         margin,
-        largest,
     )
     return Polygons(limits, tuple(within(limits, [*obstacles, *outside])), unit)
 
@@ -261,7 +257,7 @@ def _flat(shapes: list[Shape]) -> list[Shape]:
 
 
 def _border(
-    borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: float | None, largest: float
+    borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: float | None
 ) -> tuple[Bounds, list[Shape]]:
     """The bounds of a map, and as obstacles what lies within them and yet outside its border, which
     may have any shape.
@@ -303,10 +299,10 @@ def _border(
             "no border; expected a polygon with role border, "
             "a bbox, or a margin around the obstacles"
         )
-    return _checked_bbox(bbox, largest), []
+    return _checked_bbox(bbox), []
 
 
-def _checked_bbox(bbox: Any, largest: float) -> Bounds:
+def _checked_bbox(bbox: Any) -> Bounds:
     """The bounds that a file states, with or without heights."""
     numbers = isinstance(bbox, list) and all(
         isinstance(value, int | float) and not isinstance(value, bool) for value in bbox
@@ -318,7 +314,7 @@ def _checked_bbox(bbox: Any, largest: float) -> Bounds:
         limits = float(low[0]), float(high[0]), float(low[1]), float(high[1])
     except OverflowError:
         raise ValueError("bbox: a number is too large for a coordinate") from None
-    check_numbers(np.array(limits), "bbox", largest)
+    check_numbers(np.array(limits), "bbox")
     check_bounds(limits)
     return limits
 

@@ -35,11 +35,7 @@ class Grid:
     then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows,
     columns) height of the ground in each cell, in units, where it is not flat; only some planners
     use them. grown: what the grid was before its occupied cells grew by a robot's radius, if they
-    did. yaw: by how much the grid is turned in the world about its origin, in radians
-    counterclockwise; all else that a grid says, bounds, cells and what is drawn, is as before it is
-    turned. The arrays are read-only.
-
-    Raises ValueError for a yaw that is not finite.
+    did. The arrays are read-only.
     """
 
     occupied: np.ndarray
@@ -49,11 +45,8 @@ class Grid:
     drawn: Circles | Polygons | None = None
     heights: np.ndarray | None = None
     grown: Grown | None = None
-    yaw: float = 0.0
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.yaw):
-            raise ValueError(f"yaw: {self.yaw}; expected a finite number of radians")
         object.__setattr__(self, "occupied", read_only(self.occupied, bool))
         if self.heights is not None:
             object.__setattr__(self, "heights", read_only(self.heights, float))

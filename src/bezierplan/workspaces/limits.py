@@ -5,11 +5,6 @@ import numpy as np
 LARGEST = 1e5
 """Largest size of a coordinate, in units: beyond it the checker could not keep its tolerance."""
 
-FARTHEST = 3e7
-"""Largest size of a coordinate of a map that is computed with in a frame of its own: beyond all
-projected coordinates of the earth.
-"""
-
 SMALLEST_GAP = 1e-7
 """Between obstacles, or an obstacle and the border, a smaller gap, in units, is meant to be closed:
 the checker could not tell.
@@ -26,15 +21,15 @@ checker's tolerance for long.
 """
 
 
-def check_numbers(values: np.ndarray, where: str, largest: float = LARGEST) -> None:
+def check_numbers(values: np.ndarray, where: str) -> None:
     """Raise ValueError, beginning with the location, unless all values are finite and at most
-    `largest` in absolute value.
+    `LARGEST` in absolute value.
     """
-    wrong = values[~(np.abs(values) <= largest)]
+    wrong = values[~(np.abs(values) <= LARGEST)]
     if wrong.size:
         raise ValueError(
             f"{where}: {wrong[0]:g} is not a coordinate; expected finite numbers of at most "
-            f"{largest:g} in size"
+            f"{LARGEST:g} in size"
         )
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.schema.checked import Fault
-from bezierplan.workspaces import files, frames, raster, robot, ros
+from bezierplan.workspaces import files, raster, robot, ros
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.geojson import polygons_from_geojson
-from bezierplan.workspaces.limits import FARTHEST, LARGEST, check_thickness
+from bezierplan.workspaces.limits import LARGEST, check_thickness
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.text_file import number, read_text
 
@@ -23,7 +23,6 @@ KINDS = {
     ".yml": "ros_map",
     ".map": "moving_ai",
     ".txt": "grid",
-    ".svg": "svg",
     **dict.fromkeys(IMAGES, "image"),
 }
 """Suffix of a map file -> the kind of workspace that it is read as."""
@@ -34,11 +33,10 @@ cell is given.
 """
 
 _APPLIES = {
-    "scenario": ("moving_ai",),
     "cell": ("grid", "raster"),
     "rule": ("raster",),
     "margin": ("polygons",),
-    "resolution": ("image", "svg"),
+    "resolution": ("image",),
     "unknown": ("ros_map", "image"),
     "most_pixels": ("ros_map", "image"),
 }
@@ -51,7 +49,6 @@ _KIND_NAMES = {
     "polygons": "polygons",
     "raster": "polygons for a planner that needs cells",
     "ros_map": "a ROS map",
-    "svg": "an SVG drawing",
 }
 
 
@@ -65,11 +62,10 @@ def described(
     resolution: float | None = None,
     unknown: str | None = None,
     most_pixels: int | None = None,
-    scenario: str | None = None,
     cells: bool = False,
 ) -> dict[str, Any]:
     """The description of a map file as a workspace of a study (config/README.md), which has no
-    kinds `image` and `svg`; None is what is not given.
+    kind `image`; None is what is not given.
 
     cells: whether polygons become a grid. Raises ValueError, naming the option, for a value that is
     wrong or does nothing on this kind of map, and for an unknown kind of file.
@@ -92,15 +88,14 @@ def described(
         raise ValueError(f"unknown: {unknown}; expected occupied or free")
     if most_pixels is not None and most_pixels < 1:
         raise ValueError(f"most_pixels: {most_pixels}; expected a whole number of at least 1")
-    metres = kind in ("polygons", "ros_map", "image", "svg")
+    metres = kind in ("polygons", "ros_map", "image")
     description: dict[str, Any] = {
         "kind": kind,
         "file": file.name,
         "unit": unit or ("m" if metres else "cell"),
     }
-    drawn = kind in ("polygons", "svg") and cells
+    drawn = kind == "polygons" and cells
     options = {
-        "scenario": scenario,
         "cell": cell,
         "rule": rule,
         "margin": margin,
@@ -136,8 +131,7 @@ def described(
 def read(file: Path, description: dict[str, Any], robot_radius: float | None = None) -> Workspace:
     """The map of a file and its description, for a robot of a radius, in units.
 
-    It lies in the world: its coordinates may be as large as projected ones are, and a grid may be
-    turned (`frames`). Raises ValueError, which names file or option.
+    Raises ValueError, which names file or option.
     """
     robot.check_radius(robot_radius or 0.0)
     if description["kind"] != "raster":
@@ -155,57 +149,29 @@ def _loaded(file: Path, description: dict[str, Any]) -> Workspace:
     it was given.
     """
     try:
-        workspace = _anywhere(file, description)
-        frames.frame_of(workspace)
-        return workspace
+        return _read(file, description)
     except ValueError as error:
         told = str(error).removeprefix("file: ").removeprefix(f"{description['file']}: ")
         raise Fault(told if told.startswith("margin: ") else f"{file}: {told}") from None
 
 
-def _anywhere(file: Path, description: dict[str, Any]) -> Workspace:
-    """The map of a file, whose coordinates may be larger than those of a study."""
+def _read(file: Path, description: dict[str, Any]) -> Workspace:
     kind, unit = description["kind"], description["unit"]
     if kind == "polygons":
-        return polygons_from_geojson(read_text(file), unit, description.get("margin"), FARTHEST)
-    if kind == "svg":
-        from bezierplan.workspaces.svg import polygons_from_svg
-
-        return polygons_from_svg(read_text(file), unit, description.get("resolution", 1.0))
+        return polygons_from_geojson(read_text(file), unit, description.get("margin"))
     options = {
         name: description[name] for name in ("unknown", "most_pixels") if name in description
     }
     if kind == "image":
         return ros.read_image(file, description["resolution"], unit, **options)
     if kind == "ros_map":
-        return ros.read(file, file.parent, unit, largest=FARTHEST, turned=True, **options)
+        return ros.read(file, file.parent, unit, **options)
     return files.load(description, file.parent)
 
 
 def needs_cells(served: Collection[str] | None) -> bool:
     """Whether a planner that serves some kinds of workspace, None for all, excludes polygons."""
     return served is not None and "polygons" not in served
-
-
-def pose(name: str, text: str | None) -> tuple[tuple[float, float], float | None]:
-    """A point from words such as `2.5,10`, and the heading in radians that a third number gives.
-    Raises ValueError, naming the option.
-    """
-    words = (text or "").split(",")
-    if len(words) != 3:
-        return point(name, text), None
-    try:
-        x, y, heading = (number(word.strip()) for word in words)
-    except ValueError:
-        raise ValueError(
-            f"{name}: {text}; expected X,Y or X,Y,THETA, numbers such as 2.5,10,1.57"
-        ) from None
-    if abs(heading) > math.tau:
-        raise ValueError(
-            f"{name}: {text}: a heading of {heading:g}; expected radians, from {-math.tau:.4g} to "
-            f"{math.tau:.4g}"
-        )
-    return (x, y), heading
 
 
 def point(name: str, text: str | None) -> tuple[float, float]:

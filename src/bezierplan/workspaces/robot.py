@@ -19,7 +19,6 @@ from bezierplan.workspaces import raster
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import Workspace
-from bezierplan.workspaces.frames import frame_of, inward_map, outward_map
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import Grown, grown_of
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
@@ -65,11 +64,6 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
     check_radius(radius)
     if radius == 0:
         return workspace
-    frame = frame_of(workspace)
-    return outward_map(_grow(inward_map(workspace, frame), radius), frame)
-
-
-def _grow(workspace: Workspace, radius: float) -> Workspace:
     if before := grown_of(workspace):
         raise ValueError(
             f"robot_radius: {radius:g}: "

@@ -22,7 +22,7 @@ import numpy as np
 from bezierplan.schema import checked
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.limits import LARGEST, check_numbers, check_thickness
+from bezierplan.workspaces.limits import check_numbers, check_thickness
 from bezierplan.workspaces.text_file import number, read_text
 
 logger = logging.getLogger(__name__)
@@ -76,16 +76,11 @@ def read(
     robot_radius: float = 0.0,
     most_pixels: int = MOST_PIXELS,
     unknown: Unknown = "occupied",
-    largest: float = LARGEST,
-    turned: bool = False,
 ) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
 
-    turned: whether its yaw may be other than 0.
-
     folder: where the image must lie, also through links. robot_radius: in units; cells that come
-    closer than that to an occupied cell or to the border also count as occupied. largest: size of a
-    coordinate.
+    closer than that to an occupied cell or to the border also count as occupied.
 
     Raises ValueError, naming the key and what is expected.
     """
@@ -99,10 +94,10 @@ def read(
             yaw,
         )
         yaw = 0.0
-    _expect(turned or yaw == 0, "origin", f"yaw {yaw}", "a yaw of 0: a map that is not turned")
+    _expect(yaw == 0, "origin", f"yaw {yaw}", "a yaw of 0: a map that is not turned")
     content["origin"] = [*corner, yaw]
     grid = _grid(image_of(file, folder, content), content, unit, most_pixels, unknown)
-    check_numbers(np.array(grid.bounds), "origin, resolution: the border", largest)
+    check_numbers(np.array(grid.bounds), "origin, resolution: the border")
     robot.check_radius(robot_radius)
     return robot.by_cells(grid, robot_radius) if robot_radius > 0 else grid
 
@@ -137,7 +132,6 @@ def _grid(
         float(content["resolution"]),
         unit,
         (float(content["origin"][0]), float(content["origin"][1])),
-        yaw=content["origin"][2],
     )
 
 

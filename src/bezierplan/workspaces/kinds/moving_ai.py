@@ -16,7 +16,6 @@ class Options(Workspace):
     made: ClassVar[str] = "grid"
 
     file: File = Field(description="a .map file in the study's folder")
-    scenarios: File | None = Field(None, description="a .scen file of the same map")
 
 
 def load(description: dict, folder: Path) -> Grid:
