@@ -242,7 +242,7 @@ def test_no_column_is_overwritten(name):
 def test_names_that_are_taken_are_those_that_are_joined():
     bounds = problems.bounds_of({"disc": PROBLEM}).column_names
     assert set(bounds) <= TAKEN
-    assert {"cpu_s", "wall_s", "clairvoyant_arrival", "replans_late"} <= TAKEN
+    assert {"cpu_s", "wall_s", "least_arrival", "replans_late"} <= TAKEN
 
 
 def test_honest_answers_pass():

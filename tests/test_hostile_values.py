@@ -775,7 +775,7 @@ FAULTS = {
             "arrival",
             "value",
             "statistic",
-            "clairvoyant_arrival",
+            "least_arrival",
         )
     },
     "a variant of itself": (

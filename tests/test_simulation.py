@@ -1,5 +1,5 @@
-"""Robots in worlds that change: motion, the exact check between steps, policies, and what a
-clairvoyant robot could reach.
+"""Robots in worlds that change: motion, the exact check between steps, policies, and what no robot
+can beat.
 """
 
 import math
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, rounded_shortest_path, shortest_path
-from bezierplan.running.simulation import cells, clairvoyant, evasion, hindsight, motion_check
+from bezierplan.running.simulation import bounds, cells, evasion, motion_check
 from bezierplan.running.simulation.circles import comes_near
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
@@ -418,88 +418,33 @@ def test_no_region_of_shapes_or_of_a_large_map_is_kept():
         assert region_of(workspace) is not region_of(workspace)
 
 
-# What a clairvoyant robot could reach
+# What no robot can beat
 
 
-def test_without_obstacles_it_arrives_as_soon_as_the_straight_line_allows():
-    world = circles(pace=0.5)
-    found = clairvoyant.earliest(world, across(world, target=(3.0, 14.0)))
-    assert found == (pytest.approx(10.0), pytest.approx(5.0))
+def gate(start, moment, *patterns):
+    maps = tuple(from_lines([pattern] * 3, 1.0, "m") for pattern in patterns)
+    world = ChangingCells(maps, np.array([moment]), 1.0, 20)
+    return world, Problem("gate", maps[0], start, (7.5, 1.5))
 
 
-def test_it_waits_or_drives_round_whichever_is_earlier():
-    world = circles((10, 10, 3, 0, 0.25))
-    found = clairvoyant.earliest(world, across(world))
-    assert 20 < found.arrival < 26
-    assert found.length >= clairvoyant.least_way(world, across(world)).length == 20.0
+def test_circles_that_stand_bound_the_way_and_those_that_move_do_not():
+    still, moving = circles((10, 10, 2, 0, 0)), circles((10, 10, 2, 0, 0.25))
+    assert bounds.least_way(moving, across(moving)).length == 20.0
+    assert bounds.least_way(still, across(still)).length > 20.0
+    assert bounds.least_arrival(circles(pace=0.5), across(moving)) == 40.0
 
 
-def random_world(seed):
-    rng = np.random.default_rng(seed)
-    places, radii = rng.uniform(4, 16, (8, 2)), rng.uniform(0.8, 2.0, (8, 1))
-    return circles(*np.hstack([places, radii, rng.uniform(-0.5, 0.5, (8, 2))]), end=60)
+def test_a_change_that_no_robot_can_meet_before_leaves_the_new_map_alone():
+    """The wall is 3.5 away: a robot can be there by step 3.5."""
+    for moment, least in [(3.4, math.inf), (3.5, math.inf), (3.6, 7.0)]:
+        closes, problem = gate((0.5, 1.5), moment, "........", "....#...")
+        assert bounds.least_arrival(closes, problem) == least
+        assert bounds.least_way(closes, problem).length == 7.0
+    opens, problem = gate((0.5, 1.5), 2.0, "....#...", "........")
+    assert bounds.least_arrival(opens, problem) == 7.0
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_a_schedule_found_is_free_and_not_before_the_bound(seed):
-    world = random_world(seed)
-    problem = across(world, start=(0.0, 0.0), target=(20.0, 20.0))
-    found = clairvoyant.earliest(world, problem)
-    assert clairvoyant.reachable(world, problem)
-    search = clairvoyant._search(world, problem)
-    lattice = clairvoyant._on_lattice(*search, world.end, True)
-    on_lattice = lattice[1].sum() + np.hypot(*np.diff(lattice[0], axis=0).T).sum()
-    points, waits = clairvoyant._pulled(
-        *lattice, search.centres, world.radii, np.array(world.bounds), world.pace
-    )
-    legs = np.hypot(*np.diff(points, axis=0).T)
-    times = np.cumsum(np.column_stack([waits[:-1], legs]).ravel())
-    motion = Motion(np.repeat(points, 2, axis=0)[:-1], np.concatenate([[0.0], times]))
-    assert math.isnan(motion_check.check(motion, world).collision_at)
-    assert found.arrival <= times[-1] <= on_lattice
-    assert clairvoyant.least_way(world, problem).length <= found.arrival * (1 + 1e-12)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_no_way_over_two_points_is_much_earlier_than_what_is_found(seed):
-    world = random_world(seed)
-    problem = across(world, start=(0.0, 0.0), target=(20.0, 20.0))
-    rng, found = np.random.default_rng(seed), clairvoyant.earliest(world, problem).arrival
-    for _ in range(1000):
-        middle = (
-            np.sort(rng.uniform(0, 20, (2, 2)), axis=0)
-            if rng.random() < 0.5
-            else rng.uniform(0, 20, (1, 2))
-        )
-        points = np.concatenate([[problem.start], middle, [problem.target]])
-        times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-        if times[-1] < found * 0.999:
-            assert not math.isnan(motion_check.check(Motion(points, times), world).collision_at)
-
-
-def test_beside_a_circle_that_stands_still_it_is_nearly_as_early_as_the_bound():
-    world = circles((10, 10, 2, 0, 0))
-    bound = clairvoyant.least_way(world, across(world)).length
-    assert bound <= clairvoyant.earliest(world, across(world)).arrival < 1.003 * bound
-
-
-def test_a_wall_that_opens_makes_it_wait_and_one_that_closes_makes_it_hurry():
-    open_, shut = (
-        from_lines(lines, 1.0, "m")
-        for lines in (["....", "....", "...."], [".#..", ".#..", ".#.."])
-    )
-    start, target = (0.5, 1.5), (3.5, 1.5)
-    opens = ChangingCells((shut, open_), np.array([5.0]), 1.0, 20)
-    problem = Problem("gate", shut, start, target)
-    assert clairvoyant.earliest(opens, problem).arrival == pytest.approx(5.0 + 2.5, abs=0.2)
-    assert clairvoyant.least_way(opens, problem).length == 3.0
-    closes = ChangingCells((open_, shut), np.array([1.5]), 1.0, 20)
-    assert clairvoyant.earliest(closes, problem._replace(workspace=open_)) == (3.0, 3.0)
-    late = ChangingCells((open_, shut), np.array([1.4]), 1.0, 20)
-    assert clairvoyant.earliest(late, problem._replace(workspace=open_)).arrival == math.inf
-
-
-# Stepping aside, and why a robot collided
+# Stepping aside
 
 
 def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_passes():
@@ -534,48 +479,6 @@ def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
     assert lengths.sum() > 0
 
 
-@pytest.mark.parametrize(("knows", "known"), [("positions", 9.0), ("velocities", 0.0)])
-def test_hindsight_says_when_a_collision_could_be_known_and_avoided(knows, known):
-    world = circles((10, 3.2, 1, 0, 0.6))  # it touches the place at step 9.67
-    stays = Motion(np.array([[10.0, 10.0], [10.0, 10.0]]), np.array([0.0, 20.0]))
-    at = motion_check.check(stays, world).collision_at
-    assert at == pytest.approx(5.8 / 0.6)
-    found = hindsight.known_at(stays, at, world, REPLANS.but(knows=knows))
-    assert found == known
-    assert hindsight.avoidable(stays, found, world, across(world))
-    assert not hindsight.avoidable(stays, math.nan, world, across(world))
-
-
-def test_a_robot_shut_in_could_not_avoid_its_collision():
-    corner = np.array([[0.0, 0.0], [0.0, 0.0]])
-    # A circle far larger than the robot's pace allows for sweeps the whole corner.
-    world = circles((14.0, 14.0, 15.0, -3.0, -3.0))
-    stays = Motion(corner, np.array([0.0, 5.0]))
-    at = motion_check.check(stays, world).collision_at
-    since = hindsight.known_at(stays, at, world, REPLANS)
-    assert since == math.floor(at)
-    assert not hindsight.avoidable(stays, since, world, across(world))
-
-
-def test_among_cells_a_change_on_the_spot_could_not_be_known_and_a_blind_drive_could():
-    maps = tuple(
-        from_lines(lines, 1.0, "m")
-        for lines in (["....", "....", "...."], ["....", ".##.", "...."])
-    )
-    world = ChangingCells(maps, np.array([2.0]), 1.0, 90)
-    line = np.array([[0.5, 1.5], [3.5, 1.5]])
-    on_the_spot, blind = Motion(line, np.array([1.0, 4.0])), Motion(line, np.array([1.8, 4.8]))
-    assert math.isnan(
-        hindsight.known_at(
-            on_the_spot, motion_check.check(on_the_spot, world).collision_at, world, WAITS
-        )
-    )
-    since = hindsight.known_at(blind, motion_check.check(blind, world).collision_at, world, WAITS)
-    assert since == 2.0
-    problem = Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5))
-    assert hindsight.avoidable(blind, since, world, problem)
-
-
 def test_a_robot_checks_no_farther_than_its_horizon():
     world = circles((15, 10, 2, 0, 0))
     seen, unseen = (
@@ -583,25 +486,6 @@ def test_a_robot_checks_no_farther_than_its_horizon():
         for horizon in (math.inf, 3.0)
     )
     assert seen.replans > unseen.replans
-
-
-coordinates = st.floats(0.0, 12.0) | st.integers(0, 12).map(float)
-
-
-@given(st.tuples(coordinates, coordinates), st.tuples(coordinates, coordinates))
-def test_crossings_are_where_a_segment_meets_a_grid_line(one, other):
-    """Each line strictly between both ends, in each direction; those met at a grid point count
-    once.
-    """
-    cuts = np.empty(40)
-    count = clairvoyant._write_crossings(np.array(one), np.array(other), cuts)
-    lines = [
-        (line - a) / (b - a)
-        for a, b in zip(one, other)
-        for line in range(13)
-        if min(a, b) < line < max(a, b)
-    ]
-    assert cuts[:count].tolist() == np.unique([0.0, 1.0, *lines]).tolist()
 
 
 @pytest.mark.parametrize(("beyond", "outside"), [(1e-4, True), (2e-9, True), (0.0, False)])

@@ -169,8 +169,8 @@ DRIVES, FIRST_DRIVES = "s/runs/d/line/0.parquet", "s/problems/d.bounds.parquet"
 
 @pytest.fixture(scope="module")
 def driven(tmp_path_factory):
-    """Results of a robot that drives along the shortest path that it sees, among circles and cells;
-    bounds of the first repeat only.
+    """Results of a robot that drives along the shortest path that it sees, among circles and
+    cells.
     """
     folder = tmp_path_factory.mktemp("drives") / "full"
     (folder / DRIVES).parent.mkdir(parents=True)
@@ -183,7 +183,7 @@ def driven(tmp_path_factory):
     runs, _, traces = rides.run_chunk(MET, WORLDS, drives)
     rows.write(runs, str(folder / DRIVES))
     parquet.write_table(traces, (folder / DRIVES).with_suffix(".traces.parquet"))
-    rides.write_bounds(MET, WORLDS, [str(folder / DRIVES)], 1, str(folder / FIRST_DRIVES))
+    parquet.write_table(rides.bounds_of(MET, WORLDS), folder / FIRST_DRIVES)
     return folder
 
 
@@ -215,7 +215,7 @@ def test_an_edit_of_a_drive_is_told(driven, tmp_path, capsys, column):
     )
 
 
-@pytest.mark.parametrize("column", ["best_arrival", "clairvoyant_arrival", "bound", "bound_path"])
+@pytest.mark.parametrize("column", ["least_arrival", "bound", "bound_path"])
 def test_an_edited_bound_of_a_moving_world_is_told(driven, tmp_path, capsys, column):
     folder = shutil.copytree(driven, tmp_path / "full")
     edited(

@@ -20,10 +20,9 @@ rule worlds:
         "../scripts/worlds.py"
 
 
-rule clairvoyant:
+rule arrivals:
     input:
         problems=f"{RESULTS}/problems/{{experiment}}.parquet",
-        runs=lambda wildcards: targets.drives(STUDIES, **wildcards),
     output:
         f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
     log:
@@ -34,9 +33,9 @@ rule clairvoyant:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.clairvoyant_params, "repeats", "code"),
+        **targets.bounds_params("arrivals"),
     script:
-        "../scripts/clairvoyant.py"
+        "../scripts/arrivals.py"
 
 
 rule drives:

@@ -169,7 +169,6 @@ def _of_path(
 _CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
 _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 
-_GAP_ARRIVAL = partial(measures.over, "arrival", "best_arrival")
 _GAP_LEAST_ARRIVAL = partial(measures.over, "arrival", "least_arrival")
 
 METRICS: dict[str, Metric] = {
@@ -519,39 +518,8 @@ METRICS: dict[str, Metric] = {
         lambda runs, _: runs["collision_at"].notna(),
     ),
     "hit_waiting": _count("whether the robot waits when it first collides"),
-    "avoidable": _count(
-        "whether the robot could have escaped its first collision when it could know of it"
-    ),
-    "avoidable_waiting": _count(
-        "whether it waits at a first collision that it could have escaped",
-        lambda runs, _: runs["avoidable"] & runs["hit_waiting"],
-        needs=("avoidable", "hit_waiting"),
-    ),
-    "unforeseen": _count(
-        "whether the robot collides and could not know of it before",
-        lambda runs, _: runs["collision_at"].notna() & runs["known_at"].isna(),
-        needs=("known_at",),
-    ),
-    "warning": Metric(
-        "steps",
-        "from when the robot could know of its first collision until then",
-        False,
-        lambda runs, _: runs["collision_at"] - runs["known_at"],
-        least=0.0,
-        needs=("known_at",),
-    ),
-    "known_at": Metric(
-        "steps", "when the robot could know of its first collision", False, least=0.0
-    ),
     "clearance_least": Metric(
         "u", "least distance to an obstacle, negative inside a circle", False
-    ),
-    "gap_arrival": Metric(
-        "-",
-        "arrival / earliest arrival of all drives and of the clairvoyant search - 1",
-        True,
-        _GAP_ARRIVAL,
-        needs=("arrival",),
     ),
     "gap_least_arrival": Metric(
         "-",
@@ -559,14 +527,6 @@ METRICS: dict[str, Metric] = {
         True,
         _GAP_LEAST_ARRIVAL,
         least=0.0,
-        needs=("arrival",),
-    ),
-    "paired_gap_arrival": Metric(
-        "-",
-        "gap_arrival where all methods of the table arrive",
-        False,
-        partial(measures.paired, _GAP_ARRIVAL),
-        among_rows=True,
         needs=("arrival",),
     ),
     "paired_gap_least_arrival": Metric(
@@ -580,19 +540,8 @@ METRICS: dict[str, Metric] = {
     ),
     "least_arrival": Metric(
         "steps",
-        "lower bound on the arrival: time for the shortest path among what stands still",
+        "lower bound on the arrival: time for the shortest path among what is always there",
         False,
-    ),
-    "best_arrival": Metric(
-        "steps",
-        "earliest arrival of all drives of the experiment and of the clairvoyant search",
-        False,
-    ),
-    "clairvoyant_arrival": Metric(
-        "steps", "earliest arrival found by the clairvoyant search, which knows the future", False
-    ),
-    "clairvoyant_length": Metric(
-        "u", "distance travelled with the earliest arrival that the clairvoyant search found", False
     ),
     "replan_mean_s": Metric(
         "s", "CPU seconds of a plan after the first, mean of a drive", False, least=0.0

@@ -140,21 +140,6 @@ class DriveOutcome(NamedTuple):
     waits: Annotated[float, Column("time spent waiting", STEPS)]
     collision_steps: Annotated[int, Column("steps in which the robot was in an obstacle", STEPS)]
     hit_waiting: Annotated[bool, Column("did it stand when it first collided?")]
-    known_at: Annotated[
-        float,
-        Column(
-            "first step at which the information that its policy gives the robot showed its first "
-            "collision; not a number if it never did",
-            STEPS,
-        ),
-    ]
-    avoidable: Annotated[
-        bool,
-        Column(
-            "could it have arrived without a collision from where it was then? True is certain; "
-            "where it is false, the clairvoyant search may have missed a path"
-        ),
-    ]
     clearance_least: Annotated[
         float, Column("least distance to an obstacle, negative inside a circle", UNITS)
     ]
@@ -190,22 +175,7 @@ class Bound(NamedTuple):
 class DriveBound(NamedTuple):
     """The rest of that row in a dynamic environment."""
 
-    least_arrival: Annotated[
-        float, Column("no robot arrives earlier; `bound` over the pace", STEPS)
-    ]
-    clairvoyant_arrival: Annotated[
-        float,
-        Column("earliest arrival found by a clairvoyant search, which knows the future", STEPS),
-    ]
-    clairvoyant_length: Annotated[float, Column("length of its path", UNITS)]
-    best_arrival: Annotated[
-        float,
-        Column(
-            "the earlier one of `clairvoyant_arrival` and the first arrival of all drives of the "
-            "experiment in this world",
-            STEPS,
-        ),
-    ]
+    least_arrival: Annotated[float, Column("no robot arrives earlier", STEPS)]
 
 
 class Times(NamedTuple):

@@ -623,9 +623,7 @@ def _inside(cells: np.ndarray, grid: Grid, points: np.ndarray) -> bool:
 
 def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World]) -> Verdict:
     kept = rows.read(task.bounds)
-    again = (
-        rides.bounds_again(made, moving, kept, task.runs) if moving else problems.bounds_of(made)
-    )
+    again = rides.bounds_of(made, moving) if moving else problems.bounds_of(made)
     for field in again.schema:
         kind = next(kind for kind, (_, fits) in _TYPES.items() if fits(field.type))
         _column(task.bounds, kept, field.name, kind)

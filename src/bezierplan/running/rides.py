@@ -7,17 +7,14 @@ A chunk has a policy: the values of a `simulation.policy.Policy` by name. Column
 """
 
 import itertools
-import json
 import math
-import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as parquet
 
 from bezierplan.planners import Plan, is_file, planner_module
 from bezierplan.running import apart, execution, rows, watchdog
@@ -33,8 +30,7 @@ from bezierplan.running.columns import (
     Times,
 )
 from bezierplan.running.loans import lend_once
-from bezierplan.running.simulation import cells, hindsight, motion_check, ways
-from bezierplan.running.simulation.clairvoyant import earliest, least_way
+from bezierplan.running.simulation import bounds, cells, motion_check, ways
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
 from bezierplan.workspaces.problem import Path, Problem
@@ -131,12 +127,6 @@ def row(
         if collided
         else 0
     )
-    policy = Policy.model_construct(**chunk.policy)
-    known = (
-        hindsight.known_at(ride.motion, verdict.collision_at, world, policy)
-        if collided
-        else math.nan
-    )
     places = ride.motion.at(np.append(np.arange(0, math.ceil(times[-1])), times[-1]))
     # Without regard to what the robot believes: the motion itself leads from start to target.
     joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (
@@ -172,8 +162,6 @@ def row(
         if least < 0
         else int(collided),
         hit_waiting=collided and bool(np.array_equal(points[leg], points[leg - 1])),
-        known_at=known,
-        avoidable=hindsight.avoidable(ride.motion, known, world, problem),
         clearance_least=least,
     )
     columns = execution.identity(chunk, condition, repeat) | outcome._asdict() | driving._asdict()
@@ -271,80 +259,15 @@ def _replan_times(ride: Ride, step_seconds: float) -> DriveTimes:
     )
 
 
-def bounds_of(
-    problems: dict[str, Problem], worlds: dict[str, World], arrivals: dict[str, float]
-) -> pa.Table:
+def bounds_of(problems: dict[str, Problem], worlds: dict[str, World]) -> pa.Table:
     """One row per problem: columns of `columns.Bound`, without an octile bound, and of
     `columns.DriveBound`.
-
-    arrivals: the first arrival of a drive, by problem, left out if there is none.
     """
-    bounds = []
+    made = []
     for name, problem in problems.items():
-        schedule, least = earliest(worlds[name], problem), least_way(worlds[name], problem)
-        arrival = DriveBound(
-            least_arrival=least.length / worlds[name].pace,
-            clairvoyant_arrival=schedule.arrival,
-            clairvoyant_length=schedule.length,
-            best_arrival=min(schedule.arrival, arrivals.get(name, math.inf)),
-        )
-        bounds.append(
+        least = bounds.least_way(worlds[name], problem)
+        arrival = DriveBound(bounds.least_arrival(worlds[name], problem))
+        made.append(
             problem_files.bound_row(name, problem, least, math.nan)._asdict() | arrival._asdict()
         )
-    return rows.table(bounds, Bound, DriveBound)
-
-
-def write_bounds(
-    problems: dict[str, Problem],
-    worlds: dict[str, World],
-    runs: Sequence[str],
-    repeats: int,
-    file: str,
-) -> None:
-    """Write the bounds of problems with the first arrivals of the drives in some files, up to a
-    number of repeats, and whose they are.
-    """
-    table = bounds_of(problems, worlds, first_arrivals(runs, repeats))
-    drives = {"methods": sorted(set(map(_method, runs))), "repeats": repeats}
-    parquet.write_table(table.replace_schema_metadata({_DRIVES: json.dumps(drives)}), file)
-
-
-_DRIVES = b"bezierplan_drives"
-
-
-def bounds_again(
-    problems: dict[str, Problem], worlds: dict[str, World], kept: pa.Table, runs: Iterable[str]
-) -> pa.Table:
-    """The bounds of problems with the first arrivals of those drives in some files that a file of
-    bounds takes into account.
-    """
-    drives = json.loads((kept.schema.metadata or {}).get(_DRIVES, "null"))
-    if drives is None:
-        return bounds_of(problems, worlds, first_arrivals(runs, sys.maxsize))
-    return bounds_of(
-        problems,
-        worlds,
-        first_arrivals(
-            [run for run in runs if _method(run) in drives["methods"]], drives["repeats"]
-        ),
-    )
-
-
-def _method(run: str) -> str:
-    """The method of a file of runs, of which all rows have the same."""
-    return parquet.read_table(run, columns=["method"])["method"][0].as_py()
-
-
-def first_arrivals(files: Iterable[str], repeats: int) -> dict[str, float]:
-    """The first arrival without a collision, in steps, of the drives in some files, up to a number
-    of repeats, by problem.
-    """
-    first: dict[str, float] = {}
-    for file in files:
-        drives = parquet.read_table(
-            file, columns=["problem", "repeat", "feasible", "arrival"]
-        ).to_pylist()
-        for each in drives:
-            if each["feasible"] and each["repeat"] < repeats:
-                first[each["problem"]] = min(first.get(each["problem"], math.inf), each["arrival"])
-    return first
+    return rows.table(made, Bound, DriveBound)

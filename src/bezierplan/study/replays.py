@@ -71,8 +71,5 @@ def _redriven(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> 
         ride = rides.run(chunk, condition, repeat, problem, from_json(to_json(world)), ask)
     row, _ = rides.row(chunk, condition, repeat, ride, problem, world)
     named, moving = {condition.problem: problem}, {condition.problem: world}
-    arrivals = {condition.problem: row["arrival"]} if row["feasible"] else {}
-    joined = results.joined(
-        pd.DataFrame([row]), named, rides.bounds_of(named, moving, arrivals).to_pandas()
-    )
+    joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving).to_pandas())
     return joined._replace(worlds=moving, jobs={chunk.method: chunk})

@@ -146,19 +146,6 @@ def run_params(
     }
 
 
-def drives(studies: Studies, scale: str, study: str, experiment: str) -> list[str]:
-    """All drives of an experiment."""
-    return _files(studies[study], scale, experiment, studies[study].methods_of(experiment)).chunks
-
-
-def clairvoyant_params(studies: Studies, scale: str, study: str, experiment: str) -> dict:
-    """Params of the job that computes the bounds of problems whose worlds move."""
-    return {
-        "repeats": studies[study].experiments[experiment].repeats[scale],
-        "code": _code("clairvoyant"),
-    }
-
-
 def moving(studies: Studies, moves: bool) -> dict[str, list[str]]:
     """The experiments whose runs are simulated drives, or the others, by study."""
     return {

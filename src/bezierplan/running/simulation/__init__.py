@@ -3,6 +3,6 @@ plans again, waits, or drives on.
 
 The robot covers the world's pace in every step, along polylines. What it plans with is any planner;
 what it does when is its policy (`policy`). Whether it collided is decided afterwards, exactly and
-without the planner (`motion_check`). `clairvoyant` bounds the earliest arrival from below and from
-above, the latter by a search that knows the future. Nothing here names a paper or a planner.
+without the planner (`motion_check`). `bounds` tells what no robot can beat. Nothing here names a
+paper or a planner.
 """
