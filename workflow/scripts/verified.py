@@ -6,9 +6,9 @@ with log.job(snakemake) as output:
     from bezierplan.running import recheck
 
     tasks = []
-    for problems, bounds, runs, drives in snakemake.params.job:
+    for problems, bounds, runs in snakemake.params.job:
         tasks += [
             recheck.Task(problems, "", tuple(runs)),
-            recheck.Task(problems, bounds, tuple(drives)),
+            recheck.Task(problems, bounds, ()),
         ]
     recheck.write(recheck.verify(tasks, snakemake.threads), output[0])

@@ -63,9 +63,7 @@ class Fault(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Runs of an experiment to be judged; or, with a file of bounds, that file, and the drives
-    whose arrivals it takes into account.
-    """
+    """Runs of an experiment to be judged; or, with a file of bounds, that file."""
 
     problems: str
     bounds: str
@@ -107,10 +105,7 @@ def tasks(folder: File) -> list[Task]:
     ]
     for bounds in sorted(folder.glob("*/problems/*.bounds.parquet")):
         experiment = bounds.name.removesuffix(".bounds.parquet")
-        drives = experiments.get(bounds.parents[1] / "runs" / experiment, [])
-        listed.append(
-            Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), tuple(drives))
-        )
+        listed.append(Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), ()))
     return listed
 
 

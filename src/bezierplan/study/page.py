@@ -1,6 +1,5 @@
 """What the page of a scale shows: its input files, its params, and the file itself."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -69,43 +68,20 @@ def _shown(studies: Studies, scale: str) -> dict[str, list[str]]:
 
 
 def verified_inputs(studies: Studies, scale: str) -> dict[str, list[str]]:
-    """Input files of the check of all runs and bounds that the page shows. drives: those behind the
-    bounds of worlds that move.
-    """
-    return _shown(studies, scale) | {
-        "drives": list(
-            dict.fromkeys(drive for *_, drives in _verified(studies, scale) for drive in drives)
-        )
-    }
+    """Input files of the check of all runs and bounds that the page shows."""
+    return _shown(studies, scale)
 
 
 def verified_params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
-    """Params of the check: `job`, for each experiment its files of problems, of bounds, of runs, of
-    all drives. root: as in `params`.
+    """Params of the check: `job`, for each experiment its files of problems, of bounds and of the
+    runs that the page shows. root: as in `params`.
     """
     job = [
-        [
-            root + problems,
-            root + bounds,
-            *([root + file for file in files] for files in (runs, drives)),
-        ]
-        for problems, bounds, runs, drives in _verified(studies, scale)
+        [root + files.problems, root + files.bounds, [root + file for file in files.chunks]]
+        for key, names in _artefacts(studies, scale).items()
+        for files in _experiments_behind(studies, scale, key, names).values()
     ]
     return {"job": job, "code": versioned_digest(str(targets.SCRIPTS / "verified.py"))}
-
-
-def _verified(studies: Studies, scale: str) -> Iterator[tuple[str, str, list[str], list[str]]]:
-    """The files of problems, of bounds, of the runs that the page shows, and of all drives, of each
-    experiment.
-    """
-    for key, names in _artefacts(studies, scale).items():
-        for experiment, files in _experiments_behind(studies, scale, key, names).items():
-            drives = (
-                targets.drives(studies, scale, key, experiment)
-                if studies[key].moves(experiment)
-                else []
-            )
-            yield files.problems, files.bounds, files.chunks, drives
 
 
 def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
