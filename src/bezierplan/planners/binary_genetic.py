@@ -361,27 +361,14 @@ def _measure(cells, occupied, columns, places, basis, stretch, scratch, with_ent
     first_point, last_point, first, last = stretch
     x, y, chords, numbers = scratch
     samples = last - first + 1
-    # Three control points at a time, so that each sample is read and written fewer times.
-    fewer = (last_point - first_point + 1) % 3
     for s in range(samples):
         x[s] = y[s] = 0.0
-    for p in range(first_point, first_point + fewer):
+    for p in range(first_point, last_point + 1):
         weights = basis[p, first : last + 1]
         column, row = places[cells[p], 0], places[cells[p], 1]
         for s in range(samples):
             x[s] += weights[s] * column
             y[s] += weights[s] * row
-    for p in range(first_point + fewer, last_point + 1, 3):
-        a = basis[p, first : last + 1]
-        b = basis[p + 1, first : last + 1]
-        c = basis[p + 2, first : last + 1]
-        column_a = places[cells[p], 0]
-        column_b = places[cells[p + 1], 0]
-        column_c = places[cells[p + 2], 0]
-        row_a, row_b, row_c = places[cells[p], 1], places[cells[p + 1], 1], places[cells[p + 2], 1]
-        for s in range(samples):
-            x[s] = x[s] + a[s] * column_a + b[s] * column_b + c[s] * column_c
-            y[s] = y[s] + a[s] * row_a + b[s] * row_b + c[s] * row_c
     # What vector instructions can do comes first: they make whole numbers of 32 bits only. Then the
     # sum, in its order, which waits so long for each addition that cells are looked up meanwhile.
     for s in range(samples):

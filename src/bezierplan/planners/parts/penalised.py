@@ -87,36 +87,24 @@ def length(
     """
     ends, free = objective.ends, objective.free
     n, samples = free.shape
-    # Three control points at a time, so that each sample is read and written fewer times.
-    threes = n // 3 * 3
     for axis in range(len(ends)):
-        x, end, z = curve[axis], ends[axis], particle[axis * n : (axis + 1) * n]
-        if threes > 0:
-            a, b, c = z[0], z[1], z[2]
+        x, end = curve[axis], ends[axis]
+        for s in range(samples):
+            x[s] = end[s]
+        for k in range(n):
+            z, weights = particle[axis * n + k], free[k]
             for s in range(samples):
-                x[s] = end[s] + a * free[0, s] + b * free[1, s] + c * free[2, s]
-        else:
-            for s in range(samples):
-                x[s] = end[s]
-        for k in range(3, threes, 3):
-            a, b, c = z[k], z[k + 1], z[k + 2]
-            for s in range(samples):
-                x[s] = x[s] + a * free[k, s] + b * free[k + 1, s] + c * free[k + 2, s]
-        for k in range(threes, n):
-            for s in range(samples):
-                x[s] += z[k] * free[k, s]
+                x[s] += z * weights[s]
     # The square roots are vectorised if their sum is separate; its four partial sums need not wait
     # for each other.
-    x, y = curve[0], curve[1]
-    if len(ends) == 2:
+    for s in range(samples - 1):
+        chords[s] = 0.0
+    for axis in range(len(ends)):
+        x = curve[axis]
         for s in range(samples - 1):
-            dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
-            chords[s] = np.sqrt(dx * dx + dy * dy)
-    else:
-        z = curve[2]
-        for s in range(samples - 1):
-            dx, dy, dz = x[s + 1] - x[s], y[s + 1] - y[s], z[s + 1] - z[s]
-            chords[s] = np.sqrt(dx * dx + dy * dy + dz * dz)
+            chords[s] += (x[s + 1] - x[s]) ** 2
+    for s in range(samples - 1):
+        chords[s] = np.sqrt(chords[s])
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     fours = (samples - 1) // 4 * 4
     for s in range(0, fours, 4):
