@@ -244,16 +244,6 @@ def test_the_swarm_comes_close_to_the_exact_way_around_a_sphere():
     assert bound < min(lengths) < 1.02 * bound
 
 
-def test_a_free_straight_line_is_the_best_path():
-    task = Problem("", among((0, 0, 5, 2)), (-4.0, 0.0, 0.0), (4.0, 6.0, 0.5))
-    found = chaotic_pso.plan(
-        task,
-        np.random.default_rng(0),
-        **SETTINGS | {"straight_line_particle": True, "iterations": 5},
-    )
-    assert found.objective == pytest.approx(math.dist(task.start, task.target), rel=1e-12)
-
-
 # The panel.
 
 

@@ -19,7 +19,7 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
-from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
+from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -30,70 +30,38 @@ exact = True
 # The cost of a point that cannot be seen from the last one: above all others, and the same for all
 # such points.
 _UNSEEN = 1e9
+# Textbook values of the colony: sources, each with an employed and an onlooker bee; failed trials
+# after which a source is redrawn; points chosen before the search is abandoned; and the weight of a
+# point's distance from the last one, where that to the target has weight 1.
+_SOURCES, _TRIAL_LIMIT, _MOST_POINTS, _STEP_WEIGHT = 20, 5, 200, 0.5
+# Of evolution: shares of children in which an inner point moves by a Gaussian step, and of those
+# without one of the inner points (the rest get a leg's midpoint); the standard deviation of a
+# midpoint, as a share of that of a move; opponents drawn for each of parents and children, of whom
+# those not worse than most of them survive; and what a leg that touches an occupied cell adds.
+_MOVE_SHARE, _REMOVAL_SHARE, _INSERTION_SPREAD, _OPPONENTS, _BLOCKED = 0.6, 0.2, 0.3, 5, 1e6
 
 
 class Settings(NamedTuple):
     """Settings of colony and evolution; the papers give none, these are textbook ones."""
 
-    sources: Annotated[
-        int, Range(2), About("sources of the colony, each with an employed and an onlooker bee")
-    ]
     cycles: Annotated[int, Range(0), About("cycles of the colony for one point")]
-    trial_limit: Annotated[int, Range(1), About("failed trials after which a source is redrawn")]
     reach: Annotated[
         float,
         Range(0, 1),
         About("half the side of the square around the last point, as a share of the smaller side"),
-    ]
-    step_weight: Annotated[
-        float,
-        Range(0),
-        About("weight of a point's distance from the last one; that to the target has weight 1"),
     ]
     visited_weight: Annotated[
         float,
         Range(0),
         About("weight of cones around the points chosen so far, as high and wide as the reach"),
     ]
-    most_points: Annotated[int, Range(0), About("points chosen before the search is abandoned")]
     population: Annotated[
         int, Range(1), About("copies of the path that evolve, each with one child a generation")
     ]
     generations: Annotated[int, Range(0), About("generations")]
-    move_share: Annotated[
-        float,
-        Range(0, 1),
-        About("share of children in which an inner point moves by a Gaussian step"),
-    ]
-    removal_share: Annotated[
-        float,
-        Range(0, 1),
-        About("share of children without one of the inner points; the rest get a leg's midpoint"),
-    ]
     spread: Annotated[
         float, Range(0), About("standard deviation of a move, as a share of the smaller side")
     ]
-    insertion_spread: Annotated[
-        float, Range(0), About("standard deviation of a midpoint, as a share of the spread")
-    ]
-    opponents: Annotated[
-        int,
-        Range(1),
-        About("drawn for each of parents and children; those not worse than most of them survive"),
-    ]
-    blocked_penalty: Annotated[
-        float, Range(0), About("added for each leg that touches an occupied cell", unit=UNITS)
-    ]
-
-
-def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
-    shares = settings["move_share"] + settings["removal_share"]
-    if shares > 1:
-        raise ValueError(
-            f"move_share: with removal_share {shares:g}; "
-            "expected at most 1, the rest inserts points"
-        )
 
 
 @with_settings(Settings)
@@ -124,7 +92,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
-    rules = in_cells(settings, grid.cell)._replace(
+    rules = settings._replace(
         reach=settings.reach * smaller_side, spread=settings.spread * smaller_side
     )
     points, history = _search(*rng.spawn(2), grid.occupied, start, target, rules)
@@ -134,13 +102,11 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         return Plan.of_one(None, np.inf, "no way", extra)
     points = grid.in_units(points)
     points[[0, -1]] = problem.start, problem.target
-    evaluations = 1 + settings.population * settings.generations
-    path = Path("polyline", points)
     return Plan(
-        path,
-        history[-1],
+        path=Path("polyline", points),
+        objective=history[-1],
         claimed_feasible=True,
-        evaluations=evaluations,
+        evaluations=1 + settings.population * settings.generations,
         history=history,
         stop="generations",
         extra=extra,
@@ -163,17 +129,17 @@ def _search(colony_rng, evolution_rng, occupied, start, target, rules):
 @compiled
 def _first_path(rng, occupied, start, target, rules):
     """A free path (points, 2), point by point until the target is in sight; empty if no free point
-    is found or most_points do not suffice.
+    is found or `_MOST_POINTS` do not suffice.
     """
-    path = np.empty((rules.most_points + 2, 2))
+    path = np.empty((_MOST_POINTS + 2, 2))
     path[0, 0], path[0, 1] = start  # an assignment of a whole row takes seconds to compile
-    for count in range(1, rules.most_points + 2):
+    for count in range(1, _MOST_POINTS + 2):
         last = path[count - 1]
         if is_free_leg(occupied, last[0], last[1], target[0], target[1]):
             path[count, 0], path[count, 1] = target
             return path[: count + 1].copy()
         if (
-            count <= rules.most_points
+            count <= _MOST_POINTS
             and _next_point(rng, occupied, target, path, count, rules) >= _UNSEEN
         ):
             break
@@ -187,33 +153,33 @@ def _next_point(rng, occupied, target, path, count, rules):
     for k in range(2):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)
         high[k] = min(occupied.shape[1 - k] - 0.5, path[count - 1, k] + rules.reach)
-    sources = rules.sources
-    x, cost, failed = np.empty((sources, 2)), np.empty(sources), np.zeros(sources, dtype=np.int64)
+    x, cost = np.empty((_SOURCES, 2)), np.empty(_SOURCES)
+    failed = np.zeros(_SOURCES, dtype=np.int64)
     point = np.empty(2)
     best, best_cost = path[count], np.inf
-    for i in range(sources):
+    for i in range(_SOURCES):
         _draw(rng, low, high, x[i])
         cost[i] = _cost(occupied, target, path, count, x[i], rules)
 
     for cycle in range(rules.cycles + 1):
         # The best point is recorded before its source can be redrawn.
-        for i in range(sources):
+        for i in range(_SOURCES):
             if cost[i] < best_cost:
                 best[0], best[1] = x[i, 0], x[i, 1]
                 best_cost = cost[i]
         if cycle == rules.cycles:
             break
-        for i in range(sources):
-            if failed[i] >= rules.trial_limit:  # a scout
+        for i in range(_SOURCES):
+            if failed[i] >= _TRIAL_LIMIT:  # a scout
                 _draw(rng, low, high, x[i])
                 cost[i] = _cost(occupied, target, path, count, x[i], rules)
                 failed[i] = 0
         for turn in range(2):
             if turn == 1:
-                onlooked = roulette(rng, 1.0 / (1.0 + cost), sources)
-            for bee in range(sources):
+                onlooked = roulette(rng, 1.0 / (1.0 + cost), _SOURCES)
+            for bee in range(_SOURCES):
                 i = onlooked[bee] if turn == 1 else bee
-                other = integer(rng, 0, sources - 1)
+                other = integer(rng, 0, _SOURCES - 1)
                 other += other >= i
                 k = integer(rng, 0, 2)
                 point[0], point[1] = x[i, 0], x[i, 1]
@@ -249,7 +215,7 @@ def _cost(occupied, target, path, count, point, rules):
     for chosen in range(1, count):
         height += max(0.0, rules.reach - _length(path[chosen, 0], path[chosen, 1], column, row))
     return (
-        rules.step_weight * _length(last[0], last[1], point[0], point[1])
+        _STEP_WEIGHT * _length(last[0], last[1], point[0], point[1])
         + _length(point[0], point[1], target[0], target[1])
         + rules.visited_weight * height
     )
@@ -285,22 +251,15 @@ def _cut_short(occupied, path):
 def _evolve(rng, occupied, path, rules):
     """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations
     + 1,).
-
-    Every path keeps the lengths of its legs, plus the penalty where they are blocked: a mutation
-    changes at most two of them.
     """
     population, generations = rules.population, rules.generations
-    room = len(path) + generations
-    points, legs = np.empty((2 * population, room, 2)), np.empty((2 * population, room))
-    counts, cost = np.full(2 * population, len(path)), np.empty(2 * population)
+    points = np.empty((2 * population, len(path) + generations, 2))
+    counts = np.full(2 * population, len(path))
     # Parents first, starting with the cheapest; the other slots are for children.
     slots = np.arange(2 * population)
     for i in range(population):
-        for p in range(len(path)):
-            points[i, p, 0], points[i, p, 1] = path[p, 0], path[p, 1]
-        for p in range(len(path) - 1):
-            legs[i, p] = _leg(occupied, points[i], p, rules.blocked_penalty)
-        cost[i] = legs[i, : len(path) - 1].sum()
+        _copy(path, 0, len(path), points[i], 0)
+    cost = np.full(2 * population, _price(occupied, path))
     history = np.empty(generations + 1)
     history[0] = cost[0]
 
@@ -308,55 +267,46 @@ def _evolve(rng, occupied, path, rules):
         for i in range(population):
             parent, child = slots[i], slots[population + i]
             counts[child] = _mutated(
-                rng,
-                occupied,
-                points[parent],
-                legs[parent],
-                counts[parent],
-                points[child],
-                legs[child],
-                rules,
+                rng, occupied, points[parent, : counts[parent]], points[child], rules.spread
             )
-            cost[child] = legs[child, : counts[child] - 1].sum()
-        _rank(slots, _wins(rng, cost, rules.opponents), cost)
+            cost[child] = _price(occupied, points[child, : counts[child]])
+        _rank(slots, _wins(rng, cost), cost)
         history[generation + 1] = cost[slots[0]]
     return points[slots[0], : counts[slots[0]]], history
 
 
 @allocation_free
-def _mutated(rng, occupied, points, legs, count, child, child_legs, rules):
+def _mutated(rng, occupied, points, child, spread):
     """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is
     inserted. Returns the child's number of points.
     """
-    kind = rng.random()
-    if count == 2 or kind >= rules.move_share + rules.removal_share:
+    kind, count = rng.random(), len(points)
+    if count == 2 or kind >= _MOVE_SHARE + _REMOVAL_SHARE:
         # The child's new point; the parent's points after it move up by one.
         changed = integer(rng, 1, count)
-        kept = changed
+        kept, behind = changed, changed + 1
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
-        _shift(rng, occupied, child[changed], rules.spread * rules.insertion_spread)
-        behind = changed + 1
-    elif kind < rules.move_share:
-        changed = integer(rng, 1, count - 1)
-        kept = changed + 1
-        for k in range(2):
-            child[changed, k] = points[changed, k]
-        _shift(rng, occupied, child[changed], rules.spread)
-        behind = changed + 1
+        _shift(rng, occupied, child[changed], spread * _INSERTION_SPREAD)
     else:
         changed = integer(rng, 1, count - 1)
-        kept = changed + 1
-        behind = changed
-    for p in range(changed):
-        child[p, 0], child[p, 1] = points[p, 0], points[p, 1]
-        child_legs[p] = legs[p]
-    for p in range(kept, count):
-        child[p + behind - kept, 0], child[p + behind - kept, 1] = points[p, 0], points[p, 1]
-        child_legs[p + behind - kept] = legs[p]
-    for p in range(changed - 1, behind):
-        child_legs[p] = _leg(occupied, child, p, rules.blocked_penalty)
+        kept = behind = changed + 1
+        if kind < _MOVE_SHARE:
+            _copy(points, changed, kept, child, changed)
+            _shift(rng, occupied, child[changed], spread)
+        else:
+            behind = changed
+    _copy(points, 0, changed, child, 0)
+    _copy(points, kept, count, child, behind)
     return count + behind - kept
+
+
+@allocation_free
+def _copy(points, first, last, others, place):
+    """Copy points first .. last - 1 to a place among others."""
+    for p in range(first, last):
+        for k in range(2):
+            others[place + p - first, k] = points[p, k]
 
 
 @allocation_free
@@ -368,20 +318,23 @@ def _shift(rng, occupied, point, spread):
 
 
 @allocation_free
-def _leg(occupied, points, p, blocked_penalty):
-    """Length of the leg after point p, plus the penalty if it is blocked."""
-    x0, y0 = points[p, 0], points[p, 1]
-    x1, y1 = points[p + 1, 0], points[p + 1, 1]
-    length = _length(x0, y0, x1, y1)
-    return length if is_free_leg(occupied, x0, y0, x1, y1) else length + blocked_penalty
+def _price(occupied, points):
+    """Length of a path (points, 2), plus the penalty for each leg that is blocked."""
+    price = 0.0
+    for p in range(len(points) - 1):
+        x0, y0 = points[p, 0], points[p, 1]
+        x1, y1 = points[p + 1, 0], points[p + 1, 1]
+        length = _length(x0, y0, x1, y1)
+        price += length if is_free_leg(occupied, x0, y0, x1, y1) else length + _BLOCKED
+    return price
 
 
 @compiled
-def _wins(rng, cost, opponents):
+def _wins(rng, cost):
     """For each path (n,), the number of random opponents that it is not worse than."""
     wins = np.zeros(len(cost), dtype=np.int64)
     for i in range(len(cost)):
-        for _ in range(opponents):
+        for _ in range(_OPPONENTS):
             other = integer(rng, 0, len(cost) - 1)
             other += other >= i
             wins[i] += cost[i] <= cost[other]

@@ -15,7 +15,7 @@ number that the chaotic sequence replaces is drawn and discarded.
 import logging
 import math
 from enum import IntEnum
-from functools import cache, lru_cache
+from functools import cache
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -47,9 +47,8 @@ PAPER = "tharwat2018"
 
 ChaoticTerm = IntEnum("ChaoticTerm", "none cognitive social", start=0)
 RandomNumbers = IntEnum("RandomNumbers", "dimension particle iteration", start=0)
-BoundRule = IntEnum("BoundRule", "mirror clamp stop none", start=0)
+BoundRule = IntEnum("BoundRule", "mirror clamp stop", start=0)
 Curve = IntEnum("Curve", "bezier spline ferguson", start=0)
-Update = IntEnum("Update", "asynchronous synchronous evaluate_first", start=0)
 StartRule = IntEnum("StartRule", "random fixed uniform", start=0)
 ZetaFor = IntEnum("ZetaFor", "iteration particle dimension", start=0)
 Tested = IntEnum("Tested", "samples control_points", start=0)
@@ -135,10 +134,6 @@ class Settings(NamedTuple):
             PAPER + ", Section 4.2.1",
         ),
     ]
-    straight_line_particle: Annotated[
-        bool,
-        About("whether the first particle starts as the straight line", PAPER + ", Section 3.2"),
-    ]
     c1: Annotated[float, Range(0), About("C1, the cognition learning factor", PAPER + ", Table 2")]
     c2: Annotated[float, Range(0), About("C2, the social learning factor", PAPER + ", Table 2")]
     inertia: Annotated[float, Range(0), About("w of the first iteration")]
@@ -154,19 +149,10 @@ class Settings(NamedTuple):
         BoundRule,
         About(
             "outside the field: moved to its border, the velocity mirrored, kept (clamp) or zero "
-            "(stop); or left there (none)"
+            "(stop)"
         ),
     ]
     random_numbers: Annotated[RandomNumbers, About("what gets its own r1 and r2")]
-    update: Annotated[
-        Update,
-        About(
-            "which of the swarm's best paths a particle follows: that of now (asynchronous), that "
-            "of the last iteration (synchronous), or that of its own last evaluation, after which "
-            "it moves at once (evaluate_first)",
-            PAPER + ", Algorithm 1",
-        ),
-    ]
     chaotic_term: Annotated[
         ChaoticTerm,
         About("term whose random number the chaotic sequence replaces", PAPER + ", eqs. 17, 18"),
@@ -191,19 +177,6 @@ class Settings(NamedTuple):
         ZetaFor, About("what gets its own number of the sequence", PAPER + ", eqs. 17, 18")
     ]
     singer_mu: Annotated[float, Range(0.9, 1.08), About("mu", PAPER + ", eq. 10")]
-    singer_x4: Annotated[
-        float, Range(13, 14), About("coefficient of x^4, usually 13.302875", PAPER + ", eq. 10")
-    ]
-    sine_a: Annotated[float, Range(0, 4), About("a", PAPER + ", eq. 14")]
-    piecewise_p: Annotated[float, Range(0.01, 0.49), About("P", PAPER + ", eq. 15")]
-    sinusoidal_a: Annotated[float, Range(0, 4), About("a", PAPER + ", eq. 16")]
-    count_collisions: Annotated[
-        bool,
-        About(
-            "if false, paths too long to be an improvement are not tested: no result changes, but "
-            "collisions_a, _b and _f are nan"
-        ),
-    ]
 
 
 def check(settings: dict) -> None:
@@ -259,7 +232,6 @@ def plan(
     curve, done = Curve(settings.curve).name, len(swarm.fitness) - 1
     evaluations = (1 if settings.control_points == 0 else settings.particles) * (done + 1)
     feasible = swarm.violation <= FEASIBLE
-    infeasible = swarm.infeasible if settings.count_collisions else math.nan
     return Plan(
         path=Path(curve, _points(swarm.positions[-1], curve, problem)),
         objective=swarm.fitness[-1],
@@ -271,13 +243,12 @@ def plan(
         else "stall",
         extra={
             "violation": swarm.violation,
-            "collisions_a": infeasible / evaluations * settings.particles,
-            "collisions_b": (swarm.colliding_samples if settings.count_collisions else math.nan)
-            / evaluations,
+            "collisions_a": swarm.infeasible / evaluations * settings.particles,
+            "collisions_b": swarm.colliding_samples / evaluations,
             "collisions_c": swarm.best_colliding_samples,
             "collisions_d": swarm.best_infeasible,
             "collisions_e": int(not feasible),
-            "collisions_f": float(infeasible),
+            "collisions_f": float(swarm.infeasible),
             "zeta_collapsed_at": swarm.zeta_collapsed_at,
             "zeta_clipped": swarm.zeta_clipped,
         },
@@ -318,9 +289,6 @@ def search(
         )
         shares[0] = known
     x = low + (high - low) * shares
-    if settings.straight_line_particle:
-        ends = tuple(problem.start), tuple(problem.target)
-        x[0] = _straight_line(*ends, Curve(settings.curve).name, settings.control_points)
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
     return Swarm(
         *_swarm(
@@ -370,21 +338,6 @@ def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
     return points
 
 
-@lru_cache(maxsize=256)
-def _straight_line(
-    start: tuple[float, ...], target: tuple[float, ...], curve: str, control_points: int
-) -> np.ndarray:
-    """The particle (d n,) whose curve is the straight line, traversed at constant speed."""
-    way = np.subtract(target, start)
-    points = np.empty((control_points + 2, len(start)))
-    if curve == "ferguson":
-        points[::2] = start + np.outer(np.linspace(0, 1, control_points // 2 + 1), way)
-        points[1::2] = way / (control_points // 2)
-    else:
-        points[:] = start + np.outer(np.linspace(0, 1, control_points + 2), way)
-    return points[_free(curve, control_points)].T.ravel()
-
-
 def _zeta(
     chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings
 ) -> chaotic_maps.Sequence:
@@ -395,16 +348,13 @@ def _zeta(
     shape += (1,) * (3 - len(shape))
     if settings.chaotic_term == ChaoticTerm.none:
         return chaotic_maps.Sequence(np.zeros(shape), 0, 0)
-    parameters = chaotic_maps.Parameters(
-        *(getattr(settings, name) for name in chaotic_maps.Parameters._fields)
-    )
     name = chaotic_maps.Map(settings.chaotic_map).name
     start = settings.chaotic_start
     if settings.chaotic_start_rule == StartRule.random:
-        start = chaotic_maps.random_start(chaos, name, parameters)
+        start = chaotic_maps.random_start(chaos, name, settings.singer_mu)
     elif settings.chaotic_start_rule == StartRule.uniform:
         start = chaos.random()
-    found = chaotic_maps.sequence(name, start, math.prod(shape), parameters)
+    found = chaotic_maps.sequence(name, start, math.prod(shape), settings.singer_mu)
     collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
     return chaotic_maps.Sequence(found.values.reshape(shape), found.clipped, collapsed_in)
 
@@ -424,7 +374,6 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     p, p_fitness = np.empty_like(x), np.full(particles, np.inf)
     g, g_fitness = np.empty((iterations + 1, dimensions)), np.full(iterations + 1, np.inf)
     g_violation, g_colliding = np.inf, 0
-    followed = np.empty_like(x)  # the best path when each particle was last evaluated
     r = np.empty(2)
     w = rules.inertia
     infeasible, colliding_samples, best_colliding_samples, best_infeasible = 0, 0, 0, 0
@@ -435,11 +384,6 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
         _copy(g[before], g[t])
         g_fitness[t] = g_fitness[before]
         for i in range(particles):
-            attractor = g[t]
-            if rules.update == Update.synchronous:
-                attractor = g[before]
-            elif rules.update == Update.evaluate_first:
-                attractor = followed[i]
             if t > 0:
                 if rules.random_numbers == RandomNumbers.particle or (
                     rules.random_numbers == RandomNumbers.iteration and i == 0
@@ -451,7 +395,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                     x[i],
                     v[i],
                     p[i],
-                    attractor,
+                    g[t],
                     zeta[before, min(i, zeta.shape[1] - 1)],
                     w,
                     limit,
@@ -459,24 +403,21 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 )
                 _hold(x[i], v[i], low, high, rules.bound_rule)
             length = penalised.length(x[i], objective, curve, scratch)
-            if rules.count_collisions or penalised.least_fitness(length, objective) < p_fitness[i]:
-                if rules.tested == Tested.samples:
-                    violation, colliding = penalised.violation(curve, objective, scratch)
-                else:
-                    violation, colliding = _violation_of_points(x[i], objective, scratch)
-                infeasible += violation > FEASIBLE
-                colliding_samples += colliding
-                fitness = penalised.fitness(length, violation, objective)
-                if fitness < p_fitness[i]:
-                    _copy(x[i], p[i])
-                    p_fitness[i] = fitness
-                if fitness < g_fitness[t]:
-                    _copy(x[i], g[t])
-                    g_fitness[t] = fitness
-                    g_violation, g_colliding = violation, colliding
-                    improved_at = t
-            if rules.update == Update.evaluate_first:
-                _copy(g[t], followed[i])
+            if rules.tested == Tested.samples:
+                violation, colliding = penalised.violation(curve, objective, scratch)
+            else:
+                violation, colliding = _violation_of_points(x[i], objective, scratch)
+            infeasible += violation > FEASIBLE
+            colliding_samples += colliding
+            fitness = penalised.fitness(length, violation, objective)
+            if fitness < p_fitness[i]:
+                _copy(x[i], p[i])
+                p_fitness[i] = fitness
+            if fitness < g_fitness[t]:
+                _copy(x[i], g[t])
+                g_fitness[t] = fitness
+                g_violation, g_colliding = violation, colliding
+                improved_at = t
         best_infeasible += g_violation > FEASIBLE
         if t > 0:
             best_colliding_samples += g_colliding
@@ -536,8 +477,6 @@ def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
 @allocation_free
 def _hold(x, v, low, high, bound_rule):
     """Bring one particle back into the field, in place."""
-    if bound_rule == BoundRule.none:
-        return
     for d in range(len(x)):
         if not low[d] <= x[d] <= high[d]:
             x[d] = min(max(x[d], low[d]), high[d])

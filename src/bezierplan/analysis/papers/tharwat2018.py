@@ -44,8 +44,6 @@ RIM = 0.01  # least height of a valley's edge above its lowest node, as a share 
 SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # discarded from each of them
 DIVERGING, LONG = 20, 500  # sequences of each map whose exponents are taken, and their lengths
-# That map has none.
-NO_PARAMETERS = chaotic_maps.Parameters(*[math.nan] * len(chaotic_maps.Parameters._fields))
 
 RANKED = ("table3", "table4", "table5", "table6")  # tables whose rows are ranked (Section 5.1)
 WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
@@ -61,22 +59,17 @@ def chaotic_sequences(
     *,
     iterations: int,
     singer_mu: float,
-    singer_x4: float,
-    sine_a: float,
-    piecewise_p: float,
-    sinusoidal_a: float,
 ) -> pd.DataFrame:
     """Figure 3: one row per map of the paper and iteration; columns: map, iteration (from 1),
     value. Each map has one random start.
 
-    The other arguments: parameters of the maps, as in `chaotic_maps.Parameters`.
+    singer_mu: mu of the Singer map.
     """
-    parameters = chaotic_maps.Parameters(singer_mu, singer_x4, sine_a, piecewise_p, sinusoidal_a)
     rng = generator("tharwat2018/figure3")
     frames = []
     for name in CHAOTIC:
-        start = chaotic_maps.random_start(rng, name, parameters)
-        values = chaotic_maps.sequence(name, start, iterations, parameters).values
+        start = chaotic_maps.random_start(rng, name, singer_mu)
+        values = chaotic_maps.sequence(name, start, iterations, singer_mu).values
         frames.append(
             pd.DataFrame({"map": name, "iteration": np.arange(1, iterations + 1), "value": values})
         )
@@ -95,8 +88,8 @@ def gauss_above(
     rng = generator("tharwat2018/C39")
     shares = []
     for _ in range(SEQUENCES):
-        start = chaotic_maps.random_start(rng, "gauss", NO_PARAMETERS)
-        values = chaotic_maps.sequence("gauss", start, 1000, NO_PARAMETERS).values[FIRST_VALUES:]
+        start = chaotic_maps.random_start(rng, "gauss", math.nan)
+        values = chaotic_maps.sequence("gauss", start, 1000, math.nan).values[FIRST_VALUES:]
         shares.append(np.mean(values > limit))
     share = float(np.mean(shares))
     reach = 1.96 * float(np.std(shares, ddof=1)) / math.sqrt(SEQUENCES)
@@ -112,10 +105,6 @@ def sensitive_to_start(
     apart: float,
     iterations: int,
     singer_mu: float,
-    singer_x4: float,
-    sine_a: float,
-    piecewise_p: float,
-    sinusoidal_a: float,
 ) -> "Judged":
     """Claim C46: whether a map of the paper is sensitive to its first value.
 
@@ -124,11 +113,10 @@ def sensitive_to_start(
     sequences, each one unit. + if it lies above 0, - if a difference grows less than e-fold in as
     many iterations as a run has.
 
-    of: the map. The other arguments: parameters of the maps, as in `chaotic_maps.Parameters`.
+    of: the map. singer_mu: mu of the Singer map.
     """
-    parameters = chaotic_maps.Parameters(singer_mu, singer_x4, sine_a, piecewise_p, sinusoidal_a)
     rng = generator(f"tharwat2018/C46/{of}")
-    exponents = np.array([_exponent(rng, of, apart, parameters) for _ in range(DIVERGING)])
+    exponents = np.array([_exponent(rng, of, apart, singer_mu) for _ in range(DIVERGING)])
     mean = float(exponents.mean())
     reach = 1.96 * float(exponents.std(ddof=1)) / math.sqrt(DIVERGING)
     low, high = mean - reach, mean + reach
@@ -136,14 +124,12 @@ def sensitive_to_start(
     return mark, mean, (low, high), DIVERGING
 
 
-def _exponent(
-    rng: np.random.Generator, name: str, apart: float, parameters: chaotic_maps.Parameters
-) -> float:
+def _exponent(rng: np.random.Generator, name: str, apart: float, singer_mu: float) -> float:
     """The Lyapunov exponent, per iteration, of a map's sequence from a random start."""
-    start = chaotic_maps.random_start(rng, name, parameters)
-    values = chaotic_maps.sequence(name, start, LONG, parameters).values
+    start = chaotic_maps.random_start(rng, name, singer_mu)
+    values = chaotic_maps.sequence(name, start, LONG, singer_mu).values
     beside = np.where(values[:-1] < 0.5, values[:-1] + apart, values[:-1] - apart)
-    following = [chaotic_maps.sequence(name, each, 2, parameters).values[1] for each in beside]
+    following = [chaotic_maps.sequence(name, each, 2, singer_mu).values[1] for each in beside]
     grown = np.abs(np.array(following) - values[1:]) / np.abs(beside - values[:-1])
     return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
 

@@ -3,8 +3,8 @@
 
 Three formulas are misprinted. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x -
 floor(1/x), which is `gauss`; the printed form is `gauss_printed`, whose values exceed 1. In eq. 12
-"mod 1" applies to the whole right-hand side. Eq. 14 requires a below 4, where the usual sine map
-has a = 4. `constant` is a baseline: it stays where it starts.
+"mod 1" applies to the whole right-hand side. Eq. 14 requires a below 4; this is the usual sine map
+with a = 4. `constant` is a baseline: it stays where it starts.
 """
 
 import math
@@ -26,6 +26,8 @@ MAPS = tuple(Map.__members__)
 TENT_PEAK = 0.7
 CIRCLE_A, CIRCLE_B = 0.5, 0.2
 LOGISTIC_A = 4.0
+# What the paper leaves open or rounds: the coefficient of x^4 in eq. 10, P of eq. 15, a of eq. 16.
+SINGER_X4, PIECEWISE_P, SINUSOIDAL_A = 13.302875, 0.4, 2.3
 
 # Values closer than this count as equal: a sequence that moves less has collapsed.
 STANDSTILL = 1e-12
@@ -39,21 +41,6 @@ _TRIAL_STEPS = 60
 _MOST_STARTS = 1000
 
 
-class Parameters(NamedTuple):
-    """Parameters of maps that the paper leaves open.
-
-    singer_mu: mu of eq. 10, between 0.9 and 1.08. singer_x4: its coefficient of x^4, printed as
-    13.3, usually 13.302875. sine_a: a of eq. 14. piecewise_p: P of eq. 15, between 0 and 0.5.
-    sinusoidal_a: a of eq. 16.
-    """
-
-    singer_mu: float
-    singer_x4: float
-    sine_a: float
-    piecewise_p: float
-    sinusoidal_a: float
-
-
 class Sequence(NamedTuple):
     """Values (length,) of a map, how many were clipped to [0, 1], and the index (from 1) at which
     the sequence collapsed, or 0.
@@ -64,8 +51,9 @@ class Sequence(NamedTuple):
     collapsed_at: int
 
 
-def sequence(name: str, start: float, length: int, parameters: Parameters) -> Sequence:
-    """A map's values from a start in [0, 1], which is the first of them.
+def sequence(name: str, start: float, length: int, singer_mu: float) -> Sequence:
+    """A map's values from a start in [0, 1], which is the first of them. singer_mu: mu of eq. 10,
+    between 0.9 and 1.08.
 
     Values that leave [0, 1] are clipped, and the sequence continues from there; those of
     `gauss_printed` are left as they are. A sequence has collapsed at the point from which it stands
@@ -73,10 +61,10 @@ def sequence(name: str, start: float, length: int, parameters: Parameters) -> Se
     """
     if not 0 <= start <= 1:
         raise ValueError(f"start: {start}; a chaotic sequence starts from 0 to 1")
-    return Sequence(*_sequence(_number(name), start, length, parameters))
+    return Sequence(*_sequence(_number(name), start, length, singer_mu))
 
 
-def random_start(rng: np.random.Generator, name: str, parameters: Parameters) -> float:
+def random_start(rng: np.random.Generator, name: str, singer_mu: float) -> float:
     """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it
     dies at 0 or at a fixed point.
 
@@ -85,10 +73,10 @@ def random_start(rng: np.random.Generator, name: str, parameters: Parameters) ->
     number = _number(name)
     for _ in range(_MOST_STARTS):
         start = rng.random()
-        if _lives(number, start, parameters):
+        if _lives(number, start, singer_mu):
             return start
     raise ValueError(
-        f"chaotic map {name}: none of {_MOST_STARTS} random starts lives with {parameters}"
+        f"chaotic map {name}: none of {_MOST_STARTS} random starts lives with mu = {singer_mu}"
     )
 
 
@@ -99,7 +87,7 @@ def _number(name: str) -> int:
 
 
 @compiled
-def _sequence(number, start, length, parameters):
+def _sequence(number, start, length, singer_mu):
     """The fields of a `Sequence`."""
     values = np.empty(length)
     clipped = 0
@@ -107,7 +95,7 @@ def _sequence(number, start, length, parameters):
     x = start
     for k in range(length):
         if k > 0:
-            x = _next(number, x, parameters)
+            x = _next(number, x, singer_mu)
             if number != Map.gauss_printed and not 0.0 <= x <= 1.0:
                 x = min(max(x, 0.0), 1.0)
                 clipped += 1
@@ -120,27 +108,23 @@ def _sequence(number, start, length, parameters):
 
 
 @allocation_free
-def _lives(number, start, parameters):
+def _lives(number, start, singer_mu):
     """Whether a sequence without clipping is neither at (or below) 0 nor at a fixed point after a
     number of steps.
     """
     before = x = start
     for _ in range(_TRIAL_STEPS):
-        before, x = x, _next(number, x, parameters)
+        before, x = x, _next(number, x, singer_mu)
     return x >= STANDSTILL and abs(x - before) >= STANDSTILL
 
 
 @allocation_free
-def _next(number, x, parameters):
+def _next(number, x, singer_mu):
     """x_{k+1} of a map from x_k (tharwat2018, eqs. 9 to 16)."""
     if number == Map.gauss:
         return _fraction(1.0 / x) if x > _LEAST else 0.0
     if number == Map.singer:
-        return (
-            parameters.singer_mu
-            * x
-            * (7.86 + x * (-23.31 + x * (28.75 - parameters.singer_x4 * x)))
-        )
+        return singer_mu * x * (7.86 + x * (-23.31 + x * (28.75 - SINGER_X4 * x)))
     if number == Map.tent:
         return x / TENT_PEAK if x < TENT_PEAK else 10.0 / 3.0 * (1.0 - x)
     if number == Map.circle:
@@ -148,13 +132,14 @@ def _next(number, x, parameters):
     if number == Map.logistic:
         return LOGISTIC_A * x * (1.0 - x)
     if number == Map.sine:
-        return parameters.sine_a / 4.0 * math.sin(math.pi * x)
+        return math.sin(math.pi * x)
     if number == Map.piecewise:
-        p = parameters.piecewise_p
         nearer = min(x, 1.0 - x)  # the map is symmetric about 0.5
-        return nearer / p if nearer <= p else (nearer - p) / (0.5 - p)
+        if nearer <= PIECEWISE_P:
+            return nearer / PIECEWISE_P
+        return (nearer - PIECEWISE_P) / (0.5 - PIECEWISE_P)
     if number == Map.sinusoidal:
-        return parameters.sinusoidal_a * x * x * math.sin(math.pi * x)
+        return SINUSOIDAL_A * x * x * math.sin(math.pi * x)
     if number == Map.gauss_printed:
         return 1.0 / _fraction(x) if _fraction(x) > _LEAST else 0.0
     return x

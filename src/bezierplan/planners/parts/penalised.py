@@ -72,12 +72,6 @@ def fitness(length: float, violation: float, objective: Objective) -> float:
 
 
 @allocation_free
-def least_fitness(length: float, objective: Objective) -> float:
-    """The lowest fitness that a path of this length can have, whatever it meets."""
-    return min(length, objective.beta) if objective.penalty == Penalty.death else length
-
-
-@allocation_free
 def length(
     particle: np.ndarray, objective: Objective, curve: np.ndarray, chords: np.ndarray
 ) -> float:
