@@ -71,7 +71,6 @@ def claim(identity: str, verdict: str, **more) -> content.Claim:
         "published": "2 of 2",
         "reason": HOSTILE,
         "replication": 0.9,
-        "size": "alike",
     }
     given |= {
         "shown_in": ["one/table1"],

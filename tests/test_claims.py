@@ -280,11 +280,11 @@ DIFFERENCE = {
     "test": "difference",
     "experiment": "tried",
     "metric": "objective",
-    "groups": ["a", "b"],
+    "groups": ["a", "b", "c"],
     "margin": 1,
 }
 ORDERED = {
-    "test": "ordered",
+    "test": "lower",
     "experiment": "tried",
     "metric": "objective",
     "order": [["a"], ["b", "c"], ["d"]],
@@ -398,15 +398,10 @@ def test_false_case_is_contradicted(name):
 
 
 @pytest.mark.parametrize("paired", [True, False])
-@pytest.mark.parametrize("others", [{}, {"c": sample("c", 0.05)}])
-def test_difference_and_its_absence(others, paired):
-    check = DIFFERENCE | {"groups": ["a", "b", *others], "paired": paired}
-    shifted = table({"a": sample("a", 3), "b": sample("b")} | others)
-    assert judged(check, shifted)["verdict"] == "supported"
-    assert (
-        judged(check, table({"a": sample("a"), "b": sample("b")} | others))["verdict"]
-        == "no effect"
-    )
+@pytest.mark.parametrize(("mean", "verdict"), [(3, "supported"), (0, "no effect")])
+def test_difference_and_its_absence(mean, verdict, paired):
+    runs = table({"a": sample("a", mean), "b": sample("b"), "c": sample("c", 0.05)})
+    assert judged(DIFFERENCE | {"paired": paired}, runs)["verdict"] == verdict
 
 
 # Effects and their sizes.
@@ -420,7 +415,6 @@ def test_lower_against_scipy():
     assert row["low95"] < -1 < row["high95"] < 0
     assert (row["effect_size_name"], row["effect_size"]) == ("A12", np.mean(a[:, None] < b))
     assert (row["n"], row["unit"], row["comparison"]) == (UNITS, "m", "a lower than b")
-    assert row["least_detectable"] == pytest.approx(3 * (row["high95"] - row["low95"]) / 2 / 1.96)
 
 
 def test_paired_differences_against_scipy():
@@ -498,9 +492,8 @@ def test_59_runs_without_an_example_are_enough(threshold, misses, n, expected):
 def test_slope_is_a_units_own():
     row = judge({"checks": [TREND]}, over_x(0.2))[1].iloc[0]
     assert row["effect"] == pytest.approx(0.2 * 45, abs=0.5)
-    assert (row["effect_size_name"], row["n"], row["rho"]) == ("slope", UNITS, pytest.approx(1))
+    assert (row["effect_size_name"], row["n"]) == ("slope", UNITS)
     assert row["effect_size"] == pytest.approx(row["effect"] / 45)
-    assert row["r_squared"] > 0.98
 
 
 def test_relative_scale_and_least_effect():
@@ -581,6 +574,13 @@ def test_units_that_would_decide(shift, verdict, paired):
     assert judged_with(math.ceil(1.3 * half))["verdict"] == verdict
 
 
+def units_needed(row) -> int:
+    """Of a row of claim_checks.csv."""
+    found = Finding(row.effect, low=row.low95, high=row.high95, n=row.n, margin=row.margin)
+    found = found._replace(toward=int(abs(row.effect) > row.margin))
+    return math.ceil(verdicts.units_needed(found, row.mark_family, row.p_family))
+
+
 @pytest.mark.parametrize("paired", [True, False])
 def test_units_needed_find_a_difference_with_the_power_that_they_are_said_to(paired):
     """Of normal data with a known effect, in experiments of so many units, t tests find it in four
@@ -589,13 +589,13 @@ def test_units_needed_find_a_difference_with_the_power_that_they_are_said_to(pai
     runs = table({"a": sample("a", -0.4), "b": sample("b")})
     check = LOWER | {"statistic": "mean", "margin": 0.1}
     (row,) = judge({"checks": [check]}, runs, paired={"tried": paired})[1].itertuples()
-    assert row.units_needed == math.ceil(
+    assert units_needed(row) == math.ceil(
         row.n * ((Z(0.975) + Z(0.8)) / Z(1 - row.p_family / 2)) ** 2
     )
     # The spread of the differences, which is what p is of.
     a, b = sample("a", -0.4), sample("b")
     spread = np.std(a - b, ddof=1) if paired else math.sqrt(2)
-    draws = generator("power").normal(-0.4, spread, size=(4000, row.units_needed))
+    draws = generator("power").normal(-0.4, spread, size=(4000, units_needed(row)))
     found = stats.ttest_1samp(draws, 0, axis=1).pvalue < ALPHA
     assert found.mean() == pytest.approx(0.8, abs=0.04)
 
@@ -604,10 +604,10 @@ def test_units_needed_show_an_effect_to_be_negligible_with_the_power_that_they_a
     runs = table({"a": sample("a", 0.1), "b": sample("b")})
     (row,) = judge({"checks": [LOWER | {"statistic": "mean"}]}, runs)[1].itertuples()
     half = max(row.high95 - row.effect, row.effect - row.low95)
-    assert row.units_needed == math.ceil(
+    assert units_needed(row) == math.ceil(
         row.n * (half * (1 + Z(0.8) / Z(0.975)) / (row.margin - abs(row.effect))) ** 2
     )
-    error = half / Z(0.975) * math.sqrt(row.n / row.units_needed)
+    error = half / Z(0.975) * math.sqrt(row.n / units_needed(row))
     effects = generator("within").normal(row.effect, error, size=100_000)
     within = np.abs(effects) + Z(0.975) * error <= row.margin
     assert within.mean() == pytest.approx(0.8, abs=0.02)
@@ -644,16 +644,9 @@ def test_units_needed_of_a_p_that_is_nearly_zero():
     assert needed > 5
 
 
-def test_no_number_of_units_is_known_for_a_p_of_1_and_none_for_a_secondary_check():
+def test_no_number_of_units_is_known_for_a_p_of_1():
     finding = Finding(effect=1, low=0, high=2, n=10, toward=1, margin=0.5, p=1.0)
     assert verdicts.units_needed(finding, "?", 1.0) == math.inf
-    (row,) = (
-        judge({"checks": [LOWER | {"secondary": True}, LOWER]}, APART)[1]["units_needed"]
-        .isna()
-        .to_numpy()
-        .nonzero()
-    )
-    assert row.tolist() == [0]
 
 
 def test_no_number_of_units_decides_an_effect_as_large_as_the_margin_or_one_without_interval():
@@ -840,7 +833,7 @@ def marked(holds) -> list[Marked]:
         (lambda rival, workspace: workspace == "large", "in large"),
         (
             lambda rival, workspace: rival == "prm" or (rival == "ga" and workspace == "small"),
-            "against roadmap; against ga in small",
+            "against roadmap; against ga in 1 of 2",
         ),
     ],
 )
@@ -858,8 +851,10 @@ def test_words_for_columns_and_for_what_stays_mixed():
         for name, marks in (("a", "++"), ("b", "+-"))
         for mark in marks
     ]
-    assert verdicts.where_it_holds(mixed, {}) == "for a; for b (1 of 2)"
-    assert verdicts.where_it_holds([Marked({}, "+"), Marked({"against": 1}, "-")], {}) == "(1 of 2)"
+    assert verdicts.where_it_holds(mixed, {}) == "for a; for b in 1 of 2"
+    assert (
+        verdicts.where_it_holds([Marked({}, "+"), Marked({"against": 1}, "-")], {}) == "in 1 of 2"
+    )
 
 
 def test_words_for_many_rivals_name_the_exceptions():
@@ -1219,14 +1214,14 @@ def test_trend_over_printed_numbers():
         published={"table1": printed.assign(value=[1, 3, 2, 4, 9])},
         artefacts=artefacts,
     )[0].iloc[0]
-    assert (row["published"], row["size"]) == ("1 of 1", "larger")
+    assert row["published"] == "1 of 1"
     row = judge(
         claim,
         over_x(0.2),
         published={"table1": printed.assign(value=[9, 7, 8, 2, 1])},
         artefacts=artefacts,
     )[0].iloc[0]
-    assert (row["published"], row["size"]) == ("0 of 1", "opposite")
+    assert row["published"] == "0 of 1"
 
 
 def test_conditions_that_the_paper_does_not_tell_apart_are_not_printed():
@@ -1258,60 +1253,6 @@ def test_margin_is_a_share_or_the_printed_difference_where_that_is_smaller():
         {"checks": [LOWER | {"metric": "claimed_feasible", "margin": {"published": 0.01}}]}, TRUTHS
     )[1]
     assert truths["margin"].to_list() == [0.01]
-
-
-@pytest.mark.parametrize(
-    ("printed", "size"),
-    [
-        ([5.0, 6.0], "alike"),
-        ([5.0, 5.2], "larger"),
-        ([5.0, 9.0], "smaller"),
-        ([6.0, 5.0], "opposite"),
-    ],
-)
-def test_size_beside_the_printed_effect(printed, size):
-    assert with_printed(LOWER, PRINTED[:2].assign(value=printed))[0]["size"] == size
-
-
-def test_arithmetic_of_printed_numbers():
-    check = {"test": "published_arithmetic", "form": "difference", "equals": 1.25}
-    check["of"] = [{"table": "table1", "method": "a"}, {"table": "table1", "method": "b"}]
-
-    def printed(*values: float) -> dict:
-        return {"published": {"table1": PRINTED[:2].assign(value=values)}}
-
-    assert judged(check, **printed(5.0, 6.25))["verdict"] == "supported"
-    assert judged(check, **printed(5.0, 6.254))["published"] == "1 of 1"
-    wrong = judged(check, **printed(5.0, 6.27))
-    assert (wrong["verdict"], wrong["published"]) == ("contradicted", "0 of 1")
-    percent = check | {"form": "increase_percent", "equals": 4.96}
-    assert judged(percent, **printed(30.3458, 31.8503))["verdict"] == "supported"
-    assert judged(percent, **printed(30.3458, 31.8703))["verdict"] == "contradicted"
-    empty = judged(check, **printed(5.0, math.nan))
-    assert (empty["verdict"], empty["reason"]) == ("untestable", "a printed cell is empty")
-
-
-def test_arithmetic_matches_cells_by_the_columns_that_no_selector_names():
-    quoted = pd.DataFrame(
-        {"place": ["p1", "p2"], "method": ["c", "a"], "metric": "objective", "value": [4.0, 5.0]}
-    )
-    check = {
-        "test": "published_arithmetic",
-        "form": "equal",
-        "of": [{"table": "text"}],
-        "equals": {"table": ["table1"], "metric": "objective"},
-    }
-    published = {"table1": PRINTED, "text": quoted}
-    row, details = (each.iloc[0] for each in judge({"checks": [check]}, published=published))
-    assert (row["verdict"], row["holds"], details["condition"]) == (
-        "supported",
-        "2 of 2",
-        "place=p1, method=c",
-    )
-    published["text"] = quoted.assign(value=[4.0, 5.02])
-    assert judge({"checks": [check]}, published=published)[0].iloc[0]["holds"] == "1 of 2"
-    published["text"] = quoted.assign(method=["c", "unknown"])
-    assert judge({"checks": [check]}, published=published)[0].iloc[0]["verdict"] == "untestable"
 
 
 def test_function_of_the_study():
@@ -1398,10 +1339,7 @@ def test_no_difference_in_any_unit(check):
     them.
     """
     for n, verdict in ((9, "undecided"), (58, "undecided"), (59, "no effect")):
-        summary, details = judge(
-            {"checks": [check]}, table({"a": np.full(n, 3.0), "b": np.full(n, 3.0)})
-        )
-        row = summary.iloc[0]
+        row = judged(check, table({"a": np.full(n, 3.0), "b": np.full(n, 3.0)}))
         assert (row["verdict"], row["p"], row["effect"], row["low95"], row["high95"]) == (
             verdict,
             1,
@@ -1409,7 +1347,6 @@ def test_no_difference_in_any_unit(check):
             0,
             0,
         )
-        assert details["least_detectable"].isna().all()
 
 
 @pytest.mark.parametrize("paired", [True, False])
@@ -1422,7 +1359,6 @@ def test_what_never_happened_may_happen(paired):
     summary, details = judge({"checks": [check]}, never)
     assert summary.iloc[0]["verdict"] == "undecided"
     assert 0.01 < details.iloc[0]["high95"] < 0.04
-    assert details.iloc[0]["least_detectable"] > 0.01
     assert judged(check | {"margin": 0.04}, never)["verdict"] == "no effect"
 
 

@@ -18,8 +18,9 @@ from studies import KEYS, study
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims import comparisons, judge, variants
+from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import OfRuns, kinds
+from bezierplan.analysis.claims.kinds import check_of, kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.papers import elhoseny2017, ma2020, meledje, song2016, tharwat2018
 from bezierplan.analysis.results import Results
@@ -150,15 +151,7 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
         place = (check["metric"], check.get("statistic") in SPREADS, column_of(check))
         match check["test"]:
             case "lower":
-                pairs = (
-                    check["pairs"]
-                    if "pairs" in check
-                    else itertools.product(check["groups"], check["than"])
-                )
-            case "ordered":
-                pairs = itertools.chain.from_iterable(
-                    itertools.product(*tiers) for tiers in itertools.pairwise(check["order"])
-                )
+                pairs = check_of(check).compared
             case "trend":
                 x = sorted(values.get(check["x"], [])) if check["x"] in values else []
                 pairs = list(itertools.pairwise(x))

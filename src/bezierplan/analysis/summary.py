@@ -161,7 +161,7 @@ def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
     columns = [
         *("statement", "verdict", "verdict_papers_size", "replication_probability"),
-        *("holds", "where_it_holds", "units_to_decide", "published", "effect", "size", "n"),
+        *("holds", "where_it_holds", "units_to_decide", "published", "effect", "n"),
     ]
     shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
     # Read from a file with gaps, whole numbers are floats.

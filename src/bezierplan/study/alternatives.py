@@ -4,8 +4,8 @@ import dataclasses
 import itertools
 from typing import Any
 
+from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.jobs import Tried
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Assumption

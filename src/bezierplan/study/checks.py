@@ -15,8 +15,8 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from bezierplan.analysis import measures, metrics, statistics
+from bezierplan.analysis.claims.check import Check, PublishedMargin
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import Check, PublishedMargin
 from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import planner_module
@@ -566,8 +566,6 @@ def _check_claim(
     for number, check in enumerate(claim.checks):
         where = f"{location}: checks: {number}"
         _check_names(design, functions, check, where)
-        if check.of_printed:
-            published.check_arithmetic(design.study, check, where)
         if not check.experiments or not hasattr(check, "every"):
             continue
         rows = design.selectable(check.experiments, baselines=False)

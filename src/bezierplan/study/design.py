@@ -5,8 +5,8 @@ mixed.
 from functools import cache
 from typing import Any
 
+from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.geometry.curves import CURVES
 from bezierplan.planners import PLACE, is_file, planner_module

@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.schema.checked import Fault, check_known, closest, text_of
-from bezierplan.schema.model import is_number, one_or_list
+from bezierplan.schema.model import is_number
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.design import Design
 from bezierplan.study.files import inside
@@ -268,63 +267,3 @@ def _check_value(text: str, location: str, empty: bool = False) -> None:
             f"{LARGEST:g} in absolute value"
         )
         raise Fault(f"{location}: value: {text[:MOST_DIGITS]!r}; expected {wanted}")
-
-
-def check_arithmetic(study: Study, arithmetic: Check, location: str) -> None:
-    """The printed cells of a check of the kind `published_arithmetic` exist and are numbers. Raises
-    Fault, beginning with a location.
-    """
-    selectors = [(f"of: {number}", selector) for number, selector in enumerate(arithmetic.of)]
-    if isinstance(arithmetic.equals, dict):
-        selectors.append(("equals", arithmetic.equals))
-    for key, selector in selectors:
-        cells = _cells(study, selector, f"{location}: {key}")
-        for cell in cells:
-            _check_value(cell["value"], f"{location}: {key}: {_told(selector)}", empty=True)
-        if (
-            arithmetic.form == "increase_percent"
-            and key == "of: 0"
-            and any(cell["value"] and not float(cell["value"]) for cell in cells)
-        ):
-            raise Fault(
-                f"{location}: {key}: {_told(selector)}: is 0; expected another number, of which "
-                "the increase is a share"
-            )
-
-
-def _cells(study: Study, selector: dict[str, Any], location: str) -> list[dict[str, str]]:
-    """The rows that a selector names."""
-    known = [Path(file).stem for file in study.published_files()]
-    rows: list[dict[str, str]] = []
-    header: set[str] = set()
-    for table in one_or_list(selector["table"]):
-        if table not in known:
-            raise Fault(
-                f"{location}: table: {table}: "
-                f"unknown{closest(table, known)}, files of the folder published"
-            )
-        content = read(study.folder / "published" / f"{table}.csv")
-        if "value" not in content.header:
-            raise Fault(
-                f"{location}: table: {table}: has no column value; expected a table of numbers"
-            )
-        header.update(content.header)
-        rows += [row for _, row in content.rows]
-    for column, wanted in selector.items():
-        if column == "table":
-            continue
-        check_known(column, header, location)
-        rows = [
-            row
-            for row in rows
-            if any(_is_same(row.get(column, ""), value) for value in one_or_list(wanted))
-        ]
-    if not rows:
-        raise Fault(f"{location}: {_told(selector)}: no such cell is printed")
-    return rows
-
-
-def _told(selector: dict[str, Any]) -> str:
-    return ", ".join(
-        f"{column}={' '.join(map(str, one_or_list(wanted)))}" for column, wanted in selector.items()
-    )

@@ -5,7 +5,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.kinds import Check, kinds
+from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.kinds import kinds
 from bezierplan.schema.model import (
     Line,
     Model,

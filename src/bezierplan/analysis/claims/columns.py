@@ -114,13 +114,6 @@ class Judged(NamedTuple):
             "condition, the probability that randomly drawn runs agree with it instead"
         ),
     ]
-    size: Annotated[
-        str,
-        Column(
-            "our effect compared with the printed one: alike (the printed one lies in our "
-            "interval), smaller, larger, opposite"
-        ),
-    ]
     artefact: Annotated[str, Column("the tables and figures that show it")]
 
 
@@ -128,19 +121,6 @@ class Limits(NamedTuple):
     """What a comparison could find, and the printed numbers."""
 
     margin: Annotated[float, Column("the smallest effect that matters, a choice of ours")]
-    least_detectable: Annotated[
-        float,
-        Column("the effect detected with a power of 0.8; empty where the units do not differ"),
-    ]
-    units_needed: Annotated[
-        int,
-        Column(
-            "approximate sample size (units) that decides it in the family with a power of 0.8, "
-            "if our effect is the true one; empty for secondary checks and if unknown"
-        ),
-    ]
-    rho: Annotated[float, Column("of trends: Spearman's rho of the conditions' means over x")]
-    r_squared: Annotated[float, Column("of trends: R squared of the same")]
     effect_published: Annotated[float, Column("the effect in the printed numbers")]
     published: Annotated[str, Column("does the sentence hold in them: holds, fails or not printed")]
 

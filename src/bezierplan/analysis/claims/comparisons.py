@@ -12,9 +12,10 @@ import pandas as pd
 
 from bezierplan.analysis import comparison, metrics
 from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.check import GROUP_KEYS, Check, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Comparison
-from bezierplan.analysis.claims.kinds import GROUP_KEYS, Check, OfRuns, kind_of
+from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Material, Shown, Untestable
 from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
 from bezierplan.analysis.results import pick, select
@@ -96,7 +97,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
     column, unit = check.cells, check.replicate
-    every, pool = check.every, check.pooled
+    every, pool = check.every, check.pool
     told_apart = [*every, *pool, *([column] if column else [])]
     tables = _published_tables(check, claim, material)
     of_tables = [key for _, table in tables for key in table if key in runs and key != "value"]
@@ -107,7 +108,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
     typical = _typical(check, claim, material)
-    paired = check.pairs_units
+    paired = check.paired
     if paired is None:
         paired = _shares_draws(check, material)
     made = []
@@ -154,7 +155,7 @@ def _typical(check: OfRuns, claim: Claim, material: Material) -> dict[tuple[str,
     """Of a check that picks runs: by place and name, the share of all runs that count in which the
     event happens; else nothing.
     """
-    if not check.picks:
+    if not check.pick:
         return {}
     every = comparisons(check.but(pick=None), claim, material)
     return {(each.place, each.name): float(effects.points(each, "mean")[0]) for each in every}
@@ -186,10 +187,10 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         if metrics.METRICS[check.metric].compute is None and check.metric not in runs:
             raise Untestable(f"the runs of {name} have no {check.metric}")
         counting = _compared(runs, check)
-        counting = _picked(counting, check.picks) if check.picks else counting
+        counting = _picked(counting, check.pick.plain()) if check.pick else counting
         values = metrics.values(counting, check.metric, problems).fillna(_failure(check))
         values = values.loc[select(counting, outcomes).index].reindex(runs.index)
-        if check.failed_runs == "last":
+        if check.failures == "last":
             values = values.fillna(np.inf)
         measured.append(select(runs.assign(value=values), conditions))
     return pd.concat(measured, ignore_index=True)
@@ -219,7 +220,7 @@ def _failure(check: OfRuns) -> float:
     """The value of a run without one: dropped, worse than any other, or one for which the event is
     false.
     """
-    match check.failed_runs:
+    match check.failures:
         case "last":
             return np.inf
         case "count":
@@ -285,7 +286,7 @@ def _note(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) ->
     """
     if (
         len(cells) != 2
-        or check.failed_runs != "drop"
+        or check.failures != "drop"
         or not metrics.METRICS[check.metric].feasible_only
     ):
         return ""

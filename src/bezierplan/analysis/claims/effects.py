@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.claims.kinds import OfRuns, PublishedMargin, kind_of
+from bezierplan.analysis.claims.check import OfRuns, PublishedMargin
+from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
 from bezierplan.workspaces.seeds import generator
 
@@ -27,11 +28,6 @@ SURE = 0.95
 # This many runs without a counterexample show with 95 % confidence that fewer than 5 % of all runs
 # are counterexamples.
 LEAST_WITHOUT_EXAMPLE = 59
-# An effect of this many standard errors is found with a power of at least 0.8 (simulated: both rank
-# tests, normal data, 10 to 100 units).
-DETECTED = 3.0
-DETECTED_BELOW_20 = 3.2
-
 SIDES = {"lower": -1, "higher": 1, "down": -1, "up": 1, "at_most": -1, "at_least": 1}
 _EVENTS: dict[str, Callable] = {
     "below": np.less,
@@ -84,8 +80,7 @@ class Finding(NamedTuple):
 
     toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other
     way, otherwise 0. negligible: whether the interval of the effect lies within the margin.
-    least_detectable: the effect that would have been detected with a power of 0.8. mark: `+`, `-`,
-    `0` or `?` if it does not follow from p (`verdicts.mark`). rho, r_squared: of trends.
+    mark: `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.mark`).
     """
 
     effect: float = math.nan
@@ -98,11 +93,8 @@ class Finding(NamedTuple):
     toward: int = 0
     margin: float = math.nan
     negligible: bool = False
-    least_detectable: float = math.nan
     mark: str = ""
     reason: str = ""
-    rho: float = math.nan
-    r_squared: float = math.nan
 
 
 # What a claim says about point values. All take (..., k) numbers of cells, so that they work for
@@ -150,7 +142,7 @@ def _gradient_of_groups(check: OfRuns, ours: np.ndarray, cells: tuple) -> np.nda
 
 def on_claimed_side(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether the effect points as claimed and exceeds the claimed least effect, if any."""
-    return SIDES[check.side] * effects > check.least_claimed
+    return SIDES[check.direction] * effects > check.least
 
 
 # Two cells: a group and the one that it is compared with.
@@ -186,7 +178,7 @@ def margin_of(check: OfRuns, comparison: Comparison) -> float:
     booleans the share itself), or the printed difference of the same cells if that is smaller and
     points as claimed. NaN for tests without a margin.
     """
-    margin = check.least_margin
+    margin = check.margin
     if not isinstance(margin, PublishedMargin):
         return margin
     published_margin = margin.published
@@ -195,13 +187,13 @@ def margin_of(check: OfRuns, comparison: Comparison) -> float:
             float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference])
         )
     printed = effect(check, comparison.printed, comparison.cells)
-    as_claimed = printed * SIDES.get(check.side, np.sign(printed)) > 0
+    as_claimed = printed * SIDES.get(check.direction, np.sign(printed)) > 0
     return min(published_margin, float(abs(printed))) if as_claimed else published_margin
 
 
 def point_statistic(check: OfRuns) -> str:
     """The statistic that represents a cell by one number."""
-    named = check.statistic_named
+    named = check.statistic
     return kind_of(check).EFFECT.statistic if named in (None, "rank") else named
 
 
@@ -347,14 +339,6 @@ def interval(draws: np.ndarray) -> tuple[float, float]:
         return math.nan, math.nan
     low, high = np.quantile(draws, [TAIL, 1 - TAIL])
     return float(low), float(high)
-
-
-def least_detectable(low: float, high: float, n: int) -> float:
-    """NaN if the units do not differ, because their spread is then unknown."""
-    if low == high:
-        return math.nan
-    error = (high - low) / 2 / 1.96
-    return error * (DETECTED_BELOW_20 if n < 20 else DETECTED)
 
 
 def is_negligible(low: float, high: float, margin: float, n: int, least: float = 0.0) -> bool:

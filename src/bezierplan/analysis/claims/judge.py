@@ -47,10 +47,11 @@ import pandas as pd
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, verdicts
+from bezierplan.analysis.claims.check import Check, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
 from bezierplan.analysis.claims.effects import Comparison, Finding
-from bezierplan.analysis.claims.kinds import Check, OfRuns, kind_of
+from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Material, Shown, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
@@ -116,7 +117,7 @@ def judge(
             check_rows += details
     return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype(
         {"n": "Int64", "units_to_decide": "Int64"}
-    ), pd.DataFrame(check_rows, columns=CHECK_COLUMNS).astype({"units_needed": "Int64"})
+    ), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
 
 
 # From comparisons to a verdict.
@@ -193,7 +194,6 @@ def _judge_variant(
         "p_family": shown.p_family,
         "units_to_decide": _units_to_decide(deciding) if verdict == "undecided" else pd.NA,
         "replication_probability": _replication_probability(deciding, holds, f"{name}/replication"),
-        "size": _size(shown),
         "reason": "; ".join(filter(None, reasons)),
     }
     return described | summary, rows
@@ -250,7 +250,7 @@ def _findings(
         )
         for comparison in comparisons.comparisons(check, claim, material)
     ]
-    return _together(judged) if check.is_together else judged
+    return _together(judged) if check.together else judged
 
 
 def _together(found: list[_Judged]) -> list[_Judged]:
@@ -293,9 +293,6 @@ def _marked(judged: list[_Judged]) -> list[_Judged]:
 
 def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     """A comparison with the factors that distinguish it from the others of its claim."""
-    metrics_differ = (
-        len({(other.check.measured, other.check.statistic_written) for other in deciding}) > 1
-    )
     factors: dict[str, Any] = {}
     if judged.comparison is not None:
         if judged.check.against and not judged.parts:
@@ -304,11 +301,15 @@ def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
         factors |= dict(judged.comparison.factors)
     elif judged.condition:
         factors["in"] = judged.condition
-    if metrics_differ:
-        check = judged.check
-        what = f"{check.statistic_written} {check.measured or check.test}"
-        factors["what"] = what.strip().replace("_", " ")
+    if len({_what(other.check) for other in deciding}) > 1:
+        factors["what"] = _what(judged.check)
     return verdicts.Marked(factors, judged.mark_family)
+
+
+def _what(check: Check) -> str:
+    """What a check compares, in words."""
+    statistic = check.statistic if "statistic" in check.model_fields_set else ""
+    return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
 
 
 def _where_it_holds(judged: list[_Judged], labels: Mapping[str, str]) -> str:
@@ -350,7 +351,7 @@ def _disagreement(judged: list[_Judged]) -> str:
     pairs = [
         (each, other)
         for each, other in pairs
-        if other is not None and (_is_timed(each.check) or each.check.judges_work)
+        if other is not None and (_is_timed(each.check) or each.check._printed_metric)
     ]
     differing = sum(each.mark != other for each, other in pairs)
     if not differing:
@@ -382,7 +383,7 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
         return max(
             first,
             key=lambda each: np.nan_to_num(
-                abs(each.finding.effect - each.check.claimed_difference), nan=np.inf
+                abs(each.finding.effect - each.check.target), nan=np.inf
             ),
         )
     return max(deciding, key=p)
@@ -395,8 +396,6 @@ def _printed(judged: _Judged) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are
     not printed.
     """
-    if judged.check.of_printed:
-        return judged.finding.effect, judged.mark == "+"
     parts = judged.parts or (judged.comparison,)
     if None in parts or any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
@@ -422,7 +421,7 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
     condition, do in their place. NaN if a cell is empty, or if the paper's size is unknown.
     """
     picked = [
-        isinstance(judged.check, OfRuns) and judged.check.picks is not None for judged in deciding
+        isinstance(judged.check, OfRuns) and judged.check.pick is not None for judged in deciding
     ]
     if any(picked):
         return math.prod(
@@ -465,26 +464,11 @@ def _whole(units: float) -> int | Any:
     return math.ceil(units) if units < MOST_UNITS else pd.NA
 
 
-def _size(each: _Judged) -> str:
-    """Our effect compared with the printed one; empty without a printed effect or an interval of
-    ours.
-    """
-    printed, held = _printed(each)
-    finding = each.finding
-    if held is None or math.isnan(finding.low):
-        return ""
-    if finding.low <= printed <= finding.high:
-        return "alike"
-    if printed * finding.effect < 0:
-        return "opposite"
-    return "larger" if abs(finding.effect) > abs(printed) else "smaller"
-
-
 # Rows.
 
 
 def _is_timed(check: Check) -> bool:
-    return check.measured in metrics.METRICS and metrics.METRICS[check.measured].unit == "s"
+    return check.metric in metrics.METRICS and metrics.METRICS[check.metric].unit == "s"
 
 
 def _reason(each: _Judged) -> str:
@@ -503,7 +487,7 @@ def _check_row(judged: _Judged, material: Material) -> dict:
         "primary": judged.primary,
         "test": check.test,
         "experiments": ", ".join(check.experiments),
-        "metric": check.measured,
+        "metric": check.metric,
         "statistic": check.statistic_shown,
         "unit": _unit(check, material),
         "condition": judged.condition,
@@ -514,7 +498,6 @@ def _check_row(judged: _Judged, material: Material) -> dict:
         "low95": finding.low,
         "high95": finding.high,
         "p_family": judged.p_family,
-        "units_needed": _whole(judged.units_needed),
         "effect_published": effect_published,
         "published": {True: "holds", False: "fails", None: "not printed"}[held],
         "timed": _is_timed(check),
@@ -524,7 +507,7 @@ def _check_row(judged: _Judged, material: Material) -> dict:
 
 def _unit(check: Check, material: Material) -> str:
     """The unit of a check's metric, or of the effect of a function; empty if neither is known."""
-    if check.effect_in:
-        return check.effect_in
+    if check.effect_unit:
+        return check.effect_unit
     experiments = [name for name in check.experiments if name in material.results]
-    return comparisons.unit_of(check.measured, experiments, material) if experiments else ""
+    return comparisons.unit_of(check.metric, experiments, material) if experiments else ""

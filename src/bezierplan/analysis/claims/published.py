@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.kinds import OfRuns
+from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.metrics import METRICS
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
@@ -64,7 +64,7 @@ def _wanted(check: OfRuns) -> tuple[str, ...]:
     """The printed statistics that serve a check, the best first. Papers print mean times; other
     programs disturb medians less.
     """
-    named = check.statistic_named
+    named = check.statistic
     timed = check.metric in METRICS and METRICS[check.metric].unit == "s"
     if named in (None, "rank"):
         return _ANY_STATISTIC

@@ -3,8 +3,8 @@
 import itertools
 from typing import Any
 
+from bezierplan.analysis.claims.check import GROUP_KEYS, Check, Comparing, OfRuns
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.kinds import GROUP_KEYS, Check, Comparing, OfRuns
 from bezierplan.schema.model import one_or_list
 
 
@@ -85,6 +85,6 @@ def with_work(check: Check) -> list[Check]:
     """A check of seconds that names counted work, split into a primary check of the work and a
     secondary one of the seconds.
     """
-    if not isinstance(check, OfRuns) or check.counted_work is None:
+    if not isinstance(check, OfRuns) or check.work is None:
         return [check]
     return [check.of_work(), check.reported()]

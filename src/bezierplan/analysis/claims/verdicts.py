@@ -38,13 +38,10 @@ VERDICTS = ("supported", "partly", "contradicted", "no effect", "undecided", "un
 # Least share of all comparisons that must be decided; if no decided one speaks against the claim,
 # the least share that must hold.
 DECIDED, HOLDING = 0.5, 0.75
-# Up to this many names are listed, otherwise only counted. Up to this many mixed groups are
-# described one by one.
-MOST_LISTED, MOST_MIXED = 4, 3
+# Up to this many names are listed, otherwise only counted.
+MOST_LISTED = 4
 # Share of experiments in which `units_needed` units decide.
 POWER = 0.8
-# Number of factors by which comparisons are split.
-DEPTH = 2
 
 
 def family(p: np.ndarray) -> np.ndarray:
@@ -177,53 +174,32 @@ class Marked(NamedTuple):
 def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> str:
     """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
 
-    The comparisons are split by the factor that best separates those that hold from those that do
-    not; mixed groups are split again by another factor. Numbers in brackets say how many of the
-    remaining ones hold. labels: name -> how it is printed. Example: `against 5 of 7: all but Circle
-    and Sinusoidal`.
+    They are split by the factor that best separates those that hold from those that do not; of a
+    value with both, it says how many hold. If none holds, the words are about the contrary.
+    labels: name -> how it is printed. Example: `against 5 of 7: all but Circle and Sinusoidal`.
     """
-    wanted = "+" if any(each.mark == "+" for each in comparisons) else "-"
-    holding = [each.mark == wanted for each in comparisons]
-    if all(holding) or not any(holding):
+    sought = "+" if any(each.mark == "+" for each in comparisons) else "-"
+    number = sum(each.mark == sought for each in comparisons)
+    if number in (0, len(comparisons)):
         return ""
-    words = _described(comparisons, wanted, labels, DEPTH)
-    unknown = sum(each.mark == "?" for each in comparisons)
-    words = words if wanted == "+" else f"the contrary {words}"
-    return words + (f"; undecided in {unknown} of {len(comparisons)}" if unknown else "")
-
-
-def _described(
-    comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, str], depth: int
-) -> str:
-    factor = _best_factor(comparisons, wanted)
-    if factor is None or not depth:
-        return f"({sum(each.mark == wanted for each in comparisons)} of {len(comparisons)})"
-    parts: dict[Any, list[Marked]] = {}
-    for each in comparisons:
-        parts.setdefault(each.factors[factor], []).append(each)
-    full = [value for value, part in parts.items() if all(each.mark == wanted for each in part)]
-    mixed = [
-        value
-        for value, part in parts.items()
-        if value not in full and any(each.mark == wanted for each in part)
+    factor = _best_factor(comparisons, sought)
+    marks: dict[Any, list[bool]] = {}
+    for each in comparisons if factor else []:
+        marks.setdefault(each.factors[factor], []).append(each.mark == sought)
+    full = [value for value, own in marks.items() if all(own)]
+    words = [_chosen(factor, full, list(marks), labels)] if full else []
+    words += [
+        f"{_before(factor)}{_name(value, labels)} in {sum(own)} of {len(own)}"
+        for value, own in marks.items()
+        if any(own) and not all(own)
     ]
-    if len(mixed) > MOST_MIXED:
-        counts = [
-            f"{_name(value, labels)} {sum(e.mark == wanted for e in parts[value])} of "
-            f"{len(parts[value])}"
-            for value in parts
-        ]
-        return f"{_before(factor)}{', '.join(counts)}"
-    words = [_chosen(factor, full, list(parts), labels)] if full else []
-    for value in mixed:
-        words.append(
-            f"{_before(factor)}{_name(value, labels)} "
-            f"{_described(parts[value], wanted, labels, depth - 1)}"
-        )
-    return ("; " if depth == DEPTH else " and ").join(words)
+    unknown = sum(each.mark == "?" for each in comparisons)
+    words += [] if factor else [f"in {number} of {len(comparisons)}"]
+    words += [f"undecided in {unknown} of {len(comparisons)}"] if unknown else []
+    return ("" if sought == "+" else "the contrary ") + "; ".join(words)
 
 
-def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
+def _best_factor(comparisons: Sequence[Marked], sought: str) -> str | None:
     """The factor of all comparisons with the least mixed values (Gini impurity), the first among
     equals; None if none has two values.
     """
@@ -235,7 +211,7 @@ def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
     ]:
         parts: dict[Any, list[bool]] = {}
         for each in comparisons:
-            parts.setdefault(each.factors[factor], []).append(each.mark == wanted)
+            parts.setdefault(each.factors[factor], []).append(each.mark == sought)
         impurity = sum(len(part) * np.mean(part) * (1 - np.mean(part)) for part in parts.values())
         if len(parts) > 1 and impurity < least - 1e-9:
             best, least = factor, impurity
@@ -263,13 +239,7 @@ def _name(value: Any, labels: Mapping[str, str]) -> str:
 
 
 def _before(factor: str) -> str:
-    words = {
-        "against": "against ",
-        "group": "for ",
-        "method": "for ",
-        "what": "in ",
-        "workspace": "in ",
-        "problem": "in ",
-        "experiment": "in ",
-    }
-    return words.get(factor, f"at {factor.replace('_', ' ')} ")
+    """The word before the values of a factor."""
+    words = {"against": "against", "group": "for", "method": "for"}
+    places = ("what", "workspace", "problem", "experiment", "in")
+    return words.get(factor, "in" if factor in places else f"at {factor.replace('_', ' ')}") + " "

@@ -60,6 +60,31 @@ def drawn_farther(
     return "+" if min(excess) > 0 else "-", float(min(excess)), None, 2 * len(excess)
 
 
+def printed_rise(
+    check: "Check", results: "Experiments", published: "Published", *, parameter: str, rise: float
+) -> "Judged":
+    """Claim C16: whether a printed parameter rises from environment 1 to environment 2 by as much
+    as the text says. The effect is the rise.
+    """
+    parameters = published["parameters"].set_index("parameter").loc[parameter]
+    first, second = parameters.sort_values("workspace")["value"]
+    return "+" if math.isclose(second - first, rise) else "-", float(second - first), None, 0
+
+
+def printed_minima(check: "Check", results: "Experiments", published: "Published") -> "Judged":
+    """Claim C18: whether every shortest length in the text is that in Table 1 or 2. The effect is
+    the largest difference, the units are the lengths.
+    """
+    quoted, *tables = (
+        published[name]
+        .query("metric == 'length' and statistic == 'min'")
+        .set_index(["workspace", "method"])["value"]
+        for name in ("text_numbers", "table1", "table2")
+    )
+    apart = (quoted - pd.concat(tables).reindex(quoted.index)).abs()
+    return "+" if (apart == 0).all() else "-", float(apart.max()), None, len(quoted)
+
+
 def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
     """Straight and diagonal moves of the 8-connected paths from corner to corner of a map whose
     length is nearest to a given one.

@@ -193,7 +193,6 @@ class Claim(Record):
         description="share of experiments of the paper's size, "
         "drawn from our runs, in which it holds"
     )
-    size: str = Field(description="our effect compared with the printed one")
     shown_in: list[Address] = Field(description="the tables and figures that show it")
     comparisons: list[Comparison]
     why: str = Field("", description="the decisive comparison in a plain sentence")

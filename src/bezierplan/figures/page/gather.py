@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 import pandas as pd
 
 from bezierplan.analysis import headline, sensitivity
+from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
-from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other, why

@@ -6,7 +6,8 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import PlainValidator
 
-from bezierplan.analysis.claims.kinds import Check, check_of
+from bezierplan.analysis.claims.check import Check
+from bezierplan.analysis.claims.kinds import check_of
 from bezierplan.analysis.table_kinds import Table, table_of
 
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from bezierplan.analysis.claims.kinds import Check, OfRuns, PublishedMargin, share
+from bezierplan.analysis.claims.check import Check, OfRuns, PublishedMargin
+from bezierplan.analysis.claims.kinds import share
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.schema.words import amount
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
         equal_within,
         function,
         lower,
-        ordered,
         trend,
     )
 
@@ -46,7 +46,7 @@ def why(row: pd.Series, check: Check, name: str, condition: str, own_criterion: 
     """
     where = f"{condition}: " if condition else ""
     template = _TEMPLATES.get(row["test"], _effect)
-    if pd.isna(row["effect"]) and template not in (_function, _arithmetic):
+    if pd.isna(row["effect"]) and template is not _function:
         template = _effect
     said = template(row, check, name)
     notes = [
@@ -66,7 +66,7 @@ def reference(check: Check) -> float:
     return {"all": 1.0, "none": 0.0, "some": 0.0}.get(check.threshold, check.threshold)
 
 
-def _between(row: pd.Series, check: lower.Options | ordered.Options, name: str) -> str:
+def _between(row: pd.Series, check: lower.Options, name: str) -> str:
     """Of groups that should be lower, or higher, than others."""
     together = re.fullmatch(r"all (\d+) together", name)
     if together:
@@ -175,13 +175,6 @@ def _function(row: pd.Series, check: function.Options, name: str) -> str:
     return f"{check.effect}: {value}"
 
 
-def _arithmetic(row: pd.Series, check: Check, name: str) -> str:
-    """Of printed numbers that should follow from each other."""
-    return (
-        f"the paper's own numbers give {row['effect']:.4g}, and it prints {row['effect_size']:.4g}"
-    )
-
-
 def _effect(row: pd.Series, check: Check, name: str) -> str:
     """Of any other comparison."""
     if pd.isna(row["effect"]):
@@ -194,13 +187,11 @@ def _effect(row: pd.Series, check: Check, name: str) -> str:
 
 _TEMPLATES = {
     "lower": _between,
-    "ordered": _between,
     "equal_within": _equal,
     "difference": _differ,
     "trend": _trend,
     "share": _share,
     "function": _function,
-    "published_arithmetic": _arithmetic,
 }
 
 
@@ -250,7 +241,7 @@ def _margin(row: pd.Series, check: Check) -> str:
     """The limit within which a difference does not count, and who chose it."""
     if pd.isna(row["margin"]):
         return ""
-    printed = isinstance(check, OfRuns) and isinstance(check.least_margin, PublishedMargin)
+    printed = isinstance(check, OfRuns) and isinstance(check.margin, PublishedMargin)
     origin = "our choice, and not more than the printed difference" if printed else "our choice"
     return f"; differences below {_amount(row['margin'], row, check)} do not count ({origin})"
 
@@ -258,6 +249,6 @@ def _margin(row: pd.Series, check: Check) -> str:
 def _seconds(check: Check) -> str:
     return (
         "judged on counted work, because seconds differ from machine to machine"
-        if isinstance(check, OfRuns) and check.counted_work
+        if isinstance(check, OfRuns) and check.work
         else ""
     )

@@ -1,20 +1,20 @@
 """Whether groups differ at all.
 
-The effect is the range of the means. Two groups are tested as in `lower`; more by Friedman's test
-(paired; Kendall's W), otherwise by the Kruskal-Wallis test (epsilon squared).
+The effect is the range of the means, tested by Friedman's test (paired; Kendall's W), otherwise by
+the Kruskal-Wallis test (epsilon squared). Of two groups, `lower` says more.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.check import PAIRED, Comparing, Group
 from bezierplan.analysis.claims.effects import Comparison, Finding
-from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower
 from bezierplan.schema.model import Flag, listed
 
 if TYPE_CHECKING:
@@ -22,10 +22,9 @@ if TYPE_CHECKING:
 
 
 class Options(Comparing):
-    secondary: Literal[True] = Field(None, description=SECONDARY)
     paired: Flag = Field(None, description=PAIRED)
-    groups: listed(Group, least=2) = Field(
-        description="a list of at least two values of the column `across`"
+    groups: listed(Group, least=3) = Field(
+        description="a list of at least three values of the column `across`"
     )
 
 
@@ -35,29 +34,13 @@ def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 
 
 def _range(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The range of more than two groups, relative to their mean if so asked; the difference of
-    two.
-    """
-    if len(cells) == 2:
-        return effects.BETWEEN_GROUPS.of(check, points, cells)
+    """The range of the groups, relative to their mean if so asked."""
     return np.ptp(points, axis=-1) / (points.mean(axis=-1) if check.relative else 1)
 
 
-def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    return effects.BETWEEN_GROUPS.gradient(check, ours, cells) if len(cells) == 2 else None
-
-
-EFFECT = effects.BETWEEN_GROUPS._replace(
-    of=_range, gradient=_gradient, claimed=lambda check, values, margin: np.abs(values) >= margin
+EFFECT = effects.Effect(
+    _range, lambda check, ours, cells: None, lambda check, values, margin: np.abs(values) >= margin
 )
-
-
-def _of_pair(check: Options) -> lower.Options:
-    """Whether the first of two groups is higher than the second, as a check."""
-    same = {key: getattr(check, key) for key in Comparing.model_fields if key != "test"}
-    return lower.Options.model_construct(
-        test="lower", pairs=[check.groups], direction="higher", paired=check.paired, **same
-    )
 
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:
@@ -68,9 +51,6 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     n, reason = effects.units(comparison), effects.too_few(comparison)
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
-    if len(comparison.cells) == 2:
-        found = lower.find(_of_pair(check), comparison, name)
-        return found._replace(toward=abs(found.toward))
     (stratum,) = comparison.strata.values()
     groups = effects.counted(stratum, comparison.paired)
     total = sum(map(len, groups))
@@ -89,6 +69,5 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         toward=int(ours >= margin),
         margin=margin,
         negligible=effects.is_negligible(low, high, margin, n),
-        least_detectable=effects.least_detectable(low, high, n),
         reason=effects.no_difference(low, high, n),
     )

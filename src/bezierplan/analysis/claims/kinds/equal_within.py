@@ -15,17 +15,16 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.effects import Comparison, Finding
-from bezierplan.analysis.claims.kinds import (
+from bezierplan.analysis.claims.check import (
     GROUPS,
     POOL,
-    SECONDARY,
     THAN,
     Columns,
     Comparing,
     Groups,
     with_itself,
 )
+from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
 
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
 class Options(Comparing):
     against: ClassVar[bool] = True
 
-    secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     groups: Groups = Field(description=GROUPS)
     than: Groups = Field(description=THAN)

@@ -7,12 +7,12 @@ the check gives. It returns a mark, the effect, its 95 % interval or None, and t
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from bezierplan.analysis.claims.check import EXPERIMENT, Check
 from bezierplan.analysis.claims.effects import Finding
-from bezierplan.analysis.claims.kinds import EXPERIMENT, SECONDARY, Check
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import (
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 
 class Options(Check):
-    secondary: Literal[True] = Field(None, description=SECONDARY)
     name: Function = Field(
         description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`"
     )

@@ -1,4 +1,5 @@
-"""Whether groups are lower, or higher, than others.
+"""Whether groups are lower, or higher, than others: each of some than each of others, or every
+one of a tier than every one of the next.
 
 | statistic | test | effect size |
 | --- | --- | --- |
@@ -26,13 +27,12 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.effects import Comparison, Finding
-from bezierplan.analysis.claims.kinds import (
+from bezierplan.analysis.claims.check import (
     FAILURES,
+    GROUP_KEYS,
     GROUPS,
     PAIRED,
     POOL,
-    SECONDARY,
     SIDE,
     STATISTIC,
     THAN,
@@ -45,6 +45,7 @@ from bezierplan.analysis.claims.kinds import (
     OfRuns,
     with_itself,
 )
+from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.claims.ranks import rank_test, wins
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Flag, Metric, Positive, listed, wrong
@@ -58,7 +59,6 @@ EFFECT = effects.BETWEEN_GROUPS
 class Options(Comparing):
     against: ClassVar[bool] = True
 
-    secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     paired: Flag = Field(None, description=PAIRED)
     groups: Groups = Field(None, description=GROUPS)
@@ -66,12 +66,17 @@ class Options(Comparing):
     pairs: listed(listed(Group, least=2)) = Field(
         None, description="a list of [group, other group], in place of groups and than"
     )
+    order: listed(listed(Group), least=2) = Field(
+        None,
+        description="tiers, each on the claimed side of the next: a list of lists of groups, in "
+        "place of groups and than",
+    )
     direction: Literal["lower", "higher"] = Field(description=SIDE)
     statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field(
         "rank", description=STATISTIC
     )
     least: Positive = Field(
-        None, description="the claimed least effect, a number above 0; left out: any effect"
+        0, description="the claimed least effect, a number above 0; left out: any effect"
     )
     together: Literal[True] = Field(None, description=TOGETHER)
     work: Metric = Field(None, description=WORK)
@@ -79,21 +84,25 @@ class Options(Comparing):
 
     @model_validator(mode="after")
     def _check_groups(self) -> Options:
-        if self.model_fields_set & {"groups", "than", "pairs"} not in (
-            {"groups", "than"},
-            {"pairs"},
-        ):
-            raise wrong("groups: expected either groups and than, or pairs")
+        named = self.model_fields_set & set(GROUP_KEYS)
+        if named not in ({"groups", "than"}, {"pairs"}, {"order"}):
+            raise wrong("groups: expected groups and than, or pairs, or order")
         if any(len(pair) != 2 for pair in self.pairs or []):
             raise wrong("pairs: expected a list of [group, other group]")
-        with_itself(itertools.product(self.groups or [], self.than or []), "than")
+        with_itself(self.compared, max(named))
         return self
+
+    @property
+    def compared(self) -> list[tuple]:
+        """A group and the one that it is compared with, of each comparison."""
+        tiers = self.order or [self.groups or [], self.than or []]
+        of_tiers = [itertools.product(*both) for both in itertools.pairwise(tiers)]
+        return [*(self.pairs or []), *itertools.chain.from_iterable(of_tiers)]
 
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
-    """Each pair, or each group paired with each of the others."""
-    pairs = check.pairs or itertools.product(check.groups, check.than)
-    return effects.pairs_in_words(pairs, f"{check.direction} than")
+    """Each pair, or each group paired with each of the others, or of the next tier."""
+    return effects.pairs_in_words(check.compared, f"{check.direction} than")
 
 
 def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
@@ -105,7 +114,7 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     if effects.point_statistic(check) in WITHOUT_INTERVAL:
         finding = effects.by_draws(check, comparison, name)
         return finding if abs(ours) >= finding.margin else finding._replace(mark="?")
-    side, least = effects.SIDES[check.side], check.least_claimed
+    side, least = effects.SIDES[check.direction], check.least
     margin = effects.margin_of(check, comparison)
     draws = effects.drawn_effects(check, comparison, name)
     low, high = effects.interval(draws)
@@ -114,7 +123,7 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
         toward = 0
     (stratum, *others) = comparison.strata.values()
     group, reference = effects.counted(stratum, comparison.paired)
-    named = check.statistic_named
+    named = check.statistic
     if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
         p = effects.two_sided(side * draws - least)
     elif comparison.boolean:
@@ -134,11 +143,7 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
     reason = effects.why_none(p) or ("" if toward else effects.no_difference(low, high, n))
     negligible = not infinite and effects.is_negligible(low, high, margin, n, side * least)
-    finding = finding._replace(
-        negligible=negligible,
-        least_detectable=effects.least_detectable(low, high, n),
-        reason=reason,
-    )
+    finding = finding._replace(negligible=negligible, reason=reason)
     return _without_p(finding) if ours and _are_constant(comparison) else finding
 
 
@@ -190,7 +195,7 @@ def _shifted(
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, reference)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, reference = (np.where(np.isinf(values), worst, values) for values in (group, reference))
-    move = effects.SIDES[check.side] * check.least_claimed
+    move = effects.SIDES[check.direction] * check.least
     return group, reference * (1 + move) if check.relative else reference + move
 
 

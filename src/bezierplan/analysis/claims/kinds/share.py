@@ -15,8 +15,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.check import FAILURES, POOL, Columns, OfRuns
 from bezierplan.analysis.claims.effects import Comparison, Effect, Finding
-from bezierplan.analysis.claims.kinds import FAILURES, POOL, SECONDARY, Columns, OfRuns
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.schema.model import Metric, Model, Number, is_number, value, wrong
@@ -57,7 +57,6 @@ class Event(Model):
 
 
 class Options(OfRuns):
-    secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     event: Event = Field(
         None,

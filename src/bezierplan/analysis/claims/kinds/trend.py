@@ -16,8 +16,8 @@ from pydantic import Field
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.check import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
 from bezierplan.analysis.claims.effects import Comparison, Effect, Finding
-from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.schema.model import Flag, Metric, NumberColumn
@@ -76,8 +76,6 @@ EFFECT = Effect(_change, _gradient, effects.on_claimed_side, reference=0)
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Test whether a metric changes with x as claimed."""
-    from scipy import stats
-
     x = np.array(comparison.cells, dtype=float)
     (stratum,) = comparison.strata.values()
     slopes = _slopes(x, stratum)
@@ -106,8 +104,6 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         p = effects.two_sided(draws)
     low, high = effects.interval(draws)
     margin = effects.margin_of(check, unpaired)
-    known = np.isfinite(ours)
-    linear = known.sum() >= 3 and np.ptp(ours[known]) > 0
     return Finding(
         *(change, "slope", slope, low, high, n, p),
         toward=0
@@ -115,10 +111,7 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         else int(np.sign(effects.SIDES[check.direction] * np.nan_to_num(change))),
         margin=margin,
         negligible=effects.is_negligible(low, high, margin, n),
-        least_detectable=effects.least_detectable(low, high, n),
         reason=effects.why_none(change) or effects.no_difference(low, high, n),
-        rho=float(stats.spearmanr(x[known], ours[known]).statistic) if linear else math.nan,
-        r_squared=float(np.corrcoef(x[known], ours[known])[0, 1] ** 2) if linear else math.nan,
     )
 
 

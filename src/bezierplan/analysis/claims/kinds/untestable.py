@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pydantic import Field
 
-from bezierplan.analysis.claims.kinds import Check
+from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.model import Line
 

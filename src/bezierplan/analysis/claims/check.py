@@ -1,0 +1,233 @@
+"""The models of checks: what all kinds share, and what those share that judge runs.
+
+A check is an instance of the `Options` of its kind (`kinds`).
+"""
+
+import itertools
+import math
+from collections.abc import Iterable
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import Field, PrivateAttr, model_validator
+
+from bezierplan.schema.model import (
+    LONGEST_LINE,
+    Column,
+    Experiment,
+    Line,
+    Metric,
+    Model,
+    Positive,
+    Where,
+    is_line,
+    is_number,
+    listed,
+    mapping_or,
+    one_or_list,
+    value,
+    wrong,
+)
+
+Group = Annotated[
+    str | float,
+    value(
+        lambda given: is_line(given, LONGEST_LINE) or is_number(given),
+        "a value of the column `across`, or rest",
+    ),
+]
+Groups = listed(Group)
+Columns = listed(Column)
+
+
+class PublishedMargin(Model):
+    """A share of the other group's value, or the printed difference of the same cells if it is
+    smaller.
+    """
+
+    published: Positive = Field(
+        description="the share of the other group's value, a number above 0"
+    )
+
+
+Margin = Annotated[Any, mapping_or(PublishedMargin, Positive)]
+
+# Descriptions of keys shared by several kinds of check.
+EXPERIMENT = "the name of an experiment, or a list of at least two"
+PAIRED = (
+    "whether equal units are compared with each other, true or false; left out: as the "
+    "experiment is drawn"
+)
+SCALE = "absolute (left out: this), or relative to the value of the other group"
+MARGIN = (
+    "the smallest effect that matters: a number above 0, or {published: share}, that share of the "
+    "other group's value (the share itself for a metric that is true or false), or the printed "
+    "difference of the same cells if it is smaller"
+)
+WORK = (
+    "the metric of counted work that is judged instead of seconds, which differ from machine "
+    "to machine and are only reported"
+)
+TOGETHER = (
+    "true: a sentence such as `the best of all`, whose comparisons at one place (one combination "
+    "of `every`) make one mark: + if all "
+    "are +, - if any is -; they are shown as secondary ones; left out otherwise"
+)
+POOL = "a list of columns whose values are averaged with equal weight"
+GROUPS = (
+    "a list of values of the column `across`, or rest: the artefact's groups that are not named"
+)
+THAN = "likewise: what the groups are compared with, each with each"
+SIDE = "lower or higher: how the groups, or the first tier, compare with the others"
+STATISTIC = (
+    "the statistic that is compared: rank (left out: this), mean, median, iqr, range, min or max"
+)
+FAILURES = (
+    "what a run without a feasible path counts: drop (left out: this), last (worse than any "
+    "success; also runs that do not satisfy a "
+    "condition on an outcome) or count (the event is false)"
+)
+
+# Keys that hold groups: lists of them, and lists of such lists.
+GROUP_KEYS = ("groups", "than", "pairs", "order")
+
+# What the keys of some kinds are in all the others.
+_NEUTRAL = dict.fromkeys([*GROUP_KEYS, "statistic", "direction", "together", "paired"])
+_NEUTRAL |= dict.fromkeys(["event", "pick", "work"])
+_NEUTRAL |= {"metric": "", "effect_unit": "", "scale": "absolute", "failures": "drop"}
+_NEUTRAL |= {"target": 0, "least": 0, "margin": math.nan, "experiment": [], "pool": []}
+
+
+class Check(Model):
+    """A check of any kind. A key that only other kinds have is neutral.
+
+    against: whether the kind compares one group with another. cells_key: the key that names the
+    column whose values are compared, if any.
+    """
+
+    against: ClassVar[bool] = False
+    cells_key: ClassVar[str | None] = None
+
+    test: Line = Field(description="the name of a file in `src/bezierplan/analysis/claims/kinds`")
+    secondary: Literal[True] = Field(
+        None, description="true: shown, but not counted for the verdict; left out otherwise"
+    )
+
+    _reported: bool = PrivateAttr(False)
+
+    def __getattr__(self, key: str) -> Any:
+        return _NEUTRAL[key] if key in _NEUTRAL else super().__getattr__(key)
+
+    @property
+    def primary(self) -> bool:
+        """Whether it counts for the verdict."""
+        return not (self._reported or self.secondary)
+
+    def reported(self) -> Self:
+        """The same check as one that is only shown."""
+        check = self.but()
+        check._reported = True
+        return check
+
+    @property
+    def statistic_shown(self) -> str:
+        """The statistic that is compared; empty for a kind without a choice."""
+        return self.statistic or "rank" if "statistic" in type(self).model_fields else ""
+
+    @property
+    def relative(self) -> bool:
+        """Whether effects are relative to the value of the other group."""
+        return self.scale == "relative"
+
+    @property
+    def experiments(self) -> list[str]:
+        """Experiments whose runs are judged."""
+        return one_or_list(self.experiment or [])
+
+    @property
+    def cells(self) -> str | None:
+        """The column whose values are compared, if any."""
+        return getattr(self, self.cells_key) if self.cells_key else None
+
+    @property
+    def groups_named(self) -> list:
+        """All groups that the check names."""
+        lists = [one_or_list(each) for key in GROUP_KEYS for each in getattr(self, key) or []]
+        return list(itertools.chain.from_iterable(lists))
+
+
+def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
+    """Raise the error of a check that compares a group with itself."""
+    for group, other in pairs:
+        if group == other:
+            raise wrong(f"{key}: {group}: is compared with itself; expected another group")
+
+
+class OfRuns(Check):
+    """Checks of runs."""
+
+    experiment: listed(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
+    metric: Metric = Field(description="the name of a metric")
+    where: Where = Field(
+        {},
+        description="column of the runs table → value or list of values: the runs that are judged",
+        min_length=1,
+    )
+    every: Columns = Field(
+        [], description="a list of columns; one comparison for each combination of their values"
+    )
+    replicate: Column = Field(
+        "repeat", description="the column that numbers independent replicates; left out: repeat"
+    )
+
+    @model_validator(mode="after")
+    def _check_columns(self) -> "OfRuns":
+        """A column is either compared, or told apart, or averaged, or numbers replicates."""
+        named = {
+            key: one_or_list(getattr(self, key, None) or [])
+            for key in ("every", "pool", self.cells_key, "replicate")
+            if key
+        }
+        owners: dict[str, str] = {}
+        for key, columns in named.items():
+            for column in columns:
+                if column in owners:
+                    raise wrong(
+                        f"{key}: {column}: is in {owners[column]} already; "
+                        "expected it in one of the two"
+                    )
+                owners[column] = key
+        return self
+
+    _printed_metric: str = PrivateAttr("")
+
+    @property
+    def printed_metric(self) -> str:
+        """The metric of the printed numbers: seconds, where counted work is judged in their
+        place.
+        """
+        return self._printed_metric or self.metric
+
+    def of_work(self) -> Self:
+        """The check of counted work in place of seconds."""
+        check = self.but(metric=self.work)
+        check._printed_metric = self.metric
+        return check
+
+    @property
+    def limit(self) -> tuple[str, float] | None:
+        """The event whose share is taken, such as `below` and a number, if it is not the metric
+        itself.
+        """
+        return self.event.limit if self.event else None
+
+
+class Comparing(OfRuns):
+    """Checks that compare groups."""
+
+    cells_key: ClassVar[str | None] = "across"
+
+    across: Column = Field(
+        "method", description="the column whose values are the groups; left out: method"
+    )
+    scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
+    margin: Margin = Field(description=MARGIN)
