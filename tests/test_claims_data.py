@@ -25,9 +25,9 @@ CHECKS = {
     "lower": 94,
     "share": 26,
     "trend": 13,
-    "function": 22,
+    "function": 21,
     "equal_within": 4,
-    "untestable": 8,
+    "untestable": 9,
     "difference": 1,
 }
 

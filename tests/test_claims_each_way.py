@@ -489,28 +489,6 @@ def q_statistics(monkeypatch, truth):
     )
 
 
-def parts_of_the_work(monkeypatch, truth):
-    """As many evaluations as nothing else can match, or as few as the first population takes."""
-    monkeypatch.setattr(elhoseny2017, "samples", lambda path, grid: (np.zeros(300), np.zeros(300)))
-    line = {
-        "path_points": [np.array([0.5, 0.5, 1.5, 1.5])] * 8,
-        "path_curve": "bezier",
-        "history": [np.zeros(81)] * 8,
-    }
-    rows = pd.DataFrame(
-        {
-            "repeat": range(8),
-            "evaluations": (10**9 if truth else 60) + np.arange(8),
-            "valid_share": 0.7,
-            "extra_batches": 60,
-        }
-        | line
-    )
-    return results_of(
-        rows, "fields100", "fields200", workspace="published_like", method="mga"
-    ), None
-
-
 def printed_lengths(monkeypatch, truth):
     fields = pd.DataFrame(
         itertools.product(("case1", "case2"), (5, 10, 15, 20, 25)), columns=["route", "obstacles"]
@@ -668,7 +646,6 @@ def quoted(monkeypatch, truth):
 BY_HAND = {
     ("song2016", "C8"): genes,
     ("elhoseny2017", "C20"): q_statistics,
-    ("elhoseny2017", "C21"): parts_of_the_work,
     ("elhoseny2017", "C23"): printed_lengths,
     ("tharwat2018", "C3"): swarms,
     ("tharwat2018", "C16"): surface,
@@ -696,15 +673,6 @@ def test_what_nothing_tests_is_untestable_and_says_why(key, identity):
     reason, *secondary = claim["checks"]
     assert all(check["secondary"] for check in secondary)
     assert (row["verdict"], row["reason"]) == ("untestable", reason["reason"])
-
-
-def test_the_parts_of_the_work_are_untestable_where_the_way_of_counting_decides(monkeypatch):
-    results, _ = parts_of_the_work(monkeypatch, truth=True)
-    for each in results.values():
-        each.runs["evaluations"] = 100_000
-    row = verdict("elhoseny2017", claim_of("elhoseny2017", "C21"), results)
-    assert row["verdict"] == "untestable"
-    assert "if 1 at a time" in row["reason"]
 
 
 @pytest.mark.parametrize("truth", [True, False])

@@ -5,7 +5,6 @@ Numbers of equations, sections, tables and figures are the paper's.
 """
 
 import itertools
-import math
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -13,17 +12,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import statistics
 from bezierplan.analysis.audit_rows import checked, compared
-from bezierplan.analysis.claims.material import Untestable
+from bezierplan.analysis.papers import rules
 from bezierplan.analysis.papers.drawings import marks as marks
-from bezierplan.analysis.results import path_of, select
-from bezierplan.geometry.cell_length import DIAGONAL, samples
+from bezierplan.analysis.results import select
+from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.geometry.region import region
 from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
@@ -114,60 +111,6 @@ def printed_over_bound(check: "Check", results: "Experiments", published: "Publi
     return "+" if all(explained) else "-", float(max(ratios)), None, fields
 
 
-def fitness_leads(
-    check: "Check",
-    results: "Experiments",
-    published: "Published",
-    *,
-    population: int,
-    offspring: int,
-    genes: int,
-    words: list[int],
-) -> "Judged":
-    """Claim C21: whether fitness takes more work than diversity, counted because seconds differ
-    from machine to machine. Raises Untestable where this depends on how the genes are counted.
-
-    Fitness (equations 2 and 8): for each chromosome evaluated, every control point weighs on every
-    sample of the curve; all are counted as if they were like the final path. Diversity (equation
-    10): lines 8 and 12 of Algorithm 2 compare each pair of the pool as many genes together as each
-    of `words` says; the pool holds the population and the valid children of one batch, after line
-    11 of two. offspring: children of a batch for each chromosome. The effect is the share of
-    fitness in this work with the first of `words`, a mean over runs with its interval.
-    """
-    shares = []
-    for name in check.experiments:
-        experiment = results[name]
-        for _, run in select(experiment.runs, check.where).iterrows():
-            path = path_of(run)
-            if path is not None:
-                x, _ = samples(path, experiment.problems[run["problem"]].workspace)
-                fitness = run["evaluations"] * len(path.points) * len(x)
-                batch = population * offspring * run["valid_share"]
-                pairs = [math.comb(round(population + batches * batch), 2) for batches in (1, 2)]
-                compared = (len(run["history"]) - 1) * pairs[0] + run["extra_batches"] * pairs[1]
-                shares.append(
-                    [fitness / (fitness + compared * math.ceil(genes / word)) for word in words]
-                )
-    if not shares:
-        raise Untestable("no run has a path")
-    table = np.array(shares)
-    ends = [
-        statistics.interval("mean", own, generator(f"elhoseny2017/C21/{word}"))
-        for word, own in zip(words, table.T, strict=True)
-    ]
-    marks = ["+" if low > 0.5 else "-" if high < 0.5 else "?" for low, high in ends]
-    if len(set(marks)) > 1:
-        listed_shares = ", ".join(
-            f"{share:.2f} if {word} at a time"
-            for word, share in zip(words, table.mean(axis=0), strict=True)
-        )
-        raise Untestable(
-            "the share of fitness in the work depends on how many genes are compared at once: "
-            f"{listed_shares}"
-        )
-    return marks[0], float(table[:, 0].mean()), ends[0], len(table)
-
-
 def audit(published: "Published") -> list[dict]:
     """Printed numbers that contradict the text, other tables or the rule for counting lengths.
 
@@ -178,58 +121,8 @@ def audit(published: "Published") -> list[dict]:
     example, in Section 3.3 eta decreases linearly to 0 and then accepts more, and in Section 2.2.2
     any mutation leaves the subspace of a crossover.
     """
-    parts = (_audit_lengths, _audit_times, _audit_example, _audit_text, _growth)
+    parts = (rules.audit, _audit_example, _audit_text, _growth)
     return [row for part in parts for row in part(published)]
-
-
-def _audit_lengths(published: "Published") -> Iterator[dict]:
-    least_rule = (
-        f"no path between opposite corners counts less than {DIAGONAL:g} cells for each of the side"
-    )
-    most_rule = "a path that never turns back counts at most 2 cells for each of the side"
-    for table, side in _sides(published).items():
-        cells = published[table]
-        for cell in cells.itertuples():
-            location = f"route={cell.route}, obstacles={cell.obstacles}, method={cell.method}"
-            yield compared(table, location, least_rule, cell.value, ">=", DIAGONAL * side)
-            yield compared(table, location, most_rule, cell.value, "<=", 2 * side)
-        for (route, obstacles), column in cells.groupby(["route", "obstacles"]):
-            lengths = column.set_index("method")["value"]
-            location = f"route={route}, obstacles={obstacles}, method="
-            prm, mga, ga = lengths["prm"], lengths["mga"], lengths["ga"]
-            rule = "the text has PRM the longest"
-            yield compared(table, f"{location}prm", rule, prm, ">", lengths.drop("prm").max())
-            rule = "the text has the proposed method the shortest"
-            yield compared(table, f"{location}mga", rule, mga, "<", lengths.drop("mga").min())
-            if table == "table2":
-                rivals = lengths.drop(["mga", "ga"]).min()
-                rule = "the text has GA second"
-                yield checked(table, f"{location}ga", rule, ga, rivals, bool(mga < ga < rivals))
-
-
-def _audit_times(published: "Published") -> Iterator[dict]:
-    means = {
-        name: published[name]
-        .query("statistic == 'mean'")
-        .set_index(["method", "obstacles"])["value"]
-        .sort_index()
-        for name in ("table5", "table6")
-    }
-    rule = "the text has the proposed method cheaper than all others in all cases"
-    for table, times in means.items():
-        for (method, obstacles), time in times.drop("mga").items():
-            location = f"method=mga, obstacles={obstacles}, beside {method}"
-            yield compared(table, location, rule, times["mga", obstacles], "<", time)
-    both = "Tables 5 and 6 print the same time of"
-    for obstacles in means["table5"]["mga"].index:
-        for rule, location, *methods in (
-            (f"{both} the proposed method", "method=mga", "mga", "mga"),
-            (f"{both} what both call GA", "method=GA", "mga_plain", "ga"),
-        ):
-            time, later = (
-                times[method, obstacles] for times, method in zip(means.values(), methods)
-            )
-            yield compared("table5", f"{location}, obstacles={obstacles}", rule, time, "==", later)
 
 
 def _audit_example(published: "Published") -> Iterator[dict]:

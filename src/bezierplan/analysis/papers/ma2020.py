@@ -2,7 +2,6 @@
 curvature, and its audit.
 """
 
-import itertools
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ import pandas as pd
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
 from bezierplan.analysis.measures import obstacle_clearance
+from bezierplan.analysis.papers import rules
 from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import path_of, pick, select
 from bezierplan.geometry import curves
@@ -29,8 +29,6 @@ LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
 # it.
 LATTICE_TOLERANCE = 0.0045
 
-# A time up to this many times another counts as slightly longer.
-SLIGHTLY = 1.5
 
 # Number of parameters at which the speed of a curve is sampled, and the share of its maximum below
 # which it counts as zero.
@@ -179,43 +177,21 @@ def audit(published: "Published") -> list[dict]:
     lengths and times are checked against the tables, that on the parameter of a curve and equation
     (11) by computing.
     """
-    parts = (_audit_lengths, _audit_sentences, _audit_text)
+    parts = (_audit_lengths, rules.audit, _audit_text)
     return [row for part in parts for row in part(published)]
 
 
 def _audit_lengths(published: "Published") -> Iterator[dict]:
     side = _side(published)
+    rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
     for name in ("table1", "table2"):
-        lengths = published[name][published[name]["metric"] == "length"]
-        places = [
-            f"method={cell.method}, metric=length, statistic={cell.statistic}"
-            for cell in lengths.itertuples()
-        ]
-        rule = "no path is shorter than the straight line"
-        for location, value in zip(places, lengths["value"]):
-            yield compared(name, location, rule, value, ">=", side * math.sqrt(2))
-        rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
-        on_cells = lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")
-        for location, value in itertools.compress(zip(places, lengths["value"]), on_cells):
-            straight, diagonal = nearest_lattice_length(value, side)
+        cells = published[name].query("metric == 'length' and statistic != 'mean'")
+        for cell in cells[cells["method"].isin(LATTICE_METHODS)].itertuples():
+            location = f"method={cell.method}, metric=length, statistic={cell.statistic}"
+            straight, diagonal = nearest_lattice_length(cell.value, side)
             nearest = straight + diagonal * math.sqrt(2)
-            fits = abs(value - nearest) <= LATTICE_TOLERANCE
-            yield checked(name, location, rule, value, nearest, fits)
-
-
-def _audit_sentences(published: "Published") -> Iterator[dict]:
-    mean, time = _means(published["table1"], "length"), _means(published["table2"], "cpu_s")
-    for method, rival in itertools.product(("bca", "bca_q"), LATTICE_METHODS):
-        rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
-        place = f"method={method}, metric=length"
-        yield compared("table1", place, rule, mean[method], "<", mean[rival])
-    for rival in ("aco", "ga", "aco_ga"):
-        rule = (
-            f"the text (4.2) has the time of bca slightly above that of {rival}, here: at most "
-            f"{SLIGHTLY} times"
-        )
-        limit = SLIGHTLY * time[rival]
-        yield compared("table2", "method=bca, metric=cpu_s", rule, time["bca"], "<=", limit)
+            fits = abs(cell.value - nearest) <= LATTICE_TOLERANCE
+            yield checked(name, location, rule, cell.value, nearest, fits)
 
 
 def _audit_text(published: "Published") -> Iterator[dict]:
@@ -265,9 +241,3 @@ def _side(published: "Published") -> int:
     parameters = published["parameters"]
     (side,) = parameters.loc[parameters["parameter"] == "grid_size", "value"].unique()
     return int(side)
-
-
-def _means(table: pd.DataFrame, metric: str) -> dict[str, float]:
-    """Printed means of a metric, by method."""
-    means = table[(table["metric"] == metric) & (table["statistic"] == "mean")]
-    return dict(zip(means["method"], means["value"]))

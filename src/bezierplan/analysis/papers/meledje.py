@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.audit_rows import checked, compared
+from bezierplan.analysis.papers import rules
 from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import select
 from bezierplan.analysis.statistics import holm
@@ -83,24 +84,7 @@ def audit(published: "Published") -> list[dict]:
     operators = list(published["table2"]["method"].unique())
     others = [method for method in operators if method != "proposed"]
     said = list(published["said"].itertuples())
-    rows = []
-    for name, table in tables.items():
-        for method in ("proposed", *others):
-            total = sum(
-                table[method, metric] for metric in ("optimal", "near_optimal", "infeasible")
-            )
-            rule = "the three counts add to the trials"
-            rows.append(compared(name, f"method={method}", rule, total, "==", trials[name]))
-        for sentence in said:
-            sign = SIGN[sentence.best]
-            proposed, *theirs = (
-                _printed(table, method, sentence.quantity) for method in ("proposed", *others)
-            )
-            best = sign * max(sign * value for value in theirs)
-            place = f"metric={sentence.quantity}"
-            rule = f"the proposed mutation has the {sentence.words} (Section 4)"
-            relation = {1: ">", -1: "<"}[sign]
-            rows.append(compared(name, place, rule, proposed, relation, best))
+    rows = rules.audit(published)
     for sentence in said:
         if sentence.quantity in TESTED:
             rows += _fisher_rows(
@@ -154,9 +138,3 @@ def _fisher_rows(
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())
     ]
-
-
-def _printed(table: pd.Series, method: str, metric: str) -> float:
-    if metric == "found":
-        return table[method, "optimal"] + table[method, "near_optimal"]
-    return table[method, metric]

@@ -4,8 +4,8 @@ lengths its table prints.
 
 from typing import TYPE_CHECKING
 
-from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.papers.drawings import marks as marks
+from bezierplan.analysis.papers.rules import audit as audit
 from bezierplan.planners.parts.genetic import complement_bit, swap_tails
 from bezierplan.workspaces.seeds import generator
 
@@ -32,16 +32,3 @@ def genes_in_range(
             ((one < 0) | (one >= 1 << bits)).sum() + ((other < 0) | (other >= 1 << bits)).sum()
         )
     return "-" if outside else "+", float(outside), None, TRIALS
-
-
-def audit(published: "Published") -> list[dict]:
-    """Whether every minimal generation of Table I lies within the generations of Section IV."""
-    table = published["table1"]
-    most = published["text_values"].set_index("quantity")["value"]["generations"]
-    rule = "a minimal generation is at most the number of generations"
-    return [
-        compared(
-            "table1", f"problem={cell.problem}, method={cell.method}", rule, cell.value, "<=", most
-        )
-        for cell in table[table["metric"] == "generation_1pct"].itertuples()
-    ]

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.audit_rows import compared
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
 from bezierplan.analysis.papers.drawings import marks as marks
+from bezierplan.analysis.papers.rules import audit as audit
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps
@@ -45,7 +45,6 @@ SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # discarded from each of them
 DIVERGING, LONG = 20, 500  # sequences of each map whose exponents are taken, and their lengths
 
-RANKED = ("table3", "table4", "table5", "table6")  # tables whose rows are ranked (Section 5.1)
 WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
 RESAMPLES, BOXES = 200, 500  # of our runs, and box plots drawn from each
 # Runs that end within this share of the shortest path of their class have reached its optimum.
@@ -426,63 +425,3 @@ def fewer_outliers(
 def _surely(share: float) -> str:
     """The mark of a sentence that holds in a share of draws."""
     return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"
-
-
-def audit(published: "Published") -> list[dict]:
-    """Printed numbers that are impossible, or contradict others.
-
-    No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. Statements in
-    the text about best values and the second population of Section 5.5 are checked against the
-    tables, and against each other.
-    """
-    tables = {name: published[name] for name in RANKED}
-    straight = float(_said(published, "straight_line_length")[0])
-    rule = "no path is shorter than the straight line"
-    rows = [
-        compared(name, _place(cell), rule, cell.value, ">=", straight)
-        for name, table in tables.items()
-        for cell in _cells(table, "objective").itertuples()
-    ]
-    before = pd.concat([tables["table3"], tables["table4"]])
-    rule = "Table 5 has the number of Table 3 or 4"
-    for metric in ("collisions_c", "objective"):
-        first = _by_method(before, metric)
-        rows += [
-            compared("table5", _place(cell), rule, cell.value, "==", first[cell.method])
-            for cell in _cells(tables["table5"], metric).itertuples()
-            if cell.method in first
-        ]
-    best = _by_method(
-        pd.concat(list(tables.values())[:3]).drop_duplicates(["method", "metric"]), "objective"
-    )
-    for section, better, worse in published["said"].itertuples(index=False):
-        table = "table5" if worse == "pso" else "table4" if better.startswith("cpso2") else "table3"
-        rule = f"the text ({section}) has {better} better than {worse}"
-        place = f"method={better}, metric=objective"
-        rows.append(compared(table, place, rule, best[better], "<", best[worse]))
-    first, second = _said(published, "population_of_second_experiment")
-    rule = "one number for the second population of Section 5.5"
-    return [*rows, compared("text", "5.5", rule, first, "==", second)]
-
-
-def _cells(table: pd.DataFrame, metric: str) -> pd.DataFrame:
-    """Printed numbers of one metric."""
-    return table[table["metric"] == metric]
-
-
-def _place(row: tuple) -> str:
-    """The cell that holds a printed number."""
-    obstacles = f", obstacles={row.obstacles}" if hasattr(row, "obstacles") else ""
-    return f"method={row.method}{obstacles}, metric={row.metric}"
-
-
-def _by_method(table: pd.DataFrame, metric: str) -> dict[str, float]:
-    """Printed numbers of one metric, by method."""
-    cells = _cells(table, metric)
-    return dict(zip(cells["method"], cells["value"]))
-
-
-def _said(published: "Published", quantity: str) -> list[float]:
-    """The values that the text gives for a quantity, in order of appearance."""
-    text = published["text_values"]
-    return text.loc[text["quantity"] == quantity, "value"].to_list()

@@ -1,0 +1,42 @@
+"""Rules that printed numbers should obey, as a study's file `published/rules.csv` lists them.
+
+| column | meaning |
+| --- | --- |
+| item, place, rule | table, cell and rule, as the audit shows them |
+| cell | the numbers that are added and compared; left out: the place |
+| relation | how they should compare: <, <=, ==, >= or > |
+| limit | with what, or by what factor with that of `of` |
+| of | the numbers that are added for the limit; left out: none |
+
+A cell is `column=value, ...` of the item, or of another table that stands before it, as in
+`table6: method=ga`; values between which | stands are all meant.
+"""
+
+import re
+
+import pandas as pd
+
+from bezierplan.analysis.audit_rows import compared
+
+
+def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+    """The rows of the audit. published: tables of printed numbers, by file name, with the rules."""
+    rules = published["rules"].fillna({"cell": "", "of": "", "limit": 1.0})
+    return [
+        compared(
+            *(rule.item, rule.place, rule.rule),
+            _total(published, rule.item, rule.cell or rule.place),
+            rule.relation,
+            rule.limit * (_total(published, rule.item, rule.of) if rule.of else 1),
+        )
+        for rule in rules.itertuples()
+    ]
+
+
+def _total(published: dict[str, pd.DataFrame], item: str, cell: str) -> float:
+    """The sum of the printed numbers that a cell names."""
+    table, _, columns = cell.rpartition(": ")
+    rows = published[table or item]
+    for column, values in re.findall(r"(\w+)=([^,]+)", columns):
+        rows = rows[rows[column].astype(str).isin(values.split("|"))]
+    return float(rows["value"].sum())
