@@ -2,19 +2,20 @@
 of the objective, or from the path.
 
 A measure takes a table of at least one run and the problems by name, and gives one number per run
-(n,), NaN where a run has no such value. `of_path` and `of_path_on_grid` turn a measure of a single
-path into one. Curve modules are imported only when a value is requested.
+(n,), NaN where a run has no such value; those of a path alone, or of a path on a map, are made into
+one by their decorators. Curve modules are imported only when a value is requested.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bezierplan.analysis.metric import metric, of_path, of_paths, on_map, on_maps
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 
@@ -37,9 +38,6 @@ HEADING_SAMPLES = 2001
 # curved piece from which they are cut.
 BENDING_PART = 0.1
 BENDING_SAMPLES = 64
-# Measures of paths that a process remembers, since several checks of claims ask for the same ones:
-# up to some 200 MB.
-MEASURES_KEPT = 250_000
 # A smaller change of heading, in radians, is not a corner.
 CORNER = 1e-6
 # By which share a printed length may be rounded.
@@ -53,6 +51,13 @@ def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
 
 
+@metric(
+    "-",
+    "rank of the objective among the rows of the table, within one unit",
+    among_rows=True,
+    least=1.0,
+    step=0.5,
+)
 def rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; ties share
     the mean of their ranks.
@@ -61,6 +66,7 @@ def rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
 
 
+@metric("-", "whether the objective lies beyond the whiskers of its method's box", step=1.0)
 def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Whether (n,) a run's objective lies beyond the whiskers of the box of its method under its
     condition.
@@ -159,56 +165,15 @@ def paired(
     return measure(runs, problems).where(finished_by_all(runs, problems))
 
 
+@metric(
+    "-",
+    "length / length of the best feasible run of the same method and condition - 1",
+    feasible_only=True,
+)
 def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Length over that of the best run of the same method and condition, minus 1 (n,)."""
     best = runs.groupby(["experiment", "condition", "method"])["length"].transform("min")
     return runs["length"] / best - 1
-
-
-def _paths(runs: pd.DataFrame) -> Iterator[Path | None]:
-    """The path of each run, or None."""
-    from bezierplan.workspaces.problem import Path
-
-    for curve, points in zip(runs["path_curve"], runs["path_points"]):
-        yield Path(curve, np.reshape(points, (-1, 2))) if curve else None
-
-
-@lru_cache(MEASURES_KEPT)
-def _measured(measure: Callable[[Path], float], curve: str, points: bytes) -> float:
-    """A measure of the path with these control points, of which equal ones are measured once; NaN
-    without a curve.
-    """
-    from bezierplan.workspaces.problem import Path
-
-    return measure(Path(curve, np.frombuffer(points).reshape(-1, 2))) if curve else np.nan
-
-
-def of_path(
-    measure: Callable[[Path], float], runs: pd.DataFrame, problems: dict[str, Problem]
-) -> list[float]:
-    """A measure of each run's path; NaN where the run has none."""
-    return of_paths([measure] * len(runs), runs)
-
-
-def of_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:
-    """For each run, its own measure of its path; NaN where the run has none. Equal measures of
-    equal paths are taken once.
-    """
-    given = zip(measures, runs["path_curve"], runs["path_points"], strict=True)
-    return [
-        _measured(measure, curve, np.asarray(points, dtype=float).tobytes())
-        for measure, curve, points in given
-    ]
-
-
-def of_path_on_grid(
-    measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]
-) -> list[float]:
-    """A measure of each run's path in its grid; NaN where the run has no path."""
-    return [
-        np.nan if path is None else measure(path, problems[problem].workspace)
-        for path, problem in zip(_paths(runs), runs["problem"])
-    ]
 
 
 def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
@@ -234,14 +199,15 @@ def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
     return float((2.0 ** np.arange(len(workspace.centres)))[swept > 0].sum())
 
 
-def homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """The homotopy class of each run's path."""
-    return [
-        np.nan
-        if path is None
-        else homotopy_class(_samples(path, CLASS_SAMPLES), problems[problem].workspace)
-        for path, problem in zip(_paths(runs), runs["problem"])
-    ]
+@on_map(
+    "-",
+    "class of the path: the sum of 2^k over the circles k that it leaves to its left",
+    "circles",
+    step=1.0,
+)
+def homotopy(path: Path, workspace: Workspace) -> float:
+    """The homotopy class of a path."""
+    return homotopy_class(_samples(path, CLASS_SAMPLES), workspace)
 
 
 def _samples(path: Path, count: int) -> np.ndarray:
@@ -251,6 +217,12 @@ def _samples(path: Path, count: int) -> np.ndarray:
     return curves.sample_matrix(path.curve, len(path.points), count) @ path.points
 
 
+@metric(
+    "-",
+    "whether the path is free and passes each circle where the shortest one does",
+    step=1.0,
+    on=("circles",),
+)
 def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; NaN
     without circles.
@@ -262,7 +234,9 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
         for problem, own in runs.groupby("problem")
     }
     best = runs["problem"].map(best).to_numpy()
-    return np.where(np.isnan(best), np.nan, runs["feasible"] & (homotopy(runs, problems) == best))
+    return np.where(
+        np.isnan(best), np.nan, runs["feasible"] & (on_maps(homotopy, runs, problems) == best)
+    )
 
 
 def _curvature(path: Path) -> np.ndarray:
@@ -272,6 +246,10 @@ def _curvature(path: Path) -> np.ndarray:
     return curves.curvature(path, CURVATURE_SAMPLES)[0]
 
 
+@of_path(
+    "1/u",
+    f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out",
+)
 def max_curvature(path: Path) -> float:
     """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as 0 where
     the speed is zero.
@@ -279,6 +257,11 @@ def max_curvature(path: Path) -> float:
     return float(np.nan_to_num(np.abs(_curvature(path))).max())
 
 
+@of_path(
+    "1/u",
+    f"largest curvature over {CURVATURE_SAMPLES} samples by its sign, left turns positive; "
+    "corners between pieces left out",
+)
 def signed_curvature(path: Path) -> float:
     """Largest curvature of `CURVATURE_SAMPLES` samples with its sign (song2016, eq. 5: left turns
     are positive), in 1/unit; it counts as 0 where the speed is zero.
@@ -286,11 +269,17 @@ def signed_curvature(path: Path) -> float:
     return float(np.nan_to_num(_curvature(path)).max())
 
 
+@of_path(
+    "-",
+    f"samples of {CURVATURE_SAMPLES} where the curve stands still and curvature is not defined",
+    step=1.0,
+)
 def zero_speed_points(path: Path) -> int:
     """Number of `CURVATURE_SAMPLES` samples at which the speed is zero."""
     return int(np.isnan(_curvature(path)).sum())
 
 
+@of_path("1/u", "largest jump of curvature over the joints, infinite at a corner")
 def curvature_jump(path: Path) -> float:
     """Largest jump of curvature over a path's joints, in 1/unit."""
     from bezierplan.geometry import curves
@@ -298,15 +287,16 @@ def curvature_jump(path: Path) -> float:
     return curves.curvature_jump(path)
 
 
+@metric("-", "control points of all paths evaluated", step=1.0, least=0.0)
 def points_evaluated(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Control points (n,) of all paths evaluated, each counted with as many as the run's path has;
     NaN where the run has no path.
     """
-    return runs["evaluations"].to_numpy() * np.array(
-        of_path(lambda path: len(path.points), runs, problems)
-    )
+    points = runs["path_points"].map(len) / 2
+    return (runs["evaluations"] * points.where(points > 0)).to_numpy()
 
 
+@of_path("-", "control points that differ from each other", feasible_only=False, step=1.0)
 def distinct_points(path: Path) -> int:
     """Number of distinct control points of a path."""
     return len(set(map(tuple, path.points.tolist())))
@@ -330,11 +320,13 @@ def _path_headings(path: Path) -> np.ndarray:
     return _headings(_steps(path.points if is_polyline else _samples(path, HEADING_SAMPLES)))
 
 
+@of_path("rad", "largest change of heading between neighbouring chords")
 def heading_max(path: Path) -> float:
     """Largest change of heading between neighbouring chords, in radians."""
     return float(_path_headings(path).max(initial=0.0))
 
 
+@of_path("rad", "changes of heading, all added")
 def turning(path: Path) -> float:
     """Sum of all changes of heading, in radians."""
     return float(_path_headings(path).sum())
@@ -358,17 +350,24 @@ def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
     ), at[-1] / parts
 
 
+@of_path(
+    "rad²/u",
+    f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all "
+    "added: the integral of squared curvature",
+)
 def bending(path: Path) -> float:
     """Integral of squared curvature, from parts of about `BENDING_PART`, in radians^2/unit."""
     steps, length = _equal_parts(path)
     return float((_headings(steps) ** 2).sum() / length) if length else 0.0
 
 
+@of_path("degrees", f"largest change of heading between parts of {BENDING_PART:g} u")
 def max_turn(path: Path) -> float:
     """Largest change of heading between parts of about `BENDING_PART`, in degrees."""
     return float(np.degrees(_headings(_equal_parts(path)[0]).max(initial=0.0)))
 
 
+@of_path("-", "joints of a path's pieces at which its heading changes", step=1.0)
 def corners(path: Path) -> int:
     """Joints of a path's pieces at which its heading changes."""
     from bezierplan.geometry import curves
@@ -380,6 +379,13 @@ def corners(path: Path) -> int:
     )
 
 
+@on_map(
+    "-",
+    "corners of a polyline that can be left out, because a free leg joins the corners before "
+    "and after; none for a curve",
+    "grid",
+    step=1.0,
+)
 def spare_corners(path: Path, grid: Grid) -> float:
     """Corners of a polyline that can be left out: a straight leg that enters no occupied cell joins
     the corners before and after. NaN for a curve.
@@ -413,6 +419,7 @@ def _inside(
     return whole
 
 
+@of_path("-", "length / length of the control polygon")
 def length_over_polygon(path: Path) -> float:
     """Length of a path over that of its control polygon; 1 if the polygon has no length."""
     from bezierplan.geometry import curves
@@ -421,6 +428,12 @@ def length_over_polygon(path: Path) -> float:
     return curves.length(path) / polygon if polygon else 1.0
 
 
+@metric(
+    "u",
+    "least distance to the occupied cells of a grid, its border not counted",
+    feasible_only=True,
+    on=("grid",),
+)
 def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
     """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are
     none.
@@ -461,6 +474,14 @@ def _clearance_in(
     return clearance
 
 
+@metric(
+    "-",
+    "whether the planner's safety distance from the occupied cells is kept",
+    feasible_only=True,
+    step=1.0,
+    needs=("safety_distance",),
+    on=("grid",),
+)
 def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Whether (n,) a path keeps its planner's safety distance from the obstacles; NaN where the
     planner has none.
@@ -469,6 +490,13 @@ def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarr
     return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
 
 
+@metric(
+    "u",
+    "length of a path that keeps the planner's safety distance",
+    feasible_only=True,
+    needs=("safety_distance",),
+    on=("grid",),
+)
 def length_at_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Lengths (n,) of the paths that keep their planner's safety distance; NaN of all others."""
     return runs["length"].where(keeps_distance(runs, problems) == 1).to_numpy()
@@ -490,11 +518,19 @@ def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
     )
 
 
+@on_map("-", "control points in occupied cells of a grid", "grid", step=1.0)
 def occupied_points(path: Path, grid: Grid) -> int:
     """Number of control points in occupied cells."""
     return _in_occupied_cells(path.points, grid)
 
 
+@on_map(
+    "-",
+    f"samples of {FINE_SAMPLES} in occupied cells of a grid",
+    "grid",
+    feasible_only=False,
+    step=1.0,
+)
 def fine_bad(path: Path, grid: Grid) -> int:
     """Number of `FINE_SAMPLES` samples in occupied cells."""
     return _in_occupied_cells(_samples(path, FINE_SAMPLES), grid)
@@ -517,7 +553,7 @@ def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem])
             else getattr(cell_length, name)(path, grid)
         )
 
-    lengths = of_path_on_grid(measure, runs, problems)
+    lengths = on_maps(measure, runs, problems)
     for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
         if length < bound * (1 - 1e-12):
             raise ValueError(
@@ -527,7 +563,14 @@ def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem])
     return lengths
 
 
-def cells_touched(path: Path, grid: Grid) -> float:
+@on_map(
+    "-",
+    "number of cells that the path touches; none for a path that touches an occupied cell",
+    "grid",
+    least=0.0,
+    step=1.0,
+)
+def cells(path: Path, grid: Grid) -> float:
     """Number of cells that a path touches; NaN for one that touches an occupied cell."""
     from bezierplan.geometry import cell_length
 
@@ -537,11 +580,18 @@ def cells_touched(path: Path, grid: Grid) -> float:
     )
 
 
+@of_path("u", "length of the control polygon", least="bound")
 def polygon_length(path: Path) -> float:
     """Length of a path's control polygon, in units."""
     return float(np.hypot(*np.diff(path.points, axis=0).T).sum())
 
 
+@metric(
+    "-",
+    "whether the straight line from start to target touches an occupied cell",
+    step=1.0,
+    on=("grid",),
+)
 def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied
     cell.

@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bezierplan.analysis.metric import metric
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -59,6 +61,9 @@ def work_to(
     return expected(sums[cost].to_numpy(), sums["done"].to_numpy())
 
 
+@metric(
+    "u", "exact arc length, infinite unless the certified checker accepts the path", least="bound"
+)
 def certified_length(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """The length (n,) of a path that the certified checker accepts, infinite for any other."""
     return np.where(runs["feasible"].astype(bool), runs["length"], np.inf)

@@ -1,0 +1,153 @@
+"""What a metric is, and how a function declares that it is one (`measures`, `running_time`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from bezierplan.workspaces.problem import Path, Problem, Workspace
+
+    Compute = Callable[[pd.DataFrame, dict[str, Problem]], Any]
+
+# Measures of paths that a process remembers, since several checks of claims ask for the same ones:
+# up to some 200 MB.
+MEASURES_KEPT = 250_000
+
+
+class Metric(NamedTuple):
+    """What is measured of a run.
+
+    Attributes
+    ----------
+    unit : str
+        `u` stands for the workspace's unit of length, `-` for a number without unit.
+    meaning : str
+        One phrase.
+    compute : callable or None
+        (runs, problems) -> one number per run (n,), where runs is a table of at least one run; None
+        for a column of the runs table.
+    feasible_only : bool
+        Whether it is taken over the runs whose path the certified checker accepts, otherwise over
+        all runs.
+    among_rows : bool
+        Whether it compares the methods of a table with each other, so that variants and baselines
+        outside the table have none.
+    least : float or str
+        The smallest value that a run can have, or the column of the runs table that holds it.
+    most : float
+        The largest value that a run can have.
+    bound : str
+        The column with the bound for this kind of length.
+    gap : str
+        The metric of the gap to that bound.
+    step : float or None
+        The distance between possible values of a run, 1 for whole numbers; None if there is none.
+    of_group : bool
+        Whether all runs of a method under a condition share it, so that resampling them does not
+        show how certain it is.
+    needs : tuple of str
+        Columns that only some runs tables have; with none, and without compute, the column of its
+        own name.
+    on : tuple of str
+        Kinds of workspace; () for all.
+    """
+
+    unit: str
+    meaning: str
+    compute: Compute | None = None
+    feasible_only: bool = False
+    among_rows: bool = False
+    least: float | str = -np.inf
+    most: float = np.inf
+    bound: str = "bound"
+    gap: str = "gap"
+    step: float | None = None
+    of_group: bool = False
+    needs: tuple[str, ...] = ()
+    on: tuple[str, ...] = ()
+
+
+METRICS: dict[str, Metric] = {}
+"""Metrics by name: all of them once `metrics` is imported."""
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def metric(
+    unit: str,
+    meaning: str,
+    adapted: Callable[[F], Compute] = lambda function: function,
+    **facts: Any,
+) -> Callable[[F], F]:
+    """A decorator: the function is the metric of its own name. facts: of `Metric`. adapted: makes
+    it one of (runs, problems).
+    """
+
+    def declared(function: F) -> F:
+        METRICS[function.__name__] = Metric(unit, meaning, adapted(function), **facts)
+        return function
+
+    return declared
+
+
+def of_path(unit: str, meaning: str, feasible_only: bool = True, **facts: Any) -> Callable[[F], F]:
+    """Likewise of a measure of a path."""
+    return metric(
+        unit,
+        meaning,
+        lambda measure: lambda runs, _: of_paths([measure] * len(runs), runs),
+        feasible_only=feasible_only,
+        **facts,
+    )
+
+
+def on_map(
+    unit: str, meaning: str, *kinds: str, feasible_only: bool = True, **facts: Any
+) -> Callable[[F], F]:
+    """Likewise of a measure of a path and its workspace, of one of some kinds."""
+    return metric(
+        unit,
+        meaning,
+        lambda measure: partial(on_maps, measure),
+        feasible_only=feasible_only,
+        on=kinds,
+        **facts,
+    )
+
+
+def of_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:
+    """For each run, its own measure of its path; NaN where the run has none. Equal measures of
+    equal paths are taken once.
+    """
+    given = zip(measures, runs["path_curve"], runs["path_points"], strict=True)
+    return [
+        _measured(measure, curve, np.asarray(points, dtype=float).tobytes())
+        for measure, curve, points in given
+    ]
+
+
+@lru_cache(MEASURES_KEPT)
+def _measured(measure: Callable[[Path], float], curve: str, points: bytes) -> float:
+    from bezierplan.workspaces.problem import Path
+
+    return measure(Path(curve, np.frombuffer(points).reshape(-1, 2))) if curve else np.nan
+
+
+def on_maps(
+    measure: Callable[[Path, Workspace], float], runs: pd.DataFrame, problems: dict[str, Problem]
+) -> list[float]:
+    """A measure of each run's path in its workspace; NaN where the run has none."""
+    from bezierplan.workspaces.problem import Path
+
+    return [
+        measure(Path(curve, np.reshape(points, (-1, 2))), problems[problem].workspace)
+        if curve
+        else np.nan
+        for curve, points, problem in zip(runs["path_curve"], runs["path_points"], runs["problem"])
+    ]
