@@ -123,25 +123,20 @@ def described(**changes):
 @pytest.mark.parametrize(
     ("changes", "verdict"),
     [
+        ({}, "1 method feasible as often as the baseline, none is shorter or less curved."),
         (
-            {},
-            "The one method that is feasible as often as the baseline is neither shorter nor less "
-            "curved.",
+            {"feasible": 0.5},
+            "Of 0 methods feasible as often as the baseline, none is shorter or less curved.",
         ),
-        ({"feasible": 0.5}, "No method is feasible as often as the baseline."),
-        (
-            {"length": 0.9995},
-            "The one method that is feasible as often as the baseline is neither shorter nor less "
-            "curved.",
-        ),
+        ({"length": 0.9995}, "none is shorter or less curved."),
         (
             {"curvature": 0.5},
-            "The one method that is feasible as often as the baseline, tried, has 0.5 times the "
-            "curvature, 1.25 times the length and 8 times the CPU time.",
+            "1 is shorter or less curved; the least curved, tried, has 0.5 times the curvature, "
+            "1.25 times the length and 8 times the CPU time.",
         ),
         (
             {"compared": 0, "length": np.nan, "curvature": np.nan, "feasible": 0.0},
-            "No method is feasible as often as the baseline.",
+            "none is shorter or less curved.",
         ),
     ],
 )

@@ -55,12 +55,11 @@ def test_numbers_claims_and_methods_are_said_in_three_sentences():
         {"one": "One et al. (2000): paths", "two": "Two"},
     )
     assert found.sentences == [
-        "Of 3 published numbers, 1 agrees, 1 disagrees and 1 is inconclusive.",
-        "Of 6 claims, 1 is supported, 1 is supported in part of its comparisons, 2 are "
-        "contradicted, 1 shows no "
-        "effect and 1 is untestable.",
-        "No method that is feasible as often as the baseline, the exact shortest path with "
-        "rounded corners, gives a shorter path.",
+        "3 published numbers: 1 in agreement, 1 in disagreement, 1 inconclusive.",
+        "6 claims: 1 supported, 1 supported in part, 2 contradicted, 1 without effect, "
+        "1 untestable.",
+        "Of 1 method feasible as often as the baseline, the exact shortest path with rounded "
+        "corners, none gives a shorter path.",
     ]
     assert found.table.loc["one"].to_list() == [
         *("One et al. (2000)", "1 / 1 / 0 of 2", "110 %", "1 / 1 / 1 / 0 of 3"),
@@ -83,7 +82,7 @@ def test_a_shorter_path_of_a_method_as_reliable_as_the_baseline_is_said():
         measured(("one", 1.0, 1.0, 0.9, 1.0), ("one", 1.0, 1.0, 1.2, 1.0))
     ).endswith("1 gives a shorter path.")
     assert headline.beside_baseline(measured(("one", 0.5, 1.0, 0.9, 1.0))).startswith(
-        "No method is feasible as often as the baseline"
+        "Of 0 methods feasible as often as the baseline"
     )
     assert headline.beside_baseline(measured()) == ""
 
@@ -109,6 +108,6 @@ def test_markdown_leaves_out_what_no_study_has():
         )
     )
     assert text.startswith(
-        "**Of 1 published number, 1 agrees. Of 1 claim, 1 is supported.**\n\n| study | paper |"
+        "**1 published number: 1 in agreement. 1 claim: 1 supported.**\n\n| study | paper |"
     )
     assert "baseline)" not in text.splitlines()[2]

@@ -27,7 +27,7 @@ def test_the_last_line_names_the_page_after_what_came_out(tmp_path, monkeypatch)
     PAGE.with_name("summary.md").write_text(SUMMARY)
     assert plugin.last_lines({PAGE}, 1)[2:] == [
         "Of 3 published numbers, 1 agrees.",
-        "Of 2 claims, 2 are supported.",
+        "2 claims: 2 supported.",
         page,
     ]
 

@@ -22,7 +22,7 @@ from bezierplan.analysis import identified, possible
 from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked
 from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.metrics import METRICS, Metric
-from bezierplan.analysis.results import published_table
+from bezierplan.analysis.results import groups, published_table
 from bezierplan.analysis.table_kinds import Layout, Monotone
 from bezierplan.running import problems
 
@@ -126,7 +126,7 @@ def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, Layout]) ->
 def of_cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[dict]:
     """What the statistics of one metric in one place can be beside each other."""
     keys = _keys(table)
-    for _, rows in table.groupby([*keys, "metric"], dropna=False, sort=False):
+    for rows in groups(table, [*keys, "metric"]):
         place, metric = _place(rows.iloc[0], keys, "metric"), METRICS[rows["metric"].iloc[0]]
         texts = dict(zip(rows["statistic"], rows["printed"]))
         sizes = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
@@ -204,7 +204,7 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
     keys = _keys(table)
     ranks = table[(table["statistic"] == "mean") & (table["metric"] == "rank")]
     within = [column for column in columns if column in keys]
-    for _, group in ranks.groupby(within, sort=False) if within else [((), ranks)]:
+    for group in groups(ranks, within):
         count, texts = len(group), group["printed"].to_list()
         if count < 2:
             continue
@@ -229,7 +229,7 @@ def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
     others = [key for key in keys if key != rule.along]
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
-    for _, group in own.groupby(others, dropna=False, sort=False) if others else [((), own)]:
+    for group in groups(own, others):
         ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
             pair = [possible.printed(each["printed"]) for each in (before, row)]

@@ -141,7 +141,7 @@ def sentence(rows: pd.DataFrame) -> str:
     """What follows from the rows of one study."""
     count = len(rows)
     parts = [
-        f"{_counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs "
+        f"{counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs "
         f"(baseline: {number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} "
         "times the baseline's CPU time."
     ]
@@ -149,7 +149,7 @@ def sentence(rows: pd.DataFrame) -> str:
         cornered, less = np.isinf(rows["curvature"]).sum(), (rows["curvature"] < 1 - EQUAL).sum()
         parts.append(
             f"Feasible paths are {span(rows['length'])} times as long. Of "
-            f"{_counted(count, 'method')}, {less} {'has' if less == 1 else 'have'} a lower maximum "
+            f"{counted(count, 'method')}, {less} {'has' if less == 1 else 'have'} a lower maximum "
             f"curvature, {cornered} {'gives' if cornered == 1 else 'give'} paths with corners."
         )
     return " ".join([*parts, _verdict(rows)])
@@ -159,35 +159,22 @@ def _verdict(own: pd.DataFrame) -> str:
     """Whether a method that is feasible as often as the baseline is shorter or curves less."""
     reliable = own[own["feasible"] >= own["feasible_baseline"]]
     better = reliable[(reliable["length"] < 1 - EQUAL) | (reliable["curvature"] < 1 - EQUAL)]
-    if reliable.empty:
-        return "No method is feasible as often as the baseline."
-    if better.empty and len(reliable) == 1:
-        return (
-            "The one method that is feasible as often as the baseline is neither shorter nor less "
-            "curved."
-        )
+    found = (
+        f"Of {counted(len(reliable), 'method')} feasible as often as the baseline, "
+        f"{len(better) or 'none'} {'are' if len(better) > 1 else 'is'} shorter or less curved"
+    )
     if better.empty:
-        return (
-            f"Of the {len(reliable)} methods feasible as often as the baseline, "
-            "none is shorter or less curved."
-        )
+        return f"{found}."
     best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
-    ratios = (
-        f"has {number(best['curvature'])} times the curvature, {number(best['length'])} times the "
-        f"length and {number(best['cpu'])} times the CPU time."
-    )
-    if len(reliable) == 1:
-        return (
-            f"The one method that is feasible as often as the baseline, {best['method']}, {ratios}"
-        )
-    found = "is shorter or less curved" if len(better) == 1 else "are shorter or less curved"
     return (
-        f"Of the {len(reliable)} methods feasible as often as the baseline, {len(better)} {found}; "
-        f"the least curved, {best['method']}, {ratios}"
+        f"{found}; the least curved, {best['method']}, has {number(best['curvature'])} times the "
+        f"curvature, {number(best['length'])} times the length and {number(best['cpu'])} times the "
+        "CPU time."
     )
 
 
-def _counted(count: int, noun: str) -> str:
+def counted(count: int, noun: str) -> str:
+    """A number of things in words."""
     return f"{count} {noun}" + ("s" if count != 1 else "")
 
 

@@ -54,7 +54,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import identified, metrics, possible, statistics, tables
-from bezierplan.analysis.results import Results, published_table
+from bezierplan.analysis.results import Results, groups, published_table
 from bezierplan.analysis.table_kinds import Identify, Pivot
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Problem
@@ -77,11 +77,12 @@ is all or nothing.
 
 VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
 
-NO_END, TOO_WIDE = (
-    "interval without an end on that side",
-    "interval that contains most numbers of the competing methods",
-)
-"""Why a number in the interval is inconclusive: the test could not have failed, or has no power."""
+NO_END = "interval without an end on that side"
+TOO_WIDE = "interval that contains most numbers of the competing methods"
+OFF_OURS = f"interval that contains numbers {100 * MATTERS:g} % off ours"
+"""Why a number in the interval is inconclusive: the test could not have failed, or has no power
+against printed numbers, or against ours.
+"""
 
 UNDEFINED = "quantity that the paper does not define"
 """Why a number is inconclusive wherever it lies: if it disagrees, that refutes our definition
@@ -134,8 +135,9 @@ def compare(
     """
     key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = key_columns + [key for key in spec.key_columns if key not in key_columns]
-    beside = _beside(spec, variant_of, baselines) if "method" in keys else []
-    spec = spec.but(where=spec.where | {"method": _methods(spec) + beside}) if beside else spec
+    methods = one_or_list(spec.where.get("method", []))
+    beside = _beside(methods, variant_of, baselines) if "method" in keys else []
+    spec = spec.but(where=spec.where | {"method": methods + beside}) if beside else spec
     ours = tables.cells(results, spec, keys, beside)
     marked = published.assign(impossible=impossible_ranks(published, spec))
     both = _side_by_side(ours, marked, key_columns, variant_of)
@@ -164,7 +166,8 @@ def compare(
     )
     found = table["identified"].notna()
     table["verdict"] = table["verdict"].astype(object).mask(found, "identified")
-    undefined = _undefined(both, spec) & table["in_range"].notna()
+    vague = {entry.metric for entry in spec.values if not entry.defined}
+    undefined = both["metric"].isin(vague) & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
     table["why"] = table["why"].astype(object).mask(undefined, UNDEFINED)
     table["primary"] = _is_primary(table, spec.primary, variant_of)
@@ -200,11 +203,6 @@ def _identified(
     return None
 
 
-def _undefined(both: pd.DataFrame, spec: Pivot) -> pd.Series:
-    """Which rows (n,) hold a quantity that the paper does not define."""
-    return both["metric"].isin({entry.metric for entry in spec.values if not entry.defined})
-
-
 def impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
     """Which published numbers (n,) are mean ranks that no runs have, for those of all rows of the
     table do not add up.
@@ -212,20 +210,12 @@ def impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
     published: as from `read_published`.
     """
     impossible = np.zeros(len(published), dtype=bool)
-    decimals = next(
-        (
-            entry.decimals
-            for entry in spec.values
-            if entry.metric == "rank" and "mean" in entry.statistics
-        ),
-        None,
-    )
-    if decimals is None:
+    entry = next((e for e in spec.values if e.metric == "rank" and "mean" in e.statistics), None)
+    if entry is None:
         return impossible
-    half = Fraction(10) ** -decimals / 2
+    half = Fraction(10) ** -entry.decimals / 2
     ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
-    within = [column for column in spec.across if column in published]
-    for _, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
+    for own in groups(ranks, [column for column in spec.across if column in published]):
         printed = [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
         if len(own) > 1 and not possible.are_ranks(printed):
             impossible |= published.index.isin(own.index)
@@ -266,22 +256,12 @@ def _side_by_side(
     )
 
 
-def _methods(spec: Pivot) -> list[str]:
-    """The methods that a table selects; none if it shows all."""
-    return one_or_list(spec.where.get("method", []))
-
-
-def _beside(spec: Pivot, variant_of: dict[str, str], baselines: list[str]) -> list[str]:
-    """Methods that stand beside those that a table selects: their variants, and the baselines."""
-    methods = _methods(spec)
-    if not methods:
-        return []
-    variants = [
-        variant
-        for variant, method in variant_of.items()
-        if method in methods and variant not in methods
-    ]
-    return variants + [baseline for baseline in baselines if baseline not in methods]
+def _beside(methods: list[str], variant_of: dict[str, str], baselines: list[str]) -> list[str]:
+    """Methods that stand beside those that a table selects: their variants, and the baselines; none
+    if it shows all.
+    """
+    variants = [variant for variant, method in variant_of.items() if method in methods]
+    return [name for name in variants + baselines if methods and name not in methods]
 
 
 def _rivals(
@@ -311,24 +291,20 @@ def _described(
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
-    groups = row["groups"] or None
-    # Runs of one group are alike: the groups are the units whose mean is uncertain.
-    units = (
-        np.array([statistics.statistic(statistic, group) for group in groups])
-        if groups
-        else numbers
-    )
+    within, units, of_units = row["groups"] or None, numbers, statistic
+    if within:
+        # Runs of one group are alike: the groups are the units whose mean is uncertain.
+        units = np.array([statistics.statistic(statistic, group) for group in within])
+        of_units = "mean"
     low, high = math.nan, math.nan
     if not metrics.METRICS[row["metric"]].of_group:
-        low, high = statistics.interval(
-            "mean" if groups else statistic, units, generator(f"{row_name}/interval")
-        )
+        low, high = statistics.interval(of_units, units, generator(f"{row_name}/interval"))
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
     rng, decimals = generator(f"{row_name}/prediction"), row["decimals"]
     placed = statistics.prediction(
-        statistic, numbers, published, size, decimals, rng, single, groups
+        statistic, numbers, published, size, decimals, rng, single, within
     )
     # Seconds of another machine are shown, not judged.
     in_range = None if row["unit"] == "s" else placed.in_range
@@ -374,31 +350,15 @@ def _judged(
         return judged | {"can_fail": None}
     ends = (predicted[0] - half, predicted[1] + half)
     can_fail = not in_range or statistics.can_fail(published, ours, predicted, limits)
-    power = statistics.power(
-        rivals if len(rivals) >= LEAST_RIVALS else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends
-    )
-    why = (
-        ""
-        if not in_range
-        else NO_END
-        if not can_fail
-        else _without_power(len(rivals) >= LEAST_RIVALS)
-        if power < LEAST_POWER
-        else ""
-    )
+    enough = len(rivals) >= LEAST_RIVALS
+    others = rivals if enough else ours * np.array([1 - MATTERS, 1 + MATTERS])
+    power = statistics.power(others, ends)
+    if not in_range or (can_fail and power >= LEAST_POWER):
+        why = ""
+    else:
+        why = NO_END if not can_fail else TOO_WIDE if enough else OFF_OURS
     verdict = "disagrees" if not in_range else "inconclusive" if why else "agrees"
     return judged | {"can_fail": can_fail, "power": power, "verdict": verdict, "why": why}
-
-
-def _without_power(rivals: bool) -> str:
-    """Why an interval that excludes too few of the numbers that matter is inconclusive. rivals:
-    whether these are printed ones.
-    """
-    return (
-        TOO_WIDE
-        if rivals
-        else f"interval that contains numbers {MATTERS:.0%} off ours".replace("%", " %")
-    )
 
 
 def _limits(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:

@@ -34,23 +34,13 @@ LEGEND = (
     "the paper's included."
 )
 
-_NUMBERS = {
-    "identified": ("is identified", "are identified"),
-    "agrees": ("agrees", "agree"),
-    "disagrees": ("disagrees", "disagree"),
-    "inconclusive": ("is inconclusive", "are inconclusive"),
+_IN_WORDS = {
+    "agrees": "in agreement",
+    "disagrees": "in disagreement",
+    "partly": "supported in part",
+    "no effect": "without effect",
 }
-_CLAIMS = {
-    "supported": ("is supported", "are supported"),
-    "partly": (
-        "is supported in part of its comparisons",
-        "are supported in part of their comparisons",
-    ),
-    "contradicted": ("is contradicted", "are contradicted"),
-    "no effect": ("shows no effect", "show no effect"),
-    "undecided": ("is undecided", "are undecided"),
-    "untestable": ("is untestable", "are untestable"),
-}
+"""Verdicts that are no adjectives."""
 
 
 class Headline(NamedTuple):
@@ -91,8 +81,8 @@ def headline(
     """
     counts = outcome(numbers, claims)
     sentences = [
-        _sentence("published number", counts[list(comparison.VERDICTS)].sum(), _NUMBERS),
-        _sentence("claim", counts[list(VERDICTS)].sum(), _CLAIMS) + _by_our_criterion(claims),
+        _sentence("published number", counts[list(comparison.VERDICTS)].sum()),
+        _sentence("claim", counts[list(VERDICTS)].sum()) + _by_our_criterion(claims),
         beside_baseline(measured),
     ]
     counted = numbers[numbers["counted"].astype(bool)]
@@ -138,32 +128,26 @@ def beside_baseline(measured: pd.DataFrame) -> str:
     """Whether a method that is feasible as often as the baseline gives a shorter path; empty
     without methods.
     """
-    if measured.empty:
-        return ""
     reliable = measured[measured["feasible"] >= measured["feasible_baseline"]]
     shorter = int((reliable["length"] < 1 - baseline_comparison.EQUAL).sum())
-    if reliable.empty:
-        return f"No method is feasible as often as the baseline, {baseline_comparison.BASELINE}."
-    if not shorter:
-        return (
-            "No method that is feasible as often as the baseline, "
-            f"{baseline_comparison.BASELINE}, gives a shorter path."
-        )
-    gives = "gives" if shorter == 1 else "give"
     return (
-        f"Of {len(reliable)} methods feasible as often as the baseline, "
-        f"{baseline_comparison.BASELINE}, {shorter} {gives} a shorter path."
+        ""
+        if measured.empty
+        else (
+            f"Of {baseline_comparison.counted(len(reliable), 'method')} feasible as often as the "
+            f"baseline, {baseline_comparison.BASELINE}, {shorter or 'none'} "
+            f"{'give' if shorter > 1 else 'gives'} a shorter path."
+        )
     )
 
 
-def _sentence(noun: str, counts: pd.Series, words: dict[str, tuple[str, str]]) -> str:
+def _sentence(noun: str, counts: pd.Series) -> str:
     """How many things have each verdict, in words; empty without things."""
     total = int(counts.sum())
-    parts = [f"{count} {words[verdict][count != 1]}" for verdict, count in counts.items() if count]
-    if not parts:
-        return ""
-    said = parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
-    return f"Of {total} {noun}{'' if total == 1 else 's'}, {said}."
+    parts = [
+        f"{count} {_IN_WORDS.get(verdict, verdict)}" for verdict, count in counts.items() if count
+    ]
+    return f"{baseline_comparison.counted(total, noun)}: {', '.join(parts)}." if total else ""
 
 
 def _by_our_criterion(claims: pd.DataFrame) -> str:
@@ -174,12 +158,8 @@ def _by_our_criterion(claims: pd.DataFrame) -> str:
         claims["primary"] & ~claims["finding"].astype(bool) & claims["own_criterion"].astype(bool)
     ]
     count = int(deciding["verdict"].isin(["contradicted", "no effect"]).sum())
-    return (
-        f" {count} {'claim fails' if count == 1 else 'claims fail'} only by our own criterion, "
-        "because the paper gives no number."
-        if count
-        else ""
-    )
+    fails = f"{baseline_comparison.counted(count, 'claim')} {'fails' if count == 1 else 'fail'}"
+    return f" {fails} only by our own criterion, because the paper gives no number." * bool(count)
 
 
 def _fewer(row: pd.Series) -> list[int]:
@@ -208,13 +188,10 @@ def _measured(rows: pd.DataFrame) -> dict[str, str]:
     """
     if rows.empty:
         return dict.fromkeys(("feasible", "length", "cpu"), "")
-    feasible, baseline = (
-        baseline_comparison.span(100 * rows["feasible"], 2),
-        baseline_comparison.span(100 * rows["feasible_baseline"], 3),
-    )
-    length = baseline_comparison.span(rows["length"], 3) if rows["length"].notna().any() else ""
+    span = baseline_comparison.span
+    feasible, baseline = span(100 * rows["feasible"], 2), span(100 * rows["feasible_baseline"], 3)
     return {
         "feasible": f"{feasible} % ({baseline} %)",
-        "length": length,
-        "cpu": baseline_comparison.span(rows["cpu"], 2),
+        "length": span(rows["length"], 3) if rows["length"].notna().any() else "",
+        "cpu": span(rows["cpu"], 2),
     }

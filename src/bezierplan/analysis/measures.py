@@ -11,7 +11,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -399,24 +399,33 @@ def spare_corners(path: Path, grid: Grid) -> float:
     places, headings = path.points[1:][moved], _headings(steps[moved])
     turns = np.concatenate([path.points[:1], places[:-1][headings > CORNER], places[-1:]])
     legs = shapely.linestrings(np.stack([turns[:-2], turns[2:]], axis=1))
-    inside = _inside(grid.occupied.shape, grid.occupied.tobytes(), grid.cell, grid.origin)
+    inside = _inside(*_hashable(grid))
     return float((~shapely.intersects(inside, legs)).sum())
 
 
+def _hashable(grid: Grid) -> tuple[bytes, int, float, tuple[float, float]]:
+    """What a grid is made from (`_grid`)."""
+    return grid.occupied.tobytes(), grid.occupied.shape[1], grid.cell, grid.origin
+
+
+def _grid(occupied: bytes, columns: int, cell: float, origin: tuple[float, float]) -> Grid:
+    return Grid(np.frombuffer(occupied, dtype=bool).reshape(-1, columns), cell, "", origin)
+
+
 @lru_cache(maxsize=8)
-def _inside(
-    shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]
-) -> Geometry:
+def _inside(*made_from: Any) -> Geometry:
     """What a path must not enter: the occupied cells of a grid, a billionth of a cell smaller,
     since a path may touch them.
     """
     import shapely
 
-    rows, columns = np.nonzero(np.frombuffer(occupied, dtype=bool).reshape(shape))
-    x, y = origin[0] + cell * columns, origin[1] + cell * rows
-    whole = shapely.union_all(shapely.box(x, y, x + cell, y + cell)).buffer(-1e-9 * cell)
-    shapely.prepare(whole)
-    return whole
+    grid = _grid(*made_from)
+    rows, columns = np.nonzero(grid.occupied)
+    x, y = grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows
+    whole = shapely.union_all(shapely.box(x, y, x + grid.cell, y + grid.cell))
+    inner = whole.buffer(-1e-9 * grid.cell)
+    shapely.prepare(inner)
+    return inner
 
 
 @of_path("-", "length / length of the control polygon")
@@ -438,18 +447,13 @@ def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list
     """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are
     none.
     """
-    grids = {name: problems[name].workspace for name in runs["problem"].unique()}
-    measures = {
-        name: _clearance_in(g.occupied.shape, g.occupied.tobytes(), g.cell, g.origin)
-        for name, g in grids.items()
-    }
+    names = runs["problem"].unique()
+    measures = {name: _clearance_in(*_hashable(problems[name].workspace)) for name in names}
     return of_paths(runs["problem"].map(measures), runs)
 
 
 @cache
-def _clearance_in(
-    shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]
-) -> Callable[[Path], float]:
+def _clearance_in(*made_from: Any) -> Callable[[Path], float]:
     """The smallest distance of a free path to the occupied cells of a grid, as a measure of the
     path.
 
@@ -459,12 +463,12 @@ def _clearance_in(
     from bezierplan.geometry import checker, curves
     from bezierplan.geometry.region import region
 
-    grid = Grid(np.frombuffer(occupied, dtype=bool).reshape(shape), cell, "", origin)
-    margin = sum(shape)
-    wide = region(Grid(np.pad(grid.occupied, margin), cell, ""))
+    grid = _grid(*made_from)
+    margin = sum(grid.occupied.shape)
+    wide = region(Grid(np.pad(grid.occupied, margin), grid.cell, ""))
 
     def clearance(path: Path) -> float:
-        moved = path._replace(points=(grid.in_cells(path.points) + margin) * cell)
+        moved = path._replace(points=(grid.in_cells(path.points) + margin) * grid.cell)
         return (
             checker.check(curves.bezier_pieces(moved), wide).clearance
             if grid.occupied.any()
@@ -536,6 +540,14 @@ def fine_bad(path: Path, grid: Grid) -> int:
     return _in_occupied_cells(_samples(path, FINE_SAMPLES), grid)
 
 
+def _free_cells(path: Path, grid: Grid) -> int | None:
+    """Number of cells that a path touches; None if one of them is occupied."""
+    from bezierplan.geometry import cell_length
+
+    columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
+    return None if cell_length.occupied_cells(columns, rows, grid.occupied) else len(columns)
+
+
 def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
     """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies
     below its problem's bound.
@@ -545,15 +557,12 @@ def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem])
     """
     from bezierplan.geometry import cell_length
 
-    def measure(path: Path, grid: Grid) -> float:
-        touched = cell_length.touched_cells(*cell_length.samples(path, grid))
-        return (
-            np.nan
-            if cell_length.occupied_cells(*touched, grid.occupied)
-            else getattr(cell_length, name)(path, grid)
-        )
-
-    lengths = on_maps(measure, runs, problems)
+    count = getattr(cell_length, name)
+    lengths = on_maps(
+        lambda path, grid: np.nan if _free_cells(path, grid) is None else count(path, grid),
+        runs,
+        problems,
+    )
     for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
         if length < bound * (1 - 1e-12):
             raise ValueError(
@@ -572,12 +581,8 @@ def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem])
 )
 def cells(path: Path, grid: Grid) -> float:
     """Number of cells that a path touches; NaN for one that touches an occupied cell."""
-    from bezierplan.geometry import cell_length
-
-    columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
-    return (
-        np.nan if cell_length.occupied_cells(columns, rows, grid.occupied) else float(len(columns))
-    )
+    free = _free_cells(path, grid)
+    return np.nan if free is None else float(free)
 
 
 @of_path("u", "length of the control polygon", least="bound")
@@ -596,15 +601,12 @@ def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Ser
     """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied
     cell.
     """
-    from bezierplan.geometry import cell_length
     from bezierplan.workspaces.problem import Path
 
     blocked = {}
     for name in runs["problem"].unique():
-        grid = problems[name].workspace
         line = Path("polyline", np.array([problems[name].start, problems[name].target]))
-        cells = cell_length.touched_cells(*cell_length.samples(line, grid))
-        blocked[name] = cell_length.occupied_cells(*cells, grid.occupied) > 0
+        blocked[name] = _free_cells(line, problems[name].workspace) is None
     return runs["problem"].map(blocked)
 
 

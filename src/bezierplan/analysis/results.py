@@ -1,18 +1,17 @@
 """The results of one experiment, read back for tables and figures."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import PurePath
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-import pyarrow as pa
 
 from bezierplan.running import answer, worlds
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
 from bezierplan.running.chunk import Chunk
-from bezierplan.running.columns import TABLES, Table
+from bezierplan.running.columns import TABLES
 from bezierplan.running.inputs import Files
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
@@ -47,15 +46,10 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
     """
     table = pd.concat(_chunks(files.runs, experiment), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
-    bound_table = _read(files.bounds)
-    bounded = bound_table.to_pandas()
-    for file, known in (
-        (files.problems, _read(files.problems).to_pandas()),
-        (files.bounds, bounded),
-    ):
-        if "problem" not in known or not set(table["problem"]) <= set(known["problem"]):
+    known, bounded = row_files.read(files.problems).to_pandas(), _read(files.bounds, "bounds")
+    for file, rows in ((files.problems, known), (files.bounds, bounded)):
+        if "problem" not in rows or not set(table["problem"]) <= set(rows["problem"]):
             raise row_files.misplaced(file, "not of the problems that the runs are of")
-    _refuse_unlike(files.bounds, bound_table, TABLES["bounds"], "least_arrival")
     results = joined(table, problem_files.read(files.problems), bounded)
     return results._replace(worlds=worlds.read(files.problems))
 
@@ -66,43 +60,35 @@ def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.Data
     """
     seen: set[str] = set()
     for method, file in ((method, chunk) for method, chunks in files.items() for chunk in chunks):
-        table = _read(file, row_files.edited)
-        rows = table.to_pandas()
-        for column, wanted in (("experiment", experiment), ("method", method)):
-            others = set(rows[column]) - {wanted} if column in rows else {"no runs"}
-            if others:
-                raise row_files.misplaced(
-                    file, f"of {column} {min(map(str, others))}, not {wanted}"
-                )
+        rows = _read(file, "runs")
+        for column, own in (("experiment", experiment), ("method", method)):
+            if others := set(rows[column]) - {own}:
+                raise row_files.misplaced(file, f"of {column} {min(others)}, not {own}")
         if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
             raise row_files.misplaced(file, "the runs of another chunk")
-        _refuse_unlike(file, table, TABLES["runs"], "arrival")
         seen.update(rows["id"])
         beside = str(PurePath(file).with_suffix(".times.parquet"))
-        timed = _read(beside)
-        times = timed.to_pandas()
-        if "id" not in times or sorted(times["id"]) != sorted(rows["id"]):
+        times = _read(beside, "times")
+        if sorted(times["id"]) != sorted(rows["id"]):
             raise row_files.misplaced(beside, f"not the times of {PurePath(file).name}")
-        _refuse_unlike(beside, timed, TABLES["times"], "replan_mean_s")
         yield rows.merge(times, on="id", validate="one_to_one")
 
 
-def _refuse_unlike(file: str, table: pa.Table, declared: Table, driven: str) -> None:
-    """Raise ValueError, naming the file, if it lacks a declared column or has it in another type.
-    driven: the column by which drives are known.
+_DRIVEN = {"runs": "arrival", "times": "replan_mean_s", "bounds": "least_arrival"}
+"""Kind of file -> the column by which drives are recognised."""
+
+
+def _read(file: str, kind: str) -> pd.DataFrame:
+    """The rows of a file. Raises ValueError, naming the file, if its runs were edited, or if it
+    lacks a declared column or has it in another type.
     """
-    if fault := row_files.fault(
-        table.schema, *declared.every, *([declared.drives] if driven in table.column_names else [])
-    ):
-        raise row_files.misplaced(file, fault)
-
-
-def _read(file: str, edited: Callable[[pa.Table], bool] = lambda table: False) -> pa.Table:
-    """`rows.read`, which also refuses a table that was edited."""
-    table = row_files.read(file)
-    if edited(table):
+    table, declared = row_files.read(file), TABLES[kind]
+    if kind == "runs" and row_files.edited(table):
         raise row_files.misplaced(file, "its rows are not those that were written")
-    return table
+    drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
+    if fault := row_files.fault(table.schema, *declared.every, *drives):
+        raise row_files.misplaced(file, fault)
+    return table.to_pandas()
 
 
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
@@ -168,6 +154,15 @@ def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
     """The runs whose columns equal the given values, or one of the values in a list."""
     chosen = [runs[column].isin(one_or_list(wanted)) for column, wanted in where.items()]
     return runs[np.logical_and.reduce(chosen)] if chosen else runs
+
+
+def groups(table: pd.DataFrame, columns: list[str]) -> list[pd.DataFrame]:
+    """The rows of a table with equal values in some columns, in their order; all of them without
+    columns.
+    """
+    if not columns:
+        return [table]
+    return [rows for _, rows in table.groupby(columns, dropna=False, sort=False)]
 
 
 def pick(runs: pd.DataFrame, which: dict) -> pd.Series | None:

@@ -38,10 +38,11 @@ def compared(kept: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
         for frame in (kept, again)
     )
     both = kept.merge(again, on=names, suffixes=("_kept", "_own"))
-    values, widths, sizes = (
+    values, sizes, low, high = (
         [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")]
-        for name in ("value_ours", "width", "n_ours")
+        for name in ("value_ours", "n_ours", "low95_ours", "high95_ours")
     )
+    widths = [upper - lower for lower, upper in zip(low, high)]
     found = both[names].assign(
         value_kept=values[0], value_own=values[1], p=p_values(values, widths, sizes)
     )
@@ -54,11 +55,6 @@ def _plain(values: pd.Series) -> pd.Series:
     """
     numbers = pd.to_numeric(values, errors="coerce")
     return values.astype(str).where(numbers.isna(), numbers.map("{:.12g}".format))
-
-
-def with_width(comparison: pd.DataFrame) -> pd.DataFrame:
-    """A comparison with the width of the interval of each number."""
-    return comparison.assign(width=comparison["high95_ours"] - comparison["low95_ours"])
 
 
 def p_values(

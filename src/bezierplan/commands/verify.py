@@ -73,13 +73,13 @@ def against_outcome(folder: Path) -> tuple[list[str], bool]:
     """What is to be said of numbers beside those of docs/outcome, and whether they are sound.
     Raises FileNotFoundError for a table that is not there.
     """
-    outcome = verification.with_width(pd.read_csv(OUTCOME))
+    outcome = pd.read_csv(OUTCOME)
     pairs = []
     for (study, table), rows in outcome.groupby(["study", "table"], sort=False):
         file = folder / study / "tables" / f"{table}.comparison.csv"
         if not file.is_file():
             raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
-        own = verification.with_width(pd.read_csv(file))
+        own = pd.read_csv(file)
         pair = verification.compared(rows, own)
         names = pair[list(own.columns[: own.columns.get_loc("statistic") + 1])]
         pair["number"] = [f"{study}/{table}/{'/'.join(map(str, name))}" for name in names.values]
