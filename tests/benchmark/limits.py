@@ -3,66 +3,52 @@ Each line shows the limit beside it.
 """
 
 import math
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Callable, Iterator
+from functools import partial
 
+import frame
 import numpy as np
-from timing import cpu_seconds
 
-from bezierplan.figures.panels import workspace as panel
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
-from bezierplan.planners import modified_genetic, rounded_shortest_path
+from bezierplan.planners import planner_module
 from bezierplan.running import problems
-from bezierplan.study import jobs, reading
+from bezierplan.study import jobs
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem
 
-RUNS = 5
+COLUMNS = ("limits", "CPU s", "at most", "")
 
 
-class Timed(NamedTuple):
-    """What was timed, its CPU seconds, and how many it may take."""
-
-    name: str
-    seconds: float
-    limit: float
+def rows(small: bool) -> Iterator[frame.Row]:
+    """CPU seconds beside the limit."""
+    for name, seconds, limit in (*_on_the_maps(small), *_large(small)):
+        yield name, seconds, limit, "" if seconds <= limit else "too slow"
 
 
-def _on_the_maps() -> Iterator[Timed]:
-    """The mean run of MGA-C, the exact shortest path, and what its rounding adds, each on the map
-    where it takes longest.
+def _on_the_maps(small: bool) -> Iterator[tuple[str, float, float]]:
+    """MGA-C, the exact shortest path, and that path with its corners rounded, each on the map where
+    it takes longest.
     """
-    study = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
-    made = problems.build_all(jobs.problems_job(study, "maps", "smoke"), study.folder)
-    maps = list(made.values())
+    study = frame.study("elhoseny2017")
+    maps = problems.build_all(jobs.problems_job(study, "maps", "smoke"), study.folder)
+    works: dict[str, tuple[Callable[[Problem], object], float]] = {
+        "exact shortest path": (shortest_paths.shortest_path, 0.02),
+        "rounding, with the exact path": (_run(study, "rounded"), 0.025),
+        "MGA-C": (_run(study, "mga_c"), 1.5),
+    }
+    for name, (work, limit) in works.items():
+        seconds, hardest = max(
+            (frame.cpu_seconds(partial(work, problem), 1 if small else frame.ROUNDS), problem.name)
+            for problem in list(maps.values())[: 1 if small else None]
+        )
+        yield f"{name}, {hardest}", seconds, limit
 
-    def genetic(problem: Problem) -> float:
-        settings = study.resolved("mga_c")
 
-        def runs() -> None:
-            for seed in range(RUNS):
-                modified_genetic.plan(problem, np.random.default_rng(seed), **settings)
-
-        return cpu_seconds(runs, 1) / RUNS
-
-    def exact(problem: Problem) -> float:
-        return cpu_seconds(lambda: shortest_paths.shortest_path(problem))
-
-    def rounding(problem: Problem) -> float:
-        settings = study.resolved("rounded")
-        return cpu_seconds(
-            lambda: rounded_shortest_path.plan(problem, np.random.default_rng(0), **settings)
-        ) - exact(problem)
-
-    for name, work, limit in (
-        ("MGA-C", genetic, 1.5),
-        ("exact shortest path", exact, 0.02),
-        ("rounding", rounding, 0.005),
-    ):
-        seconds, hardest = max((work(problem), problem.name) for problem in maps)
-        yield Timed(f"{name}, {hardest}", seconds, limit)
+def _run(study: frame.Study, method: str) -> Callable[[Problem], object]:
+    plan, settings = planner_module(study.planner(method)).plan, study.resolved(method)
+    return lambda problem: plan(problem, np.random.default_rng(0), **settings)
 
 
 def random_cells(side: int, largest: int, seed: int = 2) -> Grid:
@@ -78,57 +64,31 @@ def random_cells(side: int, largest: int, seed: int = 2) -> Grid:
     return Grid(occupied, 1.0, "cell")
 
 
-def star(corners: int) -> Problem:
+def corner_to_corner(grid: Grid) -> Problem:
+    side = len(grid.occupied)
+    return Problem("", grid, (0.5, 0.5), (side - 0.5, side - 0.5))
+
+
+def _star(corners: int) -> Problem:
     """A way around a star with that many corners."""
     angles = np.arange(corners) * math.tau / corners
-    ring = 5 + np.where(np.arange(corners) % 2, 4.0, 3.0)[:, None] * np.column_stack(
-        [np.cos(angles), np.sin(angles)]
-    )
+    reach = 3.0 + np.arange(corners) % 2
+    ring = 5 + reach[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
     return Problem("", Polygons((0.0, 10.0, 0.0, 10.0), ((ring,),), "m"), (0.1, 5.0), (9.9, 5.1))
 
 
-def draw(grid: Grid) -> None:
-    """What is drawn of a grid, as a picture in memory."""
-    import io
-
-    from matplotlib.figure import Figure
-
-    figure = Figure()
-    panel.shade(figure.add_subplot(), panel.data(grid))
-    figure.savefig(io.BytesIO(), format="svg")
-
-
-def _large() -> Iterator[Timed]:
-    """Exact bounds, a picture and a check of inputs that are as large as they may be."""
+def _large(small: bool) -> Iterator[tuple[str, float, float]]:
+    """Exact bounds and a check of inputs that are as large as they may be."""
+    part = 10 if small else 1
     for side, largest, limit in ((128, 1, 5.0), (1000, 1, 10.0), (1000, 3, 10.0), (1000, 30, 10.0)):
-        problem = Problem("", random_cells(side, largest), (0.5, 0.5), (side - 0.5, side - 0.5))
-        yield Timed(
-            f"{side} x {side} cells, blocks up to {largest}",
-            cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1),  # noqa: B023
-            limit,
-        )
-    problem = star(5000)
-    yield Timed(
-        "polygon with 5,000 corners",
-        cpu_seconds(lambda: shortest_paths.shortest_path(problem), 1),
-        5.0,
-    )
-    grid = random_cells(2000, 30)
-    yield Timed("picture of 2000 x 2000 cells", cpu_seconds(lambda: draw(grid), 1), 5.0)
+        problem = corner_to_corner(random_cells(side // part, largest))
+        seconds = frame.cpu_seconds(partial(shortest_paths.shortest_path, problem), 1)
+        yield f"{side // part} x {side // part} cells, blocks up to {largest}", seconds, limit
+    problem = _star(5000 // part)
+    seconds = frame.cpu_seconds(partial(shortest_paths.shortest_path, problem), 1)
+    yield f"polygon with {5000 // part:,} corners", seconds, 5.0
     share = np.linspace(0, 1, 61)
-    pieces = curves.bezier_pieces(
-        Path("bezier", np.column_stack([1 + 8 * share, 9.5 + 0.3 * np.sin(60 * share)]))
-    )
-    blocked = region(problem.workspace)
-    yield Timed(
-        "check of a curve of degree 60", cpu_seconds(lambda: checker.check(pieces, blocked)), 5.0
-    )
-
-
-def benchmark_limits() -> None:
-    """CPU time beside its limit."""
-    print(f"\n{'limits':44}{'CPU s':>12}{'at most':>12}")
-    for part in (_on_the_maps, _large):
-        for timed in part():
-            late = "" if timed.seconds <= timed.limit else "   too slow"
-            print(f"  {timed.name:42}{timed.seconds:12.4f}{timed.limit:12.3f}{late}", flush=True)
+    wave = np.column_stack([1 + 8 * share, 9.5 + 0.3 * np.sin(60 * share)])
+    pieces, blocked = curves.bezier_pieces(Path("bezier", wave)), region(problem.workspace)
+    seconds = frame.cpu_seconds(partial(checker.check, pieces, blocked), 1)
+    yield "check of a curve of degree 60", seconds, 5.0
