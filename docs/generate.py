@@ -162,7 +162,7 @@ def call(name: str, users: dict[str, list[str]], studies: dict) -> str:
     return (
         f"```python\nimport bezierplan as bp\n\nanswer = bp.plan(problem, {method!r}, "
         "seed=1)\n```\n\n"
-        f"```sh\nbezierplan plan map.yaml --start 1,1 --target 9,9 --like {method}\n```\n"
+        f"```sh\nbezierplan plan map.yaml --start 1,1 --target 9,9 --method {method}\n```\n"
     )
 
 

@@ -1,6 +1,5 @@
 """The outcome that the repository keeps, and the summary that it is made from."""
 
-from argparse import ArgumentParser
 from pathlib import Path
 
 import pandas as pd
@@ -148,7 +147,7 @@ def test_missing_results_are_told_in_one_line(tmp_path, monkeypatch):
     with pytest.raises(
         Fault, match=r"extended/claims.csv: not there yet; `make outcome` makes it$"
     ):
-        outcome.main(ArgumentParser(), [])
+        outcome.main()
 
 
 def test_text_without_the_part_is_told():

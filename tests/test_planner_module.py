@@ -114,7 +114,7 @@ COMMANDS = {
         "0.5,0.5",
         "--target",
         "1.5,0.5",
-        "--planner",
+        "--method",
         "ends.py",
         "--settings",
         "{tries: 1}",
@@ -246,7 +246,7 @@ def test_a_planner_may_use_libraries_each_time(library, tmp_path):
     """In one process after the other, since numba keeps a kernel for the next."""
     (tmp_path / "room.txt").write_text("..\n")
     (tmp_path / "uses.py").write_text(LIBRARIES[library] + USING)
-    words = [sys.executable, "-m", "bezierplan", *COMMANDS["plan"][:-4], "--planner", "uses.py"]
+    words = [sys.executable, "-m", "bezierplan", *COMMANDS["plan"][:-4], "--method", "uses.py"]
     for _ in range(2):
         done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (0, "")
@@ -315,7 +315,7 @@ def test_a_signal_ends_a_command_and_its_planner(number, send, tmp_path):
     """Sent to the command alone, as schedulers do, or to all of its processes, as terminals do."""
     (tmp_path / "room.txt").write_text("..\n")
     (tmp_path / "slow.py").write_text(SLOW)
-    words = [sys.executable, "-m", "bezierplan", *COMMANDS["plan"][:-4], "--planner", "slow.py"]
+    words = [sys.executable, "-m", "bezierplan", *COMMANDS["plan"][:-4], "--method", "slow.py"]
     command = subprocess.Popen(
         words, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True
     )

@@ -298,11 +298,11 @@ REFUSED = {
         "turning_radius: 1e+300; expected a number from 0 to 100000",
     ),
     "strict planner": (
-        (*WALL, "--planner", "prm", "--strict"),
+        (*WALL, "--method", "prm", "--strict"),
         "--strict: only for rounded_shortest_path",
     ),
     "via planner": (
-        (*WALL, "--planner", "prm", "--via", "1,1.8"),
+        (*WALL, "--method", "prm", "--via", "1,1.8"),
         "--via: only for rounded_shortest_path and shortest_path",
     ),
     "via in an obstacle": (

@@ -2,100 +2,58 @@
 function `main`.
 """
 
-import argparse
+import ast
 import importlib
 import os
+import re
 import signal
 import sys
 from functools import partial
 from pathlib import Path
-from typing import NoReturn
 
 import bezierplan
-from bezierplan.places import EXTRA
+from bezierplan.commands import arguments
+from bezierplan.places import EXTRA, PACKAGE
 from bezierplan.running import watchdog
 from bezierplan.schema import words
+from bezierplan.schema.checked import Fault, closest
 
 PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m bezierplan"
 """How the command was called."""
 
 COMMANDS = {
-    "list": "list studies: their tables, figures, methods, workspaces, experiments and claims",
-    "replay": "rerun one run, bit-identical, and plot it",
-    "digest": "print a checksum of each run table; the order of rows does not matter, and timings "
-    "are left out",
-    "verify": "check every stored path and bound of a scale's results again, in fresh processes, "
-    "or its numbers with docs/outcome",
-    "check-planner": "run the contract tests of a planner on small and degenerate problems",
-    "plan": "plan one path on a map and check it by exact geometry",
-    "new": "make a study of your own, which runs at once",
-    "run": "run targets of the workflow, from any folder",
-    "outcome": "copy the outcome of results/extended and "
-    "results/full to docs/outcome and into the README",
+    file.stem.replace("_", "-"): file
+    for file in sorted((PACKAGE / "commands").glob("*.py"))
+    if file.stem not in ("__init__", "arguments")
 }
-
-EXAMPLES = {
-    "list": ("list", "list methods song2016", "list --settings --studies tharwat2018"),
-    "replay": (
-        "replay song2016/routes/15_240/smooth/3",
-        "replay elhoseny2017/moving/moving_slow_0_10/mga_replans/0",
-    ),
-    "digest": ("digest results/full",),
-    "verify": ("verify results/full --cores 2", "verify results/full --outcome"),
-    "check-planner": (
-        "check-planner bca --study ma2020",
-        "check-planner mystudy/walk.py --settings '{tries: 200}'",
-    ),
-    "new": ("new mystudy", "new mystudy --from map.yaml --start 1,1 --target 9,9"),
-}
-"""Examples that the help of a command shows, where the command does not write its own."""
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser that tells what is wrong in one line, without the usage."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` shows what is expected\n")
+"""The file of each command."""
 
 
 def main(words: list[str]) -> None:
     """Do what the words of a command line say; a fault ends the process with one line: of input
     with status 2, of a planner with 1.
     """
-    listed = "\n".join(f"  {name:16}{text}" for name, text in COMMANDS.items())
-    parser = _Parser(
-        prog=PROGRAM,
-        epilog=f"commands:\n{listed}",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument(
-        "command",
-        choices=COMMANDS,
-        metavar="COMMAND",
-        help="what to do; `COMMAND --help` shows its arguments",
-    )
-    parser.add_argument(
-        "--version", action="version", version=f"bezierplan {bezierplan.__version__}"
-    )
-    if not words:
-        parser.print_help()
+    name, *rest = words or ["--help"]
+    if name in ("-h", "--help"):
+        print(f"usage: {PROGRAM} COMMAND ...\n\ncommands; `COMMAND --help` shows its arguments:")
+        for command, file in COMMANDS.items():
+            text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+            sentence = re.split(r"\.\s", f"{text}\n")[0]
+            print(f"  {command:16}{' '.join(sentence.split())}")
         return
-    if words[0] not in COMMANDS and not words[0].startswith("-"):
-        from bezierplan.schema.checked import closest
-
-        parser.error(f"{words[0]!r}: unknown{closest(words[0], COMMANDS)}")
-    name = parser.parse_args(words[:1]).command
-    examples = "\n".join(f"    {PROGRAM} {example}" for example in EXAMPLES.get(name, ()))
-    command_parser = _Parser(
-        prog=f"{PROGRAM} {name}",
-        description=COMMANDS[name],
-        epilog=f"examples:\n{examples}" if examples else None,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    if name == "--version":
+        print(f"bezierplan {bezierplan.__version__}")
+        return
+    if name not in COMMANDS:
+        sys.stderr.write(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}\n")
+        sys.exit(2)
     try:
-        importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}").main(
-            command_parser, words[1:]
-        )
+        command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")
+        functions = getattr(command, "PASSES_ON", ())
+        if name == "run" and not {"-h", "--help"} & {*rest}:  # most of its words are Snakemake's
+            command.main(*rest)
+        else:
+            arguments.call(f"{PROGRAM} {name}", command.main, functions, rest)
         if sys.stdout:  # which a process without one does not have
             sys.stdout.flush()
     # The reader, such as `head`, has enough; Python flushes once more when it exits.
@@ -106,20 +64,16 @@ def main(words: list[str]) -> None:
     except ModuleNotFoundError as missing:
         if missing.name not in EXTRA:
             raise
-        print(
+        sys.stderr.write(
             f"{name}: needs {missing.name}, which is not installed; install it with: pip install "
-            "'bezierplan[workflow]'",
-            file=sys.stderr,
+            "'bezierplan[workflow]'\n"
         )
         sys.exit(2)
     except (ValueError, OSError) as fault:
-        from bezierplan.schema.checked import Fault
-
         # What the operating system says names the file last, and an error number first.
         system = isinstance(fault, OSError) and fault.filename and fault.strerror
-        print(
-            Fault(f"{fault.filename}: {fault.strerror}" if system else str(fault)), file=sys.stderr
-        )
+        text = f"{fault.filename}: {fault.strerror}" if system else str(fault)
+        sys.stderr.write(f"{Fault(text)}\n")
         sys.exit(2)
 
 

@@ -10,8 +10,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from glob import escape
-from numbers import Real
 from pathlib import Path as File
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -19,18 +17,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import bezierplan
+from bezierplan.geometry import checker, curves, path_files, samples, shortest_paths
+from bezierplan.geometry.curvature_bound import largest_curvature
+from bezierplan.places import STUDIES
+from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
+from bezierplan.running import answer as answers
+from bezierplan.running import interface, planning, problems
+from bezierplan.running.problems import Regions
+from bezierplan.running.watchdog import PlannerFailure
+from bezierplan.schema.checked import closest
+from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
+from bezierplan.workspaces.grown import grown_of, original
 from bezierplan.workspaces.polygons import Polygons as Polygons
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
+# What plots and studies need takes long to import, so functions import it.
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
-
-    from bezierplan.geometry.samples import Samples
-    from bezierplan.running.planning import Course, Task
-    from bezierplan.running.problems import Regions
 
 __all__ = bezierplan.__all__
 
@@ -38,7 +44,7 @@ Method = str | Callable[..., Any] | ModuleType
 Via = Sequence[tuple[float, float]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Judged:
     """A path and the certified checker's verdict on it.
 
@@ -72,31 +78,34 @@ class Judged:
         Whether the direction of travel jumps somewhere.
     shortest : float
         Length of the exact shortest path, through the way points; infinite if there is none.
+    shortest_points : ndarray
+        Its points, (n, 2).
     via : tuple of tuple of float
         Way points (x, y) between start and target.
     """
 
     problem: Problem = field(repr=False)
-    path: Path | None = field(repr=False)
-    length: float
-    feasible: bool
-    collision: tuple[float, float] | None
-    depth: float
-    clearance: float
-    curvature: float
-    curvature_bound: float
-    curvature_jump: float
-    corners: bool
+    path: Path | None = field(repr=False, default=None)
+    length: float = math.nan
+    feasible: bool = False
+    collision: tuple[float, float] | None = None
+    depth: float = math.nan
+    clearance: float = math.nan
+    curvature: float = math.nan
+    curvature_bound: float = math.nan
+    curvature_jump: float = math.nan
+    corners: bool = False
     shortest: float
+    shortest_points: np.ndarray = field(repr=False)
     robot_radius: float
-    via: tuple[tuple[float, float], ...]
+    via: tuple[tuple[float, float], ...] = ()
 
     @property
     def gap(self) -> float:
         """How much longer the path is than the exact shortest one, as a share of that."""
         return self.length / self.shortest - 1 if self.shortest else 0.0
 
-    def sample(self, n: int | None = None, *, step: float | None = None) -> Samples:
+    def sample(self, n: int | None = None, *, step: float | None = None) -> samples.Samples:
         """Points at equal distances along the path, with heading and curvature.
 
         Parameters
@@ -116,27 +125,22 @@ class Judged:
         ValueError
             If there is no path, or for an `n` or `step` out of range.
         """
-        from bezierplan.geometry import samples
-
-        return samples.along(self._path(), n, step)
+        if self.path is None:
+            raise ValueError("no path was found, so there is nothing to sample or to write")
+        return samples.along(self.path, n, step)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are
         returned.
         """
         from bezierplan.figures import drawn_path
-        from bezierplan.running import legs, problems
-        from bezierplan.workspaces.grown import original
 
         if axes is None:
             import matplotlib.pyplot as plt
 
             axes = plt.figure(layout="constrained").add_subplot()
-        regions = problems.remembered()
-        parts = legs.legs(self.problem, self.via, regions)
-        bound = legs.whole(legs.shortest(parts, regions(self.problem.workspace)))
-        own = self.problem._replace(workspace=original(self.problem.workspace))
-        drawn_path.draw(axes, own, self.path, bound.points, self.collision)
+        problem = self.problem._replace(workspace=original(self.problem.workspace))
+        drawn_path.draw(axes, problem, self.path, self.shortest_points, self.collision)
         return axes
 
     def to_picture(self, file: str | File) -> None:
@@ -162,38 +166,25 @@ class Judged:
         ValueError
             If there is no path.
         """
-        from bezierplan.geometry import path_files
-
         path_files.write_csv(File(file), self._spaced(step))
 
     def to_geojson(self, file: str | File, *, step: float | None = None) -> None:
         """Write the path as a GeoJSON feature of kind LineString, with the verdict among its
         properties.
         """
-        from bezierplan.geometry import path_files
-
         verdict = {"feasible": self.feasible, "length": self.length, "clearance": self.clearance}
         path_files.write_geojson(File(file), self._spaced(step), verdict)
 
     def to_ros(self, file: str | File, *, step: float | None = None, frame: str = "map") -> None:
         """Write the path as a `nav_msgs/Path` message in YAML, as `ros2 topic pub` reads it."""
-        from bezierplan.geometry import path_files
-
         path_files.write_ros(File(file), self._spaced(step), frame)
 
-    def _spaced(self, step: float | None) -> Samples:
+    def _spaced(self, step: float | None) -> samples.Samples:
         """Samples for a file. A path of no length has two, whatever their distance."""
         return self.sample(step=(self.length / 1000 or 1.0) if step is None else step)
 
-    def _path(self) -> Path:
-        if self.path is None:
-            raise ValueError(
-                "no path was found, so there is nothing to sample, to draw or to write"
-            )
-        return self.path
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Answer(Judged):
     """What a method answered to a problem, with the certified checker's verdict.
 
@@ -216,6 +207,8 @@ class Answer(Judged):
     turning_radius : float
         Radius of the tightest turn, where the planner is `rounded_shortest_path`: 0 where a corner
         is left, infinite without turns; nan of other planners.
+    cpu_s : float
+        CPU time of the planner, in seconds; nan of a run of a study.
     """
 
     method: str
@@ -226,6 +219,7 @@ class Answer(Judged):
     history: np.ndarray = field(repr=False)
     stop: str
     turning_radius: float
+    cpu_s: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -290,14 +284,11 @@ def read_map(
     ValueError
         Names file, place and what is expected.
     """
-    from bezierplan.workspaces import map_files
-
-    source = File(file)
-    pixels = {"resolution": resolution, "unknown": unknown, "most_pixels": most_pixels}
-    description = map_files.described(
-        source, cell=cell, rule=rule, unit=unit, margin=margin, **pixels, cells=cell is not None
+    options = locals()
+    source, radius = File(options.pop("file")), options.pop("robot_radius")
+    return map_files.read(
+        source, map_files.described(source, **options, cells=cell is not None), radius
     )
-    return map_files.read(source, description, robot_radius)
 
 
 def shortest_path(problem: Problem) -> Shortest:
@@ -325,14 +316,16 @@ def shortest_path(problem: Problem) -> Shortest:
     >>> round(shortest_path(Problem("disc", disc, (-2.0, 0.0), (2.0, 0.0))).length, 5)
     4.5113
     """
-    from bezierplan.geometry import shortest_paths
-    from bezierplan.running import problems
-
     _check_problem(problem)
+    return Shortest(*_bound(problem)[1])
+
+
+def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound, Regions]:
+    """A problem with its exact shortest path, and the blocked regions of maps."""
     regions = problems.remembered()
     placed = problems.placed(problem, regions)
-    bound = shortest_paths.shortest_path(placed, blocked=regions(placed.workspace))
-    return Shortest(bound.length, bound.points)
+    blocked = regions(placed.workspace)
+    return placed, shortest_paths.shortest_path(placed, blocked=blocked), regions
 
 
 def check(problem: Problem, path: Path) -> Judged:
@@ -363,69 +356,56 @@ def check(problem: Problem, path: Path) -> Judged:
     >>> judged.feasible, round(judged.length, 3), round(judged.clearance, 3)
     (True, 4.071, 0.5)
     """
-    from bezierplan.geometry import shortest_paths
-    from bezierplan.running import answer, problems
-
     _check_problem(problem)
-    _check_path(path)
-    regions = problems.remembered()
-    placed = problems.placed(problem, regions)
-    bound = shortest_paths.shortest_path(placed, blocked=regions(placed.workspace))
-    points = np.array(path.points, dtype=float)
-    judged = verdict(placed, answer.path_of(Path(path.curve, points)), bound.length, regions)
-    return Judged(**judged | {"path": path})
+    if not isinstance(path, Path):
+        raise TypeError(f"path: is a {type(path).__name__}; expected a Path")
+    if not _are_numbers(path.points, len(path.points), 2):
+        raise ValueError("path: points: expected an array of numbers, (n, 2)")
+    plain = answers.path_of(Path(path.curve, np.array(path.points, dtype=float)))
+    return Judged(**verdict(*_bound(problem), plain) | {"path": path})
 
 
 def verdict(
     problem: Problem,
-    path: Path | None,
-    shortest: float,
+    shortest: shortest_paths.Bound,
     regions: Regions,
-    via: Via = (),
+    path: Path | None,
 ) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
-    shortest: length of the exact shortest path. regions: the blocked regions of maps. Raises
-    ValueError if the path is feasible and yet closer to the map's own obstacles than the robot's
-    radius, so that the checker is wrong.
+    shortest: the exact shortest path. regions: the blocked regions of maps. Raises ValueError if
+    the path is feasible and yet closer to the map's own obstacles than the robot's radius.
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
-    from bezierplan.geometry import checker, curves
-    from bezierplan.geometry.curvature_bound import largest_curvature
-    from bezierplan.workspaces import robot
-    from bezierplan.workspaces.grown import grown_of
 
     grown = grown_of(problem.workspace)
-    asked = {
+    fields: dict[str, Any] = {
         "problem": problem,
         "robot_radius": grown.radius if grown else 0.0,
-        "via": tuple(via),
-        "shortest": shortest,
+        "shortest": shortest.length,
+        "shortest_points": shortest.points,
     }
     if path is None:
-        numbers = ("length", "depth", "clearance", "curvature", "curvature_bound", "curvature_jump")
-        nothing = {"path": None, "feasible": False, "collision": None, "corners": False}
-        return asked | nothing | dict.fromkeys(numbers, math.nan)
+        return fields
     pieces = curves.bezier_pieces(path)
     verdict = checker.check(pieces, regions(problem.workspace))
-    clearance = (
-        checker.check(pieces, regions(grown.original)).clearance if grown else verdict.clearance
-    )
-    if grown and verdict.feasible and clearance < grown.radius - robot.TOLERANCE:
+    at_home = checker.check(pieces, regions(grown.original)) if grown else verdict
+    length, jump = curves.length(path), curves.curvature_jump(path)
+    close = at_home.clearance < fields["robot_radius"] - robot.TOLERANCE
+    if verdict.feasible and close:
         raise ValueError(
-            f"its path is feasible, but {clearance:.12g} from an obstacle, less than the robot's "
-            "radius: the checker is wrong"
+            f"its path is feasible, but {at_home.clearance:.12g} from an obstacle, less than the "
+            "robot's radius: the checker is wrong"
         )
-    jump = curves.curvature_jump(path)
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
-    collision = None if verdict.feasible else curves.point_at(path, verdict.collision_at)
-    return asked | {
+    if not verdict.feasible:
+        fields["collision"] = tuple(curves.point_at(path, verdict.collision_at).tolist())
+    return fields | {
         "path": path,
-        "length": curves.length(path),
+        "length": length,
         "feasible": verdict.feasible,
-        "collision": None if collision is None else tuple(collision.tolist()),
         "depth": verdict.depth,
-        "clearance": clearance,
+        "clearance": at_home.clearance,
         "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
         "curvature_bound": largest_curvature(pieces).bound,
         "curvature_jump": jump,
@@ -493,88 +473,64 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    from bezierplan.running import legs, planning, problems
-    from bezierplan.workspaces import robot
-
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
-    if not _is_number(robot_radius):
+    if not _are_numbers(robot_radius):
         raise ValueError(f"robot_radius: {robot_radius!r}; expected a number of at least 0")
     if isinstance(via, str) or not isinstance(via, Sequence | np.ndarray):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
     for point in via:
         _check_place(point, "via")
-    via = [tuple(map(float, point)) for point in via]
-    settings = {setting: _plain(value) for setting, value in settings.items()}
-    (name, module, preset), regions = _method(method, problem), problems.remembered()
-    planner = _own_name(module)
-    legs.check_planner(planner, planner or name, via, strict)
-    chosen = preset | settings
+    places = tuple(tuple(map(float, point)) for point in via)
+    name, planner, module, preset = _planner(method, problem.workspace)
+    wishes = {"via": (places, planning.CHAINED), "strict": (strict, (planning.ROUNDED,))}
+    for wish, (value, allowed) in wishes.items():
+        if value and planner not in allowed:
+            raise ValueError(f"{wish}: only for {' and '.join(allowed)}; the planner is {name}")
+    plain = {k: v.item() if isinstance(v, np.generic) else v for k, v in settings.items()}
+    settings = preset | plain
     grown = problem._replace(workspace=robot.grow(problem.workspace, robot_radius))
+    regions = problems.remembered()
     placed = problems.placed(grown, regions, getattr(module, "workspaces", None))
-    _check_settings(name, module, chosen, placed)
-    course = planning.course(placed, via, regions)
-
-    # A user's file is executed in this process, as all that a program imports.
-    task = planning.Task(f"planner {name}", planner, module.plan, chosen, seed)
-    answer, _ = answered(task, name, course, regions)
-    if strict:
-        check_strict(answer)
-    return answer
-
-
-def answered(task: Task, method: str, course: Course, regions: Regions) -> tuple[Answer, float]:
-    """The answer to a task, by the name of a method, and the CPU seconds that the planner took.
-
-    Raises ValueError, beginning with the task's name, if the planner fails or the verdict on its
-    path is impossible.
-    """
-    from bezierplan.geometry import shortest_paths
-    from bezierplan.running import legs, planning
-    from bezierplan.running.watchdog import PlannerFailure
-
-    shortest = course.shortest
+    _check_settings(name, module, settings, placed)
+    parts = planning.legs(placed, places, regions)
+    shortest, label = planning.shortest(parts, regions(placed.workspace)), f"method: {name}"
     try:
-        plan, seconds = planning.planned(task, course)
-        judged = verdict(course.problem, plan.path, shortest.length, regions, course.via)
+        answer, cpu_s = planning.planned(
+            label, module.plan, parts, settings, seed, is_file(planner)
+        )
+        judged = verdict(placed, shortest, regions, answer.path)
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:
-        raise ValueError(f"{task.name}: {fault}") from None
-    if judged["feasible"] and judged["length"] < shortest_paths.least_length(shortest):
+        raise ValueError(f"{label}: {fault}") from None
+    if judged.get("feasible") and judged["length"] < shortest_paths.least_length(shortest):
         raise ValueError(
-            f"{task.name}: its path is {judged['length']:.12g} long and feasible, but no free path "
-            f"is shorter than {shortest.length:.12g}: the checker or the bound is wrong"
+            f"{label}: its path is {judged['length']:.12g} long and feasible, but no free path is "
+            f"shorter than {shortest.length:.12g}: the checker or the bound is wrong"
         )
-    answer = Answer(
+    radius = answer.extra["least_radius"] if planner == planning.ROUNDED else math.nan
+    if strict and not planning.keeps_radius(settings["turning_radius"], radius):
+        unit = placed.workspace.unit
+        kept = "no path was found" if answer.path is None else f"{radius:.6g} {unit} kept"
+        raise planning.TightTurn(
+            f"settings: turning_radius: {settings['turning_radius']:g} {unit} asked, {kept}; "
+            "expected one that can be kept, or not strict"
+        )
+    return Answer(
         **judged,
-        turning_radius=legs.kept(task.planner, plan),
-        method=method,
-        settings=task.settings,
-        claimed_feasible=plan.claimed_feasible,
-        objective=plan.objective,
-        evaluations=plan.evaluations,
-        history=plan.history,
-        stop=plan.stop,
+        via=places,
+        turning_radius=radius,
+        method=name,
+        settings=settings,
+        claimed_feasible=answer.claimed_feasible,
+        objective=answer.objective,
+        evaluations=answer.evaluations,
+        history=answer.history,
+        stop=answer.stop,
+        cpu_s=cpu_s,
     )
-    return answer, seconds
-
-
-def check_strict(answer: Answer) -> None:
-    """Raise ValueError, beginning with a name, for a path that does not keep its turning radius."""
-    from bezierplan.running import legs
-
-    unit = answer.problem.workspace.unit
-    legs.check_kept(answer.settings["turning_radius"], answer.turning_radius, unit)
-
-
-def _own_name(module: Any) -> str:
-    """The name of a planner of this package; empty of another one, whatever it is called."""
-    from bezierplan.planners import known_planners, planner_module
-
-    name = getattr(module, "__name__", "").rpartition(".")[2]
-    return name if name in known_planners() and module is planner_module(name) else ""
 
 
 def _check_problem(problem: Problem) -> None:
@@ -585,126 +541,96 @@ def _check_problem(problem: Problem) -> None:
         raise TypeError(
             f"problem: workspace: is a {type(problem.workspace).__name__}; expected a map"
         )
-    for end in ("start", "target"):
-        _check_place(getattr(problem, end), end)
+    _check_place(problem.start, "start")
+    _check_place(problem.target, "target")
 
 
 def _check_place(place: Any, name: str) -> None:
-    if not (
-        isinstance(place, Sequence | np.ndarray) and len(place) == 2 and all(map(_is_number, place))
-    ):
+    if not _are_numbers(place, 2):
         raise ValueError(f"{name}: {place!r}; expected x and y, two numbers")
 
 
-def _check_path(path: Any) -> None:
-    """Raise TypeError for what is no path, and ValueError for points that are none."""
-    if not isinstance(path, Path):
-        raise TypeError(f"path: is a {type(path).__name__}; expected a Path")
-    points = np.asarray(path.points)
-    if points.dtype.kind not in "fiu" or points.ndim != 2 or points.shape[1] != 2:
-        raise ValueError("path: points: expected an array of numbers, (n, 2)")
+def _are_numbers(values: Any, *shape: int) -> bool:
+    array = np.asarray(values)
+    return array.dtype.kind in "fiu" and array.shape == shape
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
-
-
-def _plain(value: Any) -> Any:
-    """A setting's value, of numpy's types as one of Python's."""
-    return value.item() if isinstance(value, np.generic) else value
-
-
-class _Function:
-    """A planner's function in the place of its module."""
-
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self.plan = function
-
-
-def _method(method: Method | None, problem: Problem) -> tuple[str, Any, dict[str, Any]]:
-    """Name, module and settings of a method."""
-    from bezierplan.planners import is_file, known_planners, planner_module
-    from bezierplan.running import interface, legs
-    from bezierplan.schema.checked import closest
-
-    if method is None:
-        method = legs.ROUNDED
-    if method == legs.ROUNDED:
-        return method, planner_module(method), legs.preset(problem.workspace)
-    if isinstance(method, ModuleType) or callable(method):
-        name = getattr(method, "__name__", "a function")
-        module = method if isinstance(method, ModuleType) else _Function(method)
-        if fault := interface.interface_fault(module):
-            raise TypeError(f"method: {name}: {fault}")
-        return name, module, {}
-    if not isinstance(method, str):
+def _planner(method: Method | None, workspace: Workspace) -> tuple[str, str, Any, dict[str, Any]]:
+    """Of a method: how messages call it, its planner as a name of this package or a file (empty for
+    others), the planner's module, and settings.
+    """
+    if method is None or method == planning.ROUNDED:
+        module = planner_module(planning.ROUNDED)
+        return planning.ROUNDED, planning.ROUNDED, module, planning.preset(workspace)
+    if isinstance(method, str):
+        planner, preset = named(method)
+        return method, planner, interface.loaded(planner, f"method: {method}"), preset
+    if not isinstance(method, ModuleType) and not callable(method):
         raise TypeError(
             f"method: is a {type(method).__name__}; "
             "expected a name, a planner's module, or its function plan"
         )
+    name = getattr(method, "__name__", "a function")
+    module = method
+    if not isinstance(method, ModuleType):
+        module = ModuleType("planner_of_a_program")
+        module.plan = method
+    if fault := interface.interface_fault(module):
+        raise TypeError(f"method: {name}: {fault}")
+    return name, "", module, {}
+
+
+def named(method: str) -> tuple[str, dict[str, Any]]:
+    """The planner of a method, as a name of this package or a file, and its settings: those of its
+    study, or of the first study that uses a planner.
+
+    method: ``STUDY/METHOD``, where STUDY is one of this project or a folder; a planner's name or
+    file. Raises ValueError.
+    """
     if is_file(method):
-        if not File(method).is_file():
-            raise ValueError(f"method: {method}: no such file")
-        module, fault = interface.imported(method)
-        if fault:
-            raise ValueError(f"method: {method}: {fault}")
-        return method, module, {}
-    if method in known_planners():
-        return method, planner_module(method), first_use(method)
-    key, _, name = method.partition("/")
-    if key not in _keys() or name not in _study(key).methods:
+        return method, {}
+    key, _, name = method.rpartition("/")
+    if key in _keys() or (key and (File(key) / "experiments.yaml").is_file()):
+        study = _study(key)
+        if name in study.methods:
+            return study.planner(name), study.resolved(name)
+    if method not in known_planners():
         raise ValueError(
             f"method: {method}: unknown{closest(method, [*methods(), *known_planners()])}"
         )
-    return method, planner_module(_study(key).planner(name)), _study(key).resolved(name)
+    for study in map(_study, _keys()):
+        for name in study.methods:
+            if study.planner(name) == method:
+                return method, study.resolved(name)
+    return method, {}
 
 
 @cache
 def _study(key: str) -> Any:
-    """A study of this project, which its tests have checked."""
-    from bezierplan.places import STUDIES
+    """A study of this project, which its tests have checked, or that of a folder."""
     from bezierplan.study import reading
 
-    return reading.read_study(STUDIES / key)
+    return reading.read_study(STUDIES / key if key in _keys() else File(key))
 
 
 def _keys() -> list[str]:
-    from bezierplan.places import STUDIES
-
     return sorted(file.parent.name for file in STUDIES.glob("*/experiments.yaml"))
-
-
-def first_use(planner: str) -> dict[str, Any]:
-    """A planner's settings in the first study of this project, by name, that uses it; none if none
-    does.
-    """
-    for study in map(_study, _keys()):
-        for name in study.methods:
-            if study.planner(name) == planner:
-                return study.resolved(name)
-    return {}
 
 
 def _check_settings(name: str, module: Any, settings: Mapping[str, Any], problem: Problem) -> None:
     """Raise ValueError unless a planner takes exactly these settings and serves this problem."""
-    from bezierplan.running import interface
-
-    interface.refuse_unknown(module, settings, name)
-    interface.check_settings(module, dict(settings), f"{name}: settings")
+    interface.refuse_unknown(module, settings, "settings")
+    interface.check_settings(module, dict(settings), "settings")
     served = getattr(module, "workspaces", None)
     kind = interface.KINDS[type(problem.workspace)]
     if served is not None and kind not in served:
-        hint = (
-            "; read the map with a cell to have a grid"
-            if "grid" in served and kind == "polygons"
-            else ""
-        )
+        cells = "grid" in served and kind == "polygons"
         raise ValueError(
-            f"problem: {name} serves workspaces of kind {', '.join(served)}, "
-            f"and this one is {kind}{hint}"
+            f"method: {name}: serves workspaces of kind {', '.join(served)}, and the map is {kind}"
+            + ("; read it with a cell to have a grid" if cells else "")
         )
     if hasattr(module, "serves"):
-        module.serves(problem)
+        interface.asked(module.serves, f"method: {name}", problem)
 
 
 def methods() -> dict[str, str]:
@@ -743,30 +669,23 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     ValueError
         If there are no such results, or they are damaged.
     """
+    from bezierplan.analysis import results as stored
     from bezierplan.running.chunk import chunk_files
-    from bezierplan.schema.checked import closest
+    from bezierplan.running.inputs import Files
 
     runs_folder = File(folder) / "runs"
-    if not runs_folder.is_dir():
-        raise ValueError(
-            f"folder: {folder}: no runs here; expected results of a study, such as "
-            "results/full/song2016"
-        )
+    known = [each.name for each in runs_folder.iterdir()] if runs_folder.is_dir() else []
     runs: dict[str, list[str]] = {}
-    for chunk in chunk_files(runs_folder, f"{escape(experiment) or '-'}/*/*.parquet"):
-        runs.setdefault(chunk.parent.name, []).append(str(chunk))
+    if experiment in known:
+        for chunk in chunk_files(runs_folder / experiment, "*/*.parquet"):
+            runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
-        known = [each.name for each in runs_folder.iterdir()]
         raise ValueError(
             f"experiment: {experiment}: no runs of it in {runs_folder}{closest(experiment, known)}"
         )
-    from bezierplan.analysis import results as stored
-    from bezierplan.running.inputs import Files
-
-    made = File(folder) / "problems" / experiment
-    return stored.read(
-        Files(runs, f"{made}.parquet", f"{made}.bounds.parquet"), 10**9, experiment
-    ).runs
+    problems = f"{File(folder) / 'problems' / experiment}"
+    files = Files(runs, f"{problems}.parquet", f"{problems}.bounds.parquet")
+    return stored.read(files, 10**9, experiment).runs
 
 
 def replay(run: str) -> Answer:
@@ -788,25 +707,20 @@ def replay(run: str) -> Answer:
         is replayed at the command line.
     """
     from bezierplan.analysis.results import path_of
-    from bezierplan.planners import planner_module, planner_settings
-    from bezierplan.running import problems
     from bezierplan.study import replays
 
     made = replays.replay(run, {key: _study(key) for key in _keys()})
-    row, study, method = made.runs.iloc[0], run.split("/")[0], run.split("/")[3]
     if made.worlds:
         raise ValueError(
             f"run: {run}: is a drive; "
             "expected a run in a world that stands still, or `bezierplan replay`"
         )
-    names = planner_settings(planner_module(row["planner"]))
-    problem = made.problems[row["problem"]]
-    judged = verdict(problem, path_of(row), shortest_path(problem).length, problems.remembered())
+    row, parts = made.runs.iloc[0], run.split("/")
     return Answer(
-        **judged,
+        **verdict(*_bound(made.problems[row["problem"]]), path_of(row)),
         turning_radius=float(row.get("least_radius", math.nan)),
-        method=f"{study}/{method}",
-        settings={name: row[name] for name in names},
+        method=f"{parts[0]}/{parts[3]}",
+        settings={name: row[name] for name in planner_settings(planner_module(row["planner"]))},
         claimed_feasible=bool(row["claimed_feasible"]),
         objective=float(row["objective"]),
         evaluations=int(row["evaluations"]),

@@ -16,7 +16,7 @@ from limits import corner_to_corner, random_cells
 from scipy.stats import linregress
 
 from bezierplan.geometry import checker, shortest_paths
-from bezierplan.geometry.region import Region, region
+from bezierplan.geometry.region import region
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.running import problems
 from bezierplan.workspaces import files

@@ -1,38 +1,31 @@
-"""The contract tests of a planner (`contract`) on the command line."""
+"""Run the contract tests of a planner on small and degenerate problems."""
 
 import sys
-from argparse import ArgumentParser
 
-from bezierplan.commands import of_study, settings_in
+from bezierplan import api
+from bezierplan.commands.arguments import Settings
 from bezierplan.running import contract
 
 
-def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print a planner's contract tests; exit with status 1 if one failed. Raises Fault."""
-    parser.add_argument(
-        "planner", help="its name, or the path of its file; with --study the name of a method"
-    )
-    source = parser.add_mutually_exclusive_group()
-    source.add_argument(
-        "--settings",
-        default="{}",
-        metavar="'{NAME: VALUE, ...}'",
-        help="a value for each of its settings, as in a study",
-    )
-    source.add_argument(
-        "--study",
-        metavar="STUDY",
-        help="a name in config/studies, or a path: planner and settings are those of its method",
-    )
-    words = parser.parse_args(words)
-    planner, settings = (
-        of_study(words.study, words.planner, f"{words.study}: methods")
-        if words.study
-        else (words.planner, settings_in(words.settings))
-    )
+def main(method: str, *, settings: Settings | None = None) -> None:
+    """Print the contract tests of a method's planner; exit with status 1 if one fails.
+
+    Parameters
+    ----------
+    method : str
+        a planner's name or file, or STUDY/METHOD, where STUDY may be a folder
+    settings : dict
+        settings in place of the method's own
+
+    Examples
+    --------
+    check-planner ma2020/bca
+    check-planner mystudy/walk.py --settings '{tries: 200}'
+    """
+    planner, preset = api.named(method)
     failed = total = 0
     for check in (contract.check_planner, contract.check_elsewhere):
-        for finding in check(planner, settings):
+        for finding in check(planner, preset | (settings or {})):
             print(finding, flush=True)
             total += 1
             failed += not finding.passed

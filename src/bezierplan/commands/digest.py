@@ -1,8 +1,9 @@
-"""Digests of run tables; tables with equal digests have the same content."""
+"""Print a checksum of each run table. Neither the order of rows nor times matter: tables with equal
+checksums have the same content.
+"""
 
 import hashlib
 import json
-from argparse import ArgumentParser
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +13,16 @@ import pyarrow.parquet as parquet
 from bezierplan.running.chunk import chunk_files
 
 
-def main(parser: ArgumentParser, words: list[str]) -> None:
+def main(folder: Path) -> None:
     """Print a hash of each run table below a folder. Raises FileNotFoundError, or ValueError for an
     unreadable file.
+
+    Parameters
+    ----------
+    folder : Path
+        a folder of results, such as results/full
     """
-    parser.add_argument("folder", type=Path, help="a folder of results, such as results/full")
-    for name, files in run_tables(parser.parse_args(words).folder).items():
+    for name, files in run_tables(folder).items():
         print(f"{table_digest(files)}  {name}", flush=True)
 
 

@@ -1,72 +1,63 @@
-"""A new study: `python -m bezierplan new FOLDER` copies one that runs at once, `--from MAP` puts a
-map of your own into it.
-"""
+"""Make a study of your own, which runs at once, perhaps on a map of your own."""
 
 import re
 import shutil
-from argparse import ArgumentParser
 from pathlib import Path
 
 import yaml
 
+from bezierplan.commands.arguments import Place
 from bezierplan.places import PACKAGE
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.workspaces import files
-from bezierplan.workspaces.map_files import described, point
+from bezierplan.workspaces.map_files import described
 
 TEMPLATE = PACKAGE / "template"
 
 
-def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Make the folder of a study. Raises Fault."""
-    parser.add_argument(
-        "folder",
-        type=Path,
-        metavar="FOLDER",
-        help="where the study will lie; its name is the study's",
-    )
-    parser.add_argument(
-        "--from",
-        type=Path,
-        dest="map",
-        metavar="MAP",
-        help="a map file of your own; needs --start and --target",
-    )
-    parser.add_argument("--start", metavar="X,Y", help="where paths begin on that map, in its unit")
-    parser.add_argument("--target", metavar="X,Y", help="where they end")
-    arguments = parser.parse_args(words)
-    reading.check_name(arguments.folder.name, str(arguments.folder))
-    if arguments.folder.exists():
-        raise Fault(f"{arguments.folder}: is there already; expected a new folder")
-    if not arguments.folder.parent.is_dir():
-        raise Fault(
-            f"{arguments.folder}: no folder {arguments.folder.parent}; expected one that exists"
-        )
-    if arguments.map is None and (arguments.start or arguments.target):
-        raise Fault("--start and --target: expected only with --from, a map of your own")
-    map_file = _own_map(arguments.map, arguments.start, arguments.target) if arguments.map else None
-    shutil.copytree(TEMPLATE, arguments.folder, ignore=shutil.ignore_patterns("__pycache__"))
-    _replace(arguments.folder / "README.md", "mystudy", arguments.folder.name)
-    if map_file:
-        _put(arguments.folder, *map_file)
-    print(f"{arguments.folder}: a study; next: bezierplan run {arguments.folder}")
+def main(
+    folder: Path,
+    *,
+    from_: Path | None = None,
+    start: Place | None = None,
+    target: Place | None = None,
+) -> None:
+    """Make the folder of a study. Raises Fault.
 
+    Parameters
+    ----------
+    folder : Path
+        where the study will lie; its name is the study's
+    from_ : Path, optional
+        a map file of your own; needs --start and --target
+    start : tuple of float, optional
+        where paths begin on that map, in its unit
+    target : tuple of float, optional
+        where they end
 
-Ends = dict[str, list[float]]
-
-
-def _own_map(file: Path, start: str | None, target: str | None) -> tuple[list[Path], dict, Ends]:
-    """The files of a map, its workspace as a study describes it, and the ends of the paths. Raises
-    ValueError for a faulty map.
+    Examples
+    --------
+    new mystudy
+    new mystudy --from map.yaml --start 1,1 --target 9,9
     """
-    ends = {"start": list(point("--start", start)), "target": list(point("--target", target))}
-    workspace = described(file, cells=True)
-    files.load(workspace, file.parent)
-    return files.sources(workspace, file.parent), workspace, ends
+    reading.check_name(folder.name, str(folder))
+    if folder.exists() or not folder.parent.is_dir():
+        raise Fault(f"{folder}: expected a new folder in one that exists")
+    if len({from_ is None, start is None, target is None}) > 1:
+        raise Fault("expected --from, --start and --target together: a map of your own")
+    if from_:
+        workspace = described(from_, cells=True)
+        files.load(workspace, from_.parent)
+    shutil.copytree(TEMPLATE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    _replace(folder / "README.md", "mystudy", folder.name)
+    if from_:
+        ends = {"start": list(start), "target": list(target)}
+        _put(folder, files.sources(workspace, from_.parent), workspace, ends)
+    print(f"{folder}: a study; next: bezierplan run {folder}")
 
 
-def _put(folder: Path, sources: list[Path], workspace: dict, ends: Ends) -> None:
+def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, list[float]]) -> None:
     """Put a map in the place of the room. The claims and the published number are about the room,
     so they go.
     """

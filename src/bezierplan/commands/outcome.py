@@ -1,11 +1,10 @@
-"""The outcome kept in the repository: docs/outcome and the README's table.
+"""Copy the outcome of results/extended and results/full to docs/outcome and into the README.
 
 Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
 samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
 """
 
 import shutil
-from argparse import ArgumentParser
 from pathlib import Path
 
 import pandas as pd
@@ -31,11 +30,10 @@ SCALES = {
 }
 
 
-def main(parser: ArgumentParser, words: list[str]) -> None:
+def main() -> None:
     """Write docs/outcome and the README's table from results/extended and results/full. Raises
     Fault if one of them is incomplete.
     """
-    parser.parse_args(words)
     try:
         write()
     except FileNotFoundError as error:

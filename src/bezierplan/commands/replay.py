@@ -1,6 +1,6 @@
 """Rerun one run from its name alone: bit-identical, with its picture."""
 
-from argparse import ArgumentParser
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,97 +8,70 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import results
-from bezierplan.commands import add_studies
 from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation, sheet
 from bezierplan.figures.panels import Sources, panel_of
-from bezierplan.geometry import checker, curves
+from bezierplan.geometry import curves
 from bezierplan.running import rides
 from bezierplan.running.chunk import chunk_files
 from bezierplan.schema.words import amount
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
-from bezierplan.study.experiments import SCALES, Experiment
 from bezierplan.study.replays import replay
-from bezierplan.workspaces.problem import Problem
+
+LENGTHS = ("length", "bound", "clearance", "collision_depth")
 
 
-def main(parser: ArgumentParser, words: list[str]) -> None:
+def main(run: str, *, studies: Sequence[str] = ()) -> None:
     """Rerun it, print the outcome and whether it equals the stored run, and save its picture below
     results/replay. Raises Fault.
+
+    Parameters
+    ----------
+    run : str
+        its name: study/experiment/condition/method/repeat
+    studies : list of str
+        a study in place of those of config/config.yaml: a name or a folder
+
+    Examples
+    --------
+    replay song2016/routes/15_240/smooth/3
+    replay elhoseny2017/moving/moving_slow_0_10/mga_replans/0
     """
-    parser.add_argument("run", help="its name: study/experiment/condition/method/repeat")
-    add_studies(parser)
-    arguments = parser.parse_args(words)
-    studies = reading.load(
-        reading.read_config({"studies": arguments.studies} if arguments.studies else {})
-    )
-    reproduced = replay(arguments.run, studies)
-    run = reproduced.runs.iloc[0]
-    for name, text in described(
-        run,
-        reproduced.problems[run["problem"]],
-        studies[run["study"]].experiments[run["experiment"]],
-    ):
+    loaded = reading.load(reading.read_config({"studies": list(studies)} if studies else {}))
+    reproduced = replay(run, loaded)
+    row = reproduced.runs.iloc[0]
+    study = loaded[row["study"]]
+    unit = reproduced.problems[row["problem"]].workspace.unit
+    for name, text in described(row, unit).items():
         print(f"{name:18}{text}")
-    for file, stored in stored_runs(arguments.run, Path("results")).items():
-        print(f"{'stored in':18}{file}: {'equal' if equal(run, stored) else 'NOT EQUAL'}")
-    picture = Path("results/replay") / f"{arguments.run}.svg"
-    draw(reproduced, studies[run["study"]], picture)
+    for file, stored in stored_runs(run, Path("results")).items():
+        print(f"{'stored in':18}{file}: {'equal' if equal(row, stored) else 'NOT EQUAL'}")
+    picture = Path("results/replay") / f"{run}.svg"
+    draw(reproduced, study, picture)
     print(f"{'picture':18}{picture}")
     if reproduced.worlds:
         animate(reproduced, picture.with_suffix(".gif"))
         print(f"{'animation':18}{picture.with_suffix('.gif')}")
 
 
-def described(run: pd.Series, problem: Problem, experiment: Experiment) -> list[tuple[str, str]]:
-    """Names and values to print of a run, with units and four digits; what a run does not have is
-    left out.
+def described(run: pd.Series, unit: str) -> dict[str, str]:
+    """What to print of a run, by name: numbers with four digits, and lengths in units; what it does
+    not have is left out.
     """
-    unit = problem.workspace.unit
-    lines = [("objective", f"{run['objective']:.4g}")] if np.isfinite(run["objective"]) else []
-    if np.isfinite(run["length"]):
-        excess = (
-            f", {100 * (run['length'] / run['bound'] - 1):.4g} % above the shortest path"
-            if 0 < run["bound"] < np.inf
-            else ""
-        )
-        lines.append(("length", amount(f"{run['length']:.4g}", unit) + excess))
-        lines.append(
-            (
-                "clearance",
-                amount(
-                    f"{0 if abs(run['clearance']) <= checker.TOLERANCE else run['clearance']:.4g}",
-                    unit,
-                ),
-            )
-        )
-    lines.append(("feasible", _verdict(run, unit)))
-    lines.append(("planner's check", "feasible" if run["claimed_feasible"] else "not feasible"))
-    lines.append(("evaluations", f"{run['evaluations']:,}; stopped by: {run['stop']}"))
-    most = max(experiment.repeats[scale] for scale in SCALES)
-    if run["repeat"] >= most:
-        lines.append(
-            (
-                "note",
-                "no table has this repeat: "
-                f"this experiment has {most} at most, from 0 to {most - 1}",
-            )
-        )
-    return lines
-
-
-def _verdict(run: pd.Series, unit: str) -> str:
-    """The certified checker's verdict on a run."""
-    if run["feasible"]:
-        return "yes"
-    if not np.isfinite(run["collision_at"]):
-        return "no: no path from start to target"
-    deep = f"at most {amount(format(run['collision_depth'], '.4g'), unit)} deep"
-    if "steps" in run:  # of a drive: when, not where
-        return f"no: first collision at step {run['collision_at']:.4g}, {deep}"
-    x, y = curves.point_at(results.path_of(run), run["collision_at"])
-    return f"no: enters an obstacle at {x:.4g},{y:.4g}, {deep}"
+    lines = {
+        name: amount(f"{run[name]:.4g}", unit) if name in LENGTHS else f"{run[name]:.4g}"
+        for name in ("objective", *LENGTHS)
+        if np.isfinite(run[name])
+    }
+    if not run["feasible"] and np.isfinite(run["collision_at"]):
+        where = f"step {run['collision_at']:.4g}"
+        if "steps" not in run:  # not of a drive
+            x, y = curves.point_at(results.path_of(run), run["collision_at"])
+            where = f"{x:.4g},{y:.4g}"
+        lines["first collision"] = f"at {where}, {lines.pop('collision_depth')} deep"
+    lines |= {name: "yes" if run[name] else "no" for name in ("feasible", "claimed_feasible")}
+    return lines | {"evaluations": f"{run['evaluations']:,}; stopped by: {run['stop']}"}
 
 
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
@@ -118,14 +91,9 @@ def draw(made: results.Results, study: Study, file: Path) -> None:
     the shortest path; of a drive, its end with the plans; svg, png and csv.
     """
     run = made.runs.iloc[0]
-    panel = {
-        "kind": "paths",
-        "experiment": run["experiment"],
-        "pick": {"repeat": int(run["repeat"])},
-    }
-    if made.worlds:
-        panel |= {"kind": "snapshot", "at": 1}
-    panels = [panel_of(panel)]
+    kind = {"kind": "snapshot", "at": 1} if made.worlds else {"kind": "paths"}
+    pick = {"repeat": int(run["repeat"])}
+    panels = [panel_of({"experiment": run["experiment"], "pick": pick} | kind)]
     unit = made.problems[run["problem"]].workspace.unit
     scene = sheet.Scene(
         {run["experiment"]: made.problems}, {}, study.labels, unit, jobs.looks(study)

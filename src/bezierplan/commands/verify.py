@@ -1,9 +1,8 @@
-"""Judge results again from their own points: `python -m bezierplan verify results/full`; with
-`--outcome`, compare their numbers with docs/outcome.
+"""Check every stored path and bound of a scale's results again, in fresh processes, or its numbers
+with docs/outcome.
 """
 
 import sys
-from argparse import ArgumentParser
 from pathlib import Path
 
 import pandas as pd
@@ -17,29 +16,30 @@ SHOWN = 10
 """Numbers of which a failure tells."""
 
 
-def main(parser: ArgumentParser, words: list[str]) -> None:
+def main(folder: Path, *, cores: int = cores(), outcome: bool = False) -> None:
     """Print a line for each stored value that differs from what is computed again, and what was
     checked.
 
     Ends with status 1 if anything differs. Raises ValueError or FileNotFoundError for a folder
     without results or a file that cannot be read.
+
+    Parameters
+    ----------
+    folder : Path
+        the folder of a scale, such as results/full
+    cores : int
+        processes (default: all cores)
+    outcome : bool
+        only compare numbers of scale full with docs/outcome: is this installation sound?
+
+    Examples
+    --------
+    verify results/full --cores 2
+    verify results/full --outcome
     """
-    parser.add_argument("folder", type=Path, help="the folder of a scale, such as results/full")
-    parser.add_argument(
-        "--cores", type=int, default=cores(), metavar="N", help="processes (default: all cores)"
-    )
-    parser.add_argument(
-        "--outcome",
-        action="store_true",
-        help="only compare numbers of scale full with docs/outcome: is this installation sound?",
-    )
-    arguments = parser.parse_args(words)
-    if arguments.cores < 1:
-        raise ValueError(f"--cores: {arguments.cores}; expected a number of at least 1")
-    if arguments.outcome:
-        lines, sound = against_outcome(arguments.folder)
-    else:
-        lines, sound = from_points(arguments.folder, arguments.cores)
+    if cores < 1:
+        raise ValueError(f"cores: {cores}; expected a number of at least 1")
+    lines, sound = against_outcome(folder) if outcome else from_points(folder, cores)
     print("\n".join(map(str, lines)))
     if not sound:
         sys.exit(1)
@@ -79,23 +79,17 @@ def against_outcome(folder: Path) -> tuple[list[str], bool]:
         file = folder / study / "tables" / f"{table}.comparison.csv"
         if not file.is_file():
             raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
-        own = pd.read_csv(file)
-        pair = verification.compared(rows, own)
-        names = pair[list(own.columns[: own.columns.get_loc("statistic") + 1])]
-        pair["number"] = [f"{study}/{table}/{'/'.join(map(str, name))}" for name in names.values]
-        pairs.append(pair[["number", "value_kept", "value_own", "p"]])
+        pair = verification.compared(rows, pd.read_csv(file))
+        pairs.append(pair.assign(table=f"{study}/{table}"))
     numbers = pd.concat(pairs, ignore_index=True)
     tested, failed = numbers[numbers["p"].notna()], verification.failed(numbers)
     equal = int((tested["value_kept"] == tested["value_own"]).sum())
     lines = [
         f"{len(tested)} numbers compared, {equal} equal, "
-        f"{len(failed)} different by more than chance",
-        *(
-            f"  {row.number}: {row.value_own:.6g} here, {row.value_kept:.6g} in docs/outcome, "
-            f"p = {row.p:.2g}"
-            for row in failed.head(SHOWN).itertuples()
-        ),
+        f"{len(failed)} different by more than chance"
     ]
+    if len(failed):
+        lines.append(failed.head(SHOWN).dropna(axis=1).to_string(index=False))
     rate = f"with a probability of at most {verification.ERROR_RATE:.0%}"
     if len(tested) and failed.empty:
         return [*lines, f"sound: a sound installation fails {rate}"], True

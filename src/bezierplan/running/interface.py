@@ -189,7 +189,7 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
     if len(missing) > MOST_EXPLAINED:
         raise Fault(
             f"{location} are missing: {', '.join(missing)}; `list --settings` explains those of "
-            "studies' planners, and --study or --like takes the settings of a study's method"
+            "studies' planners, and STUDY/METHOD has the settings of a study's method"
         )
     if missing:
         explained = [

@@ -1,102 +1,149 @@
-"""One path for a robot, through way points: what a planner answers, and how long it takes."""
+"""One path through way points: the problem of each leg, what a planner answers to it, and the path
+of all.
+"""
 
+import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from typing import Any, NamedTuple, TypeVar
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from bezierplan.geometry import shortest_paths
+from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
-from bezierplan.running import answer, apart, legs, watchdog
+from bezierplan.running import answer, apart, problems, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
 from bezierplan.running.problems import Regions
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.grown import original
+from bezierplan.workspaces.problem import Path, Problem, Workspace
 
-T = TypeVar("T")
+ROUNDED = "rounded_shortest_path"
+"""The planner without a wish, and the one with a turning radius."""
 
-# The most CPU seconds of a planner that is called a second time.
-_LONG = 2.0
+CHAINED = (ROUNDED, "shortest_path")
+"""Planners whose paths can be joined: chains of pieces."""
+
+SHARE = 0.02
+"""The turning radius without a wish, as a share of the longer side of the map itself."""
+
+# Two directions that differ by less, in radians, are no corner.
+_STRAIGHT = 1e-8
+
+# A radius that is smaller by less, as a share, is the same.
+_SAME = 1e-9
 
 
-class Task(NamedTuple):
-    """What to plan with.
+class TightTurn(ValueError):
+    """A path does not keep the turning radius that is asked for."""
 
-    name: how messages about the planner begin. planner: its name in this package, empty for
-    another one. plan: its function. settings: all of them. seed: of its random numbers. foreign:
-    whether it is executed in a process of its own. timed: whether it is called a second time if it
-    is fast, since the first call also loads compiled code.
+
+def preset(workspace: Workspace) -> dict[str, Any]:
+    """Settings of the planner with a turning radius where none are given, the same for a map that
+    has grown by a robot's radius.
     """
-
-    name: str
-    planner: str
-    plan: Callable[..., Any]
-    settings: dict[str, Any]
-    seed: int
-    foreign: bool = False
-    timed: bool = False
+    x_low, x_high, y_low, y_high = original(workspace).bounds
+    return {"turning_radius": SHARE * max(x_high - x_low, y_high - y_low), "offset": 0.0}
 
 
-class Course(NamedTuple):
-    """A problem with way points, and its legs with their exact shortest paths."""
+def legs(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions) -> list[Problem]:
+    """The problems from start to the first way point, and so on to the target.
 
-    problem: Problem
-    via: Sequence[tuple[float, float]]
-    parts: list[Problem]
-    bounds: list[shortest_paths.Bound]
-
-    @property
-    def shortest(self) -> shortest_paths.Bound:
-        """The exact shortest path through all legs."""
-        return legs.whole(self.bounds)
-
-
-def course(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions) -> Course:
-    """The course of a problem. Raises ValueError for a way point that is not free."""
-    parts = legs.legs(problem, via, regions)
-    return Course(problem, via, parts, legs.shortest(parts, regions(problem.workspace)))
-
-
-def planned(task: Task, course: Course) -> tuple[Plan, float]:
-    """A planner's answer to a course, as plain values (`answer.accepted`), and its CPU seconds.
-    Raises PlannerFailure, beginning with the task's name, for an answer that is none.
+    Raises ValueError for a way point that is not free, or equals its neighbour.
     """
-    taken = {*TAKEN, *task.settings}
-    try:
-        given, seconds = _asked(task, course.parts)
-        return legs.joined(
-            [answer.accepted(plan, part, taken) for plan, part in zip(given, course.parts)]
-        ), seconds
-    except answer.Unfit as unfit:
-        raise watchdog.PlannerFailure(f"{task.name}: its answer: {unfit}") from None
+    places = [problem.start]
+    for point in via:
+        ends = {"start": point, "target": point}
+        try:
+            places.append(problems.build("", ends, problem.workspace, regions).start)
+        except ValueError as error:
+            raise ValueError(f"via{str(error).removeprefix('start')}") from None
+    pairs = list(pairwise([*places, problem.target]))
+    for start, target in pairs if via else ():
+        if start == target:
+            raise ValueError(f"via: {target}: the same place as the one before; expected another")
+    return [problem._replace(start=start, target=target) for start, target in pairs]
 
 
-def _asked(task: Task, parts: Sequence[Problem]) -> tuple[list[Any], float]:
-    """What a planner answers to each leg, of which it gets a copy, and its CPU seconds."""
+def shortest(parts: Sequence[Problem], blocked: Region) -> shortest_paths.Bound:
+    """The exact shortest path through all legs. blocked: the region of their map."""
+    bounds = [shortest_paths.shortest_path(part, blocked=blocked) for part in parts]
+    return shortest_paths.Bound(
+        sum(bound.length for bound in bounds), np.concatenate([bound.points for bound in bounds])
+    )
+
+
+def planned(
+    name: str,
+    plan: Callable[..., Any],
+    parts: Sequence[Problem],
+    settings: dict[str, Any],
+    seed: int,
+    foreign: bool,
+) -> tuple[Plan, float]:
+    """What a planner answers to all legs, as plain values (`answer.accepted`), and its CPU seconds.
+
+    name: how messages about the planner begin. foreign: whether it is executed in a process of its
+    own. Raises PlannerFailure for an answer that is none.
+    """
     loans = [lend({part.name: part})[part.name] for part in parts]
 
-    def plan(leg: int) -> Any:
-        return task.plan(loans[leg].problem, np.random.default_rng(task.seed), **task.settings)
+    def on_leg(leg: int) -> Any:
+        return plan(loans[leg].problem, np.random.default_rng(seed), **settings)
 
     def fault() -> str:
         return next(filter(None, (loan.thorough_fault() for loan in loans)), "")
 
     with (
         watchdog.watching(None) as watch,
-        apart.asking(task.foreign, task.name, plan, fault) as ask,
+        apart.asking(foreign, name, on_leg, fault) as ask,
         # What a program plans with fails as its own code does.
-        watchdog.executing(task.name, watch) if task.foreign else nullcontext(),
+        watchdog.executing(name, watch) if foreign else nullcontext(),
     ):
-        return _timed(lambda: [ask(task.name, leg) for leg in range(len(parts))], task.timed)
-
-
-def _timed(once: Callable[[], T], again: bool) -> tuple[T, float]:
-    """What a call returns, and its CPU seconds; of a second call, if the first one is fast."""
-    for _ in range(1 + again):
         before = apart.clock()
-        found = once()
+        answers = [ask(name, leg) for leg in range(len(parts))]
         seconds = float((apart.clock() - before)[0])
-        if seconds > _LONG:
-            break
-    return found, seconds
+    taken = {*TAKEN, *settings}
+    try:
+        accepted = [answer.accepted(plan, part, taken) for plan, part in zip(answers, parts)]
+    except answer.Unfit as unfit:
+        raise watchdog.PlannerFailure(f"{name}: its answer: {unfit}") from None
+    return joined(accepted), seconds
+
+
+def joined(answers: Sequence[Plan]) -> Plan:
+    """One answer to all legs. A corner that is left at a way point counts as a turn."""
+    lost = next((answer for answer in answers if answer.path is None), None)
+    if lost or len(answers) == 1:
+        return lost or answers[0]
+    paths = [answer.path for answer in answers]
+    corners = sum(_has_corner(arriving, leaving) for arriving, leaving in pairwise(paths))
+    extra = {name: sum(answer.extra[name] for answer in answers) for name in answers[0].extra}
+    if "least_radius" in extra:
+        least = min(answer.extra["least_radius"] for answer in answers)
+        extra |= {name: extra[name] + corners for name in ("turns", "tight_turns")}
+        extra["least_radius"] = 0.0 if corners else least
+    points = [paths[0].points, *(path.points[1:] for path in paths[1:])]
+    objective = sum(answer.objective for answer in answers)
+    return answers[0]._replace(
+        path=Path(paths[0].curve, np.concatenate(points)),
+        objective=objective,
+        claimed_feasible=all(answer.claimed_feasible for answer in answers),
+        evaluations=sum(answer.evaluations for answer in answers),
+        history=np.array([objective]),
+        extra=extra,
+    )
+
+
+def _has_corner(arriving: Path, leaving: Path) -> bool:
+    """Whether the direction of travel changes between two chains."""
+    last, first = np.diff(arriving.points[-2:], axis=0)[0], np.diff(leaving.points[:2], axis=0)[0]
+    cross = last[0] * first[1] - last[1] * first[0]
+    return abs(math.atan2(cross, float(last @ first))) > _STRAIGHT
+
+
+def keeps_radius(wish: float, radius: float) -> bool:
+    """Whether a path's tightest turn, nan without a path, keeps a turning radius."""
+    return radius >= wish * (1 - _SAME)

@@ -1,0 +1,130 @@
+"""Arguments of a command from the signatures and docstrings of functions."""
+
+import inspect
+import re
+from argparse import SUPPRESS, ArgumentParser, ArgumentTypeError, RawDescriptionHelpFormatter
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NoReturn, get_args, get_origin
+
+from bezierplan.schema import checked
+
+Place = tuple[float, float]
+Settings = dict[str, Any]
+
+
+class Parser(ArgumentParser):
+    """A parser that says what is wrong in one line, without the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        """End the process with status 2."""
+        message = message.removeprefix("argument ")
+        self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` shows what is expected\n")
+
+
+def call(
+    program: str,
+    main: Callable[..., None],
+    functions: Sequence[Callable[..., Any]],
+    words: Sequence[str],
+) -> None:
+    """Call a command's function with the words of a command line, and with options that it passes
+    on to other functions; what the words leave out stays away.
+
+    Raises ValueError as these do; if its message begins with the name of an option, with dashes.
+    """
+    sections = _sections(main)
+    parser = Parser(
+        prog=program,
+        description=sections[""],
+        epilog=f"examples:\n{sections.get('Examples', 'none')}",
+        formatter_class=RawDescriptionHelpFormatter,
+        argument_default=SUPPRESS,
+    )
+    options: dict[str, str] = {}
+    for function in (main, *functions):
+        for parameter, kind, text in parameters(function):
+            rest = parameter.kind is parameter.VAR_KEYWORD
+            word = not rest and parameter.default is parameter.empty
+            # Words of a function that is passed on, and what is passed on, are no arguments.
+            skipped = rest if function is main else word
+            if parameter.name not in options and not skipped:
+                options[parameter.name] = _add(parser, parameter, word, kind, text)
+    # A word such as -2,0 is no option.
+    words = [f" {word}" if re.match(r"-[0-9.]", word) else word for word in words]
+    values = vars(parser.parse_args(words))
+    several = [word for name in [*values] if options[name] == "*" for word in values.pop(name)]
+    try:
+        main(*several, **values)
+    except ValueError as fault:
+        name, colon, rest = str(fault).partition(":")
+        if colon and options.get(name, "").startswith("--"):
+            raise type(fault)(f"{options[name]}:{rest}") from None
+        raise
+
+
+def _sections(function: Callable[..., Any]) -> dict[str, str]:
+    """The sections of a docstring by their headings, the first without one."""
+    parts = re.split(r"\n\n(\w+)\n-+\n", f"{inspect.getdoc(function)}")
+    return dict(zip(["", *parts[1::2]], parts[::2]))
+
+
+def parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Parameter, str, str]]:
+    """The parameters of a function, with the type and the text of its docstring."""
+    section = _sections(function).get("Parameters", "")
+    entries = re.findall(r"^\**(\w+)(?: : (.*))?\n((?: {4}.*\n?)+)", section, re.MULTILINE)
+    texts = {name: (kind, " ".join(words.split())) for name, kind, words in entries}
+    for name, parameter in inspect.signature(function, eval_str=True).parameters.items():
+        yield parameter, *texts.get(name, ("", ""))
+
+
+def _add(
+    parser: ArgumentParser, parameter: inspect.Parameter, word: bool, kind: str, text: str
+) -> str:
+    """Add an argument, and return its option; of a word nothing, and of several words a star."""
+    annotation = Settings if parameter.kind is parameter.VAR_KEYWORD else parameter.annotation
+    read = next(each for each in (annotation, *get_args(annotation), str) if each in READS)
+    options: dict[str, Any] = {"help": text.replace("%", "%%")}
+    if read is bool:
+        options["action"] = "store_true"
+    elif choices := re.findall(r'"(\w+)"', kind):
+        options["choices"] = choices
+    else:
+        options["type"], options["metavar"] = READS[read]
+    if word:
+        star = "*" * (parameter.kind is parameter.VAR_POSITIONAL)
+        parser.add_argument(parameter.name, **options, nargs=star or None)
+        return star
+    if get_origin(annotation) is Sequence:
+        options["action"] = "append"
+    option = f"--{parameter.name.rstrip('_').replace('_', '-')}"
+    parser.add_argument(option, dest=parameter.name, **options)
+    return option
+
+
+def _place(text: str) -> Place:
+    """x and y from words such as `2.5,10`."""
+    try:
+        x, y = map(float, text.split(","))
+    except ValueError:
+        raise ArgumentTypeError(f"{text}; expected X,Y, two numbers such as 2.5,10") from None
+    return x, y
+
+
+def _settings(text: str) -> Settings:
+    settings = checked.parse(text, "--settings")
+    if not isinstance(settings, dict):
+        raise ArgumentTypeError(f"{text}: expected '{{name: value, ...}}'")
+    return settings
+
+
+READS: dict[Any, tuple[Callable[[str], Any], str]] = {
+    Place: (_place, "X,Y"),
+    Settings: (_settings, "'{NAME: VALUE, ...}'"),
+    bool: (bool, ""),
+    int: (int, "N"),
+    float: (float, "NUMBER"),
+    Path: (Path, "FILE"),
+    str: (str, "NAME"),
+}
+"""Type of a parameter -> what reads it from a word, and how the help calls that."""
