@@ -17,6 +17,7 @@ def test_list_shows_the_kinds_and_studies_that_are_named(capsys):
     # One line says what the method is.
     smooth = next(line for line in lines if line.split()[1] == "smooth")
     assert "Genetic algorithm over the cells of a grid" in smooth
+    assert any("6 problems" in line for line in listed(capsys, "experiments", "song2016"))
     lines = listed(capsys, "claims", "tables")
     assert {line.split()[0] for line in lines if line.startswith("  ")} == {"claim", "table"}
 

@@ -62,7 +62,8 @@ def geometric(first: int, last: int, number: int = 6) -> list[int]:
 
 def rows(small: bool) -> Iterator[frame.Row]:
     """Each series with its slope."""
-    for name, kind, sizes, prepare in (*_samples(), *_obstacles(), *_cells()):
+    series = [*_samples(), *_obstacles(), *_cells()]
+    for name, kind, sizes, prepare in series[:: 4 if small else 1]:
         sizes = sizes[: 2 if small else None]
         works = [prepare(size) for size in sizes]
         seconds = frame.cpu_seconds_of_each(works, 1 if small else ROUNDS)

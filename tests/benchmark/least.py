@@ -1,4 +1,4 @@
-"""Run time of each planner beside the least that its evaluations cost: `make benchmark ARGS=least`.
+"""Run time of each planner beside the least that its evaluations cost.
 
 A run is made once more with its kernels as plain Python functions, all but the inner ones, which
 stay compiled and whose calls are counted: nothing is added to a kernel. The least is what that many
@@ -14,20 +14,16 @@ from types import ModuleType
 from typing import Any
 from unittest import mock
 
+import frame
 import numpy as np
 from numba import njit
 from numba.core.dispatcher import Dispatcher
-from runs import methods
-from timing import cpu_seconds
 
 from bezierplan.geometry import cell_length
 from bezierplan.planners import Plan, abc_ep, ant_colony, bca, binary_genetic, grid_genetic, prm
 from bezierplan.planners.parts import cell_paths, gene_curves, penalised
-from bezierplan.running import execution, problems
-from bezierplan.study import definition, jobs, reading
 from bezierplan.workspaces import ground
 
-ROUNDS = 5
 _SAMPLES, _POINTS, _OBSTACLES = 100, 9, 10
 
 Count = Callable[..., dict[str, int]]
@@ -105,41 +101,20 @@ def _repeat(kernel, arguments, times):
 def costs() -> dict[str, float]:
     """CPU seconds of one operation of each kind."""
     rng = np.random.default_rng(0)
-    x, y, chords = *(16 * rng.random((2, _SAMPLES))), np.empty(_SAMPLES - 1)
+    x, y = 16 * rng.random((2, _SAMPLES))
+    zeros, count = np.zeros((3, _SAMPLES)), np.zeros(1, dtype=np.int64)
     weights, points = rng.random((_POINTS, _SAMPLES)), rng.random((_POINTS, 2))
+    boxes, occupied = 16 * rng.random((_OBSTACLES, 4)), rng.random(256) < 0.2
     works = {
-        "terms": (
-            _terms,
-            (weights, points, np.zeros(_SAMPLES), np.zeros(_SAMPLES)),
-            _POINTS * _SAMPLES,
-        ),
-        "roots": (_roots, (x, y, chords), _SAMPLES - 1),
-        "obstacles": (
-            _obstacles,
-            (x, y, 16 * rng.random((_OBSTACLES, 3)), np.zeros(1, dtype=np.int64)),
-            _OBSTACLES * _SAMPLES,
-        ),
-        "edges": (
-            _edges,
-            (x, y, 16 * rng.random((_OBSTACLES, 4)), np.empty(_SAMPLES)),
-            _OBSTACLES * _SAMPLES,
-        ),
-        "cells": (
-            _cells,
-            (
-                x,
-                y,
-                rng.random(256) < 0.2,
-                16,
-                np.empty(_SAMPLES, dtype=np.int32),
-                np.zeros(1, dtype=np.int64),
-            ),
-            _SAMPLES,
-        ),
+        "terms": (_terms, (weights, points, zeros[0], zeros[1]), _POINTS * _SAMPLES),
+        "roots": (_roots, (x, y, np.empty(_SAMPLES - 1)), _SAMPLES - 1),
+        "obstacles": (_obstacles, (x, y, boxes[:, :3].copy(), count), _OBSTACLES * _SAMPLES),
+        "edges": (_edges, (x, y, boxes, zeros[2]), _OBSTACLES * _SAMPLES),
+        "cells": (_cells, (x, y, occupied, 16, np.zeros(_SAMPLES, np.int32), count), _SAMPLES),
     }
     times = 5_000
     return {
-        name: cpu_seconds(partial(_repeat, kernel, arguments, times), ROUNDS) / (times * number)
+        name: frame.cpu_seconds(partial(_repeat, kernel, arguments, times)) / (times * number)
         for name, (kernel, arguments, number) in works.items()
     }
 
@@ -278,9 +253,6 @@ def _called(kernel: Dispatcher) -> Iterator[Dispatcher]:
     return (each for each in own if isinstance(each, Dispatcher) and each is not kernel)
 
 
-# --------------------------------------------------------------------------------------------------
-# Table
-
 # Beside the first method of each planner of a study: those whose work is of another kind.
 ALSO = {
     "song2016": ["smooth_cubic", "smooth_single", "nonsmooth"],
@@ -290,41 +262,35 @@ ALSO = {
 }
 
 
-def _chosen(study: definition.Study) -> Iterator[tuple[str, str]]:
+COLUMNS = ("a run", "ms", "least ms", "ratio", *(f"1000 {name}" for name in OPERATIONS))
+
+
+def _chosen(study: frame.Study) -> Iterator[tuple[str, str]]:
     """Experiment and method of the first method of each planner, and of those of `ALSO`."""
     seen = set()
-    for experiment, method in methods(study):
+    for experiment, method in frame.methods(study):
         planner = study.planner(method)
         if planner not in seen or method in ALSO.get(study.key, []):
             seen.add(planner)
             yield experiment, method
 
 
-def benchmark_least() -> None:
-    """Run time, the least that its evaluations cost, and their ratio, under the first condition of
-    a method's first experiment; of a method that tests nothing in a kernel, no ratio.
+def rows(small: bool) -> Iterator[frame.Row]:
+    """Cost of each operation; run time, the least that its evaluations cost, and their ratio, under
+    the first condition of a method's first experiment; of a method that tests nothing in a kernel,
+    no ratio.
     """
     cost = costs()
-    print(f"\n{'one operation':26}{'CPU ns':>12}")
     for name, seconds in cost.items():
-        print(f"  {OPERATIONS[name] + ' (' + name + ')':60}{1e9 * seconds:8.2f}")
-    print(
-        f"\n{'a run':34}{'ms':>10}{'least':>10}{'ratio':>8}   thousands of {', '.join(OPERATIONS)}"
-    )
-    for key, study in reading.load(reading.read_config({})).items():
-        for experiment, method in _chosen(study):
-            job = jobs.job(study, experiment, method, "smoke", 0)
-            made = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
-            condition = job.conditions()[0]
-            run = partial(execution.run, job, condition, 0, made[condition.problem])
-            taken = cpu_seconds(run, ROUNDS)
-            found, done = operations(run)
-            if found.objective != run().objective:
-                sys.exit(f"{key} {method}: the run with counters ends in another path")
+        yield (f"{OPERATIONS[name]} ({name})", 1e3 * seconds, *[""] * (len(COLUMNS) - 2))
+    for study in frame.studies(small):
+        for experiment, method in [*_chosen(study)][: 1 if small else None]:
+            _, run = frame.first_run(study, experiment, method)
+            seconds = frame.cpu_seconds(partial(run, 0))
+            plan, done = operations(partial(run, 0))
+            if plan.objective != run(0).objective:
+                sys.exit(f"{study.key} {method}: the run with counters ends in another path")
             least = sum(cost[name] * number for name, number in done.items())
-            numbers = "".join(f"{done[name] / 1e3:10,.1f}" for name in OPERATIONS)
-            print(
-                f"  {key + ' ' + method:32}{1e3 * taken:10.2f}{1e3 * least:10.2f}"
-                f"{taken / least if least else np.nan:8.1f}{numbers}",
-                flush=True,
-            )
+            numbers = [done[name] / 1e3 for name in OPERATIONS]
+            ratio = seconds / least if least else np.nan
+            yield (f"{study.key} {method}", 1e3 * seconds, 1e3 * least, ratio, *numbers)

@@ -81,7 +81,7 @@ KINDS: dict[str, Callable[[Study], Iterable[str]]] = {
     "workspaces": lambda study: (f"{k:20} {each.kind}" for k, each in study.workspaces.items()),
     "experiments": lambda study: (
         f"{name:20} {len(each.problems)} problems, {len(each.methods)} methods, repeats "
-        f"{', '.join(f'{n} ({scale})' for scale, n in each.repeats.items())}"
+        f"{each.repeats}"
         for name, each in study.experiments.items()
     ),
     "claims": lambda study: (f"{claim.id:20} {claim.statement}" for claim in study.claims),

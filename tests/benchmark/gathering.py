@@ -1,0 +1,250 @@
+"""A study of any number of runs, and what the workflow's jobs need to gather them.
+
+A few runs of each method are made; the other rows repeat them under other ids, for to gather runs
+it does not matter where they come from.
+"""
+
+import contextlib
+import multiprocessing
+import resource
+import runpy
+import sys
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as parquet
+import yaml
+
+from bezierplan.running import execution, problems
+from bezierplan.study import jobs, page, reading, targets
+from bezierplan.study.definition import Study
+from bezierplan.study.experiments import SCALES
+from bezierplan.study.targets import SCRIPTS, Studies
+
+METHODS = ("pso", "cpso1_singer", "cpso2_singer", "ferguson")
+PLACES = ("equal", "public")
+SCALE = "full"
+MADE = 50
+"""Runs of each method on each problem that are made; the others repeat them."""
+
+ARTEFACTS = """
+tables:
+  lengths:
+    {title: Lengths, kind: pivot, experiment: all, published: lengths.csv, index: [method],
+    columns: [problem, value], values: [
+      {metric: length, statistic: [mean, median, std, min], label: length, decimals: 2},
+      {metric: feasible, statistic: share, label: feasible, decimals: 2}]}
+figures:
+  spread: {title: Lengths, columns: 2, panels: [
+    {kind: boxes, experiment: all, metric: length},
+    {kind: convergence, experiment: all, where: {problem: equal, method: [pso, ferguson]},
+     hue: method}]}
+  paths: {title: Paths, columns: 1, panels: [
+    {kind: paths, experiment: all, where: {method: pso, problem: equal}, pick: {lowest: length}}]}
+"""
+FIGURE_FILES = {"svg": "svg", "png": "png", "pdf": "pdf", "data": "csv", "caption": "txt"}
+THREADS = 2
+"""Processes that a job may start."""
+CLAIMS = """
+claims:
+  - {id: C1, place: invented, statement: The plain swarm is shorter., artefact: lengths, checks: [
+      {test: lower, experiment: all, every: [problem], metric: length, groups: [pso],
+       than: [ferguson], direction: lower, margin: 0.01}]}
+"""
+PUBLISHED = """problem,method,metric,statistic,n,unit,value
+equal,pso,length,mean,30,unit,8.5
+equal,ferguson,length,mean,30,unit,8.0
+"""
+
+
+def write_study(folder: Path, repeats: int, chunk: int) -> Path:
+    """Write a study into a new folder and return it: four swarms of tharwat2018 and a baseline on
+    two problems, so ten runs a repeat.
+    """
+    swarms = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
+    sizes = {"repeats": dict.fromkeys(SCALES, repeats), "chunk": dict.fromkeys(SCALES, chunk)}
+    described = {
+        "title": "Swarms of tharwat2018",
+        "methods": {
+            name: {
+                "planner": swarms.planner(name),
+                "settings": swarms.resolved(name) | {"stall_limit": 0},
+            }
+            for name in METHODS
+        },
+        "baselines": {"shortest_path": {"planner": "shortest_path"}},
+        "settings": {},
+        "workspaces": {name: swarms.workspaces[name].plain() for name in PLACES},
+        "problems": {
+            name: {"workspace": name, "start": [0, 0], "target": [4, 6]} for name in PLACES
+        },
+        "experiments": {"all": {"problems": list(PLACES), "methods": list(METHODS), **sizes}},
+        "baseline_comparison": {"baseline": "shortest_path", "experiments": ["all"]},
+    }
+    (folder / "published").mkdir(parents=True)
+    (folder / "experiments.yaml").write_text(yaml.safe_dump(described, sort_keys=False))
+    (folder / "artefacts.yaml").write_text(ARTEFACTS)
+    (folder / "claims.yaml").write_text(CLAIMS)
+    (folder / "published" / "lengths.csv").write_text(PUBLISHED)
+    return folder
+
+
+def repeated(made: pa.Table, repeats: range) -> pa.Table:
+    """A table of runs or of their times with other repeats: the rows of each condition as often as
+    needed, under new ids.
+
+    made: rows in the order of conditions and repeats, `MADE` of each condition.
+    """
+    rows = np.concatenate(
+        [first + np.arange(len(repeats)) % MADE for first in range(0, len(made), MADE)]
+    )
+    stems = [name.rpartition("/")[0] for name in made["id"].to_pylist()[::MADE]]
+    new = {
+        "id": [f"{stem}/{repeat}" for stem in stems for repeat in repeats],
+        "repeat": [*repeats] * len(stems),
+    }
+    table = made.take(rows)
+    for name in new.keys() & set(made.column_names):
+        table = table.set_column(made.column_names.index(name), name, pa.array(new[name]))
+    return table
+
+
+def write_runs(study: Study) -> None:
+    """Write problems, bounds and all chunks of runs of a study into `results` of the working
+    folder.
+    """
+    described = jobs.problems_job(study, "all", SCALE)
+    made = problems.build_all(described, study.folder)
+    (files,) = targets.shown_by(study, SCALE, "lengths").values()
+    for file in (files.problems, *files.chunks):
+        Path(file).parent.mkdir(parents=True, exist_ok=True)
+    problems.write(made, described.homes, files.problems)
+    parquet.write_table(problems.bounds_of(problems.read(files.problems)), files.bounds)
+    for method in study.methods_of("all"):
+        runs, times = execution.run_chunk(
+            made, jobs.job(study, "all", method, SCALE, 0)._replace(repeats=[0, MADE])
+        )
+        for file in map(Path, files.runs[method]):
+            first, last = jobs.job(study, "all", method, SCALE, int(file.stem)).repeats
+            parquet.write_table(repeated(runs, range(first, last)), file)
+            parquet.write_table(
+                repeated(times, range(first, last)), file.with_suffix(".times.parquet")
+            )
+
+
+class Job(NamedTuple):
+    """A job of the workflow: its script, and what the script gets."""
+
+    script: str
+    input: dict[str, Any]
+    output: dict[str, str]
+    params: dict[str, Any]
+
+
+def gathering(given: Studies) -> Iterator[Job]:
+    """The jobs that gather the runs of studies, in an order in which they can be made."""
+    for key in given:
+        yield from _gathering_one(given, key)
+    yield Job(
+        "baseline_comparison",
+        targets.baseline_comparison_inputs(given, SCALE),
+        {"baseline_comparison": f"results/{SCALE}/baseline_comparison.csv"},
+        targets.baseline_comparison_params(given, SCALE),
+    )
+    output = {
+        name: f"results/{SCALE}/{name}.{ending}"
+        for name, ending in (("numbers", "csv"), ("claims", "csv"), ("summary", "md"))
+    }
+    yield Job(
+        "summary",
+        targets.summary_inputs(given, SCALE),
+        output,
+        targets.summary_params(given, SCALE),
+    )
+    yield Job(
+        "page", page.inputs(given, SCALE), {"page": page.file(SCALE)}, page.params(given, SCALE)
+    )
+
+
+def _gathering_one(given: Studies, key: str) -> Iterator[Job]:
+    """Tables, figures, claims and audit of a study."""
+    folder, of = f"results/{SCALE}/{key}", {"studies": given, "scale": SCALE, "study": key}
+    for name in given[key].tables:
+        output = {
+            "table": f"{folder}/tables/{name}.csv",
+            "comparison": f"{folder}/tables/{name}.comparison.csv",
+        }
+        yield Job(
+            "table",
+            targets.table_inputs(**of, table=name),
+            output,
+            targets.table_params(**of, table=name),
+        )
+    for name in given[key].figures:
+        output = {
+            part: f"{folder}/figures/{name}.{ending}" for part, ending in FIGURE_FILES.items()
+        }
+        yield Job(
+            "figure",
+            targets.figure_inputs(**of, figure=name),
+            output,
+            targets.figure_params(**of, figure=name),
+        )
+    output = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"}
+    yield Job("claims", targets.claims_inputs(**of), output, targets.claims_params(**of))
+    yield Job(
+        "audit",
+        targets.audit_inputs(**of),
+        {"audit": f"{folder}/audit.csv"},
+        targets.audit_params(**of),
+    )
+
+
+def peaks(repeats: int, chunk: int) -> dict[str, float]:
+    """Peak resident memory, in bytes, of the jobs that gather a study of ten times as many runs as
+    repeats: of each script the largest.
+    """
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        given = reading.load([write_study(Path(folder, "many"), repeats, chunk)])
+        write_runs(given["many"])
+        # A fork of a small process: one that was started from this process would count this one's
+        # memory as its own.
+        context = multiprocessing.get_context("forkserver")
+        found: dict[str, float] = {}
+        for job in gathering(given):
+            with ProcessPoolExecutor(1, context) as pool:
+                found[job.script] = max(
+                    found.get(job.script, 0.0), pool.submit(_peak, job, folder).result()
+                )
+    return found
+
+
+def _peak(job: Job, folder: str) -> float:
+    """Run a job in this process, and return the most memory that it ever had, in bytes, with that
+    of each process that it starts.
+    """
+    from snakemake.iocontainers import InputFiles, OutputFiles, Params
+
+    with contextlib.chdir(folder):
+        for file in job.output.values():
+            Path(file).parent.mkdir(parents=True, exist_ok=True)
+        given = SimpleNamespace(
+            input=InputFiles(fromdict=job.input),
+            output=OutputFiles(fromdict=job.output),
+            params=Params(fromdict=job.params),
+            wildcards=SimpleNamespace(scale=SCALE),
+            log=["job.log"],
+            threads=THREADS,
+        )
+        runpy.run_path(str(SCRIPTS / f"{job.script}.py"), {"snakemake": given})
+    own, largest = (
+        resource.getrusage(whose).ru_maxrss
+        for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    )
+    return (own + THREADS * largest) * (1 if sys.platform == "darwin" else 1024)
