@@ -65,8 +65,7 @@ benchmark: .venv/ready ## speed of the inner loops, compared with a lower bound
 mutants: .venv/ready-dev ## mutation tests: each fault of tests/mutants must make its test fail (ARGS: --jobs N, words of some faults)
 	$(RUN) tests/mutants/run.py $(ARGS)
 
-compare: .cache/comparison/ready ## our swarm compared with other libraries, all studies' planners with OMPL, into results/comparison
-	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
+compare: .cache/comparison/ready ## planners of all studies compared with OMPL's, into results/comparison
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'
 
 cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, for profiles/slurm and profiles/cluster

@@ -9,6 +9,7 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from test_binary_genetic import SETTINGS as GENETIC
 from test_chaotic_pso import SETTINGS as SWARM
@@ -88,8 +89,20 @@ def test_a_curve_of_one_piece_is_measured_whole_unless_it_is_a_parents(script):
     assert 1 <= measured <= 6
 
 
-def test_a_run_is_as_good_as_its_best_path_so_far(script):
-    best = script("anytime").best_at(
-        np.array([0.5, 1.0, 2.5, 9.0]), np.array([3.0, 1.0, 2.0]), np.array([0.1, 0.3, math.inf])
-    )
-    assert best.tolist() == [math.inf, 0.3, 0.3, 0.1]
+@pytest.mark.parametrize("number", range(5))
+def test_contests_of_make_compare_without_the_other_library(script, number):
+    compare = script("compare_planners")
+    contest = compare.CONTESTS[number]
+    attempts = compare.compete(compare.arena(contest), {}, seeds=1)
+    assert set(attempts["method"]) == {*contest.methods, "rounded"}
+    assert len(attempts) == 2 * len(compare.SHARES) + 1
+    (near,) = attempts.loc[attempts["method"] == "rounded", "excess"]
+    assert 0 <= near < 0.05
+
+
+def test_time_until_a_path_is_near_the_shortest_one(script):
+    rows = [("p", "m", 0, 3.0, 0.005), ("p", "m", 0, 1.0, 0.08), ("p", "m", 1, 2.0, math.inf)]
+    columns = ["problem", "method", "seed", "cpu_s", "excess"]
+    table = script("compare_planners").time_table(pd.DataFrame(rows, columns=columns))
+    assert table["median_s"].tolist() == [1.0, 3.0, 3.0, 3.0]
+    assert table["reached"].tolist() == [0.5] * 4
