@@ -22,12 +22,12 @@ CLAIMS = {"song2016": 12, "tharwat2018": 50, "ma2020": 25, "meledje": 15, "elhos
 # Of use to readers' own claims; of the papers' only those to come need them.
 IDLE_KEYS = {"pool", "paired", "secondary"}
 CHECKS = {
-    "lower": 94,
-    "share": 26,
-    "trend": 13,
-    "function": 21,
+    "lower": 85,
+    "share": 24,
+    "trend": 12,
+    "function": 19,
     "equal_within": 4,
-    "untestable": 9,
+    "untestable": 21,
     "difference": 1,
 }
 
@@ -86,7 +86,7 @@ def test_claims_are_complete_and_numbered(key):
 def test_number_of_claims_and_deciding_checks():
     assert sum(CLAIMS.values()) == 130
     assert Counter(check["test"] for check in all_checks() if not check.get("secondary")) == CHECKS
-    assert sum(check.get("secondary", False) for check in all_checks()) == 52
+    assert sum(check.get("secondary", False) for check in all_checks()) == 63
 
 
 def test_own_findings_are_told_apart():

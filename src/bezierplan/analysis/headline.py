@@ -39,6 +39,7 @@ _IN_WORDS = {
     "disagrees": "in disagreement",
     "partly": "supported in part",
     "no effect": "without effect",
+    "depends": "dependent on what the paper leaves open",
 }
 """Verdicts that are no adjectives."""
 
@@ -170,7 +171,7 @@ def _fewer(row: pd.Series) -> list[int]:
         row["supported"],
         row["partly"],
         row["contradicted"] + row["no effect"],
-        row["undecided"] + row["untestable"],
+        row["depends"] + row["undecided"] + row["untestable"],
     ]
 
 

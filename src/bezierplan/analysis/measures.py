@@ -591,6 +591,15 @@ def polygon_length(path: Path) -> float:
     return float(np.hypot(*np.diff(path.points, axis=0).T).sum())
 
 
+@metric("-", "whether an obstacle is in the way, so that no straight line is free", step=1.0)
+def blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) the exact shortest path of a run's problem is longer than the straight line."""
+    straight = {
+        name: np.hypot(*np.subtract(each.start, each.target)) for name, each in problems.items()
+    }
+    return runs["bound"] > runs["problem"].map(straight) * (1 + 1e-9)
+
+
 @metric(
     "-",
     "whether the straight line from start to target touches an occupied cell",

@@ -206,7 +206,8 @@ class Design:
         rows = self.selectable(experiments, baselines)
         for column, wanted in where.items():
             for value in one_or_list(wanted):
-                self._check_value(experiments, column, value, rows, f"{location}: {column}")
+                where_to = f"{location}: {column}"
+                self._check_value(experiments, column, value, rows, where_to, baselines)
         if rows and not any(fits(row, where) for row in rows):
             raise Fault(
                 f"{location}: no run of {', '.join(experiments)} has all of "
@@ -214,9 +215,17 @@ class Design:
             )
 
     def _check_value(
-        self, experiments: list[str], column: str, value: Any, rows: list[Row], location: str
+        self,
+        experiments: list[str],
+        column: str,
+        value: Any,
+        rows: list[Row],
+        location: str,
+        baselines: bool,
     ) -> None:
-        """A value is one that a column can have, as far as that is known before its runs."""
+        """A value is one that a column can have, as far as that is known before its runs; only
+        claims, which leave out baselines, select by what is computed of runs.
+        """
         types = {
             name: each
             for experiment in experiments
@@ -224,7 +233,7 @@ class Design:
         }
         planned = {name for experiment in experiments for name in self.planned(experiment)}
         if column not in types:
-            if column not in METRICS or METRICS[column].compute is not None:
+            if column not in METRICS or (METRICS[column].compute is not None and baselines):
                 raise Fault(f"{location}: unknown{closest(column, types)}")
             # A planner's own column.
             self.check_metric(experiments, column, location.rpartition(": ")[0])

@@ -51,6 +51,11 @@ class Claim(Model):
         description="ours: the paper gives no number, and the threshold or margin that decides is "
         "ours; left out otherwise",
     )
+    depends: Line = Field(
+        None,
+        description="on what, where its variants have different verdicts, none of which the text "
+        "decides: the verdict is then `depends`",
+    )
     note: Line = Field(None, description="one line that is shown with the reason for the verdict")
     holds: Literal["all", "any", "together"] = Field(
         "all",

@@ -189,7 +189,13 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         counting = _compared(runs, check)
         counting = _picked(counting, check.pick.plain()) if check.pick else counting
         values = metrics.values(counting, check.metric, problems).fillna(_failure(check))
-        values = values.loc[select(counting, outcomes).index].reindex(runs.index)
+        computed = {
+            column: metrics.values(counting, column, problems)
+            for column in outcomes
+            if column not in counting
+        }
+        values = values.loc[select(counting.assign(**computed), outcomes).index]
+        values = values.reindex(runs.index)
         if check.failures == "last":
             values = values.fillna(np.inf)
         measured.append(select(runs.assign(value=values), conditions))

@@ -25,6 +25,8 @@ from bezierplan.workspaces.seeds import generator
 ALPHA = 0.05
 # Share of draws in which a sentence about extremes must hold.
 SURE = 0.95
+# As many times the runs of an experiment hardly repeat its extremes when they are drawn from.
+ENOUGH = 10
 # This many runs without a counterexample show with 95 % confidence that fewer than 5 % of all runs
 # are counterexamples.
 LEAST_WITHOUT_EXAMPLE = 59
@@ -80,7 +82,8 @@ class Finding(NamedTuple):
 
     toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other
     way, otherwise 0. negligible: whether the interval of the effect lies within the margin.
-    mark: `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.mark`).
+    mark: `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.mark`). chance_known: whether
+    our runs are enough to tell how often experiments of the paper's size agree with the claim.
     """
 
     effect: float = math.nan
@@ -95,6 +98,7 @@ class Finding(NamedTuple):
     negligible: bool = False
     mark: str = ""
     reason: str = ""
+    chance_known: bool = False
 
 
 # What a claim says about point values. All take (..., k) numbers of cells, so that they work for
@@ -322,6 +326,7 @@ def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     held = np.mean(claimed(check, effects, margin))
     return finding._replace(
         mark="+" if held >= SURE else "-" if held <= 1 - SURE else "?",
+        chance_known=n >= ENOUGH * comparison.paper_units,
         reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs "
         "drawn from ours",
     )

@@ -24,6 +24,7 @@ support the claim; everything else follows from the family's marks:
 | contradicted | no +, and a - | every mark - on its own |
 | no effect | every mark 0 | no + and no ?, not all - |
 | undecided | otherwise: a ? prevents a verdict, or most marks are ? | a ? prevents a verdict |
+| depends | on the chance of one experiment, which our runs tell, or on the reading (`depends`) | |
 | untestable | the reason is given | likewise |
 
 If all have to hold together, as one sentence (`holds: together`): supported if every mark is + on
@@ -45,7 +46,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics
+from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims import comparisons, effects, verdicts
 from bezierplan.analysis.claims.check import Check, OfRuns
 from bezierplan.analysis.claims.claim import Claim
@@ -57,8 +58,8 @@ from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
 
-# No experiment has more units; an effect that needs more lies at the margin.
-MOST_UNITS = 10**9
+# Where more times as many units as we have are needed, the effect lies at the margin.
+MOST_TIMES = 10
 
 
 class _Judged(NamedTuple):
@@ -111,16 +112,30 @@ def judge(
     claim_rows, check_rows = [], []
     for claim in claims:
         first, *_ = assignments = variants(claim)
+        rows = []
         for assignment in assignments:
             row, details = _judge_variant(claim, first, assignment, study, material)
-            claim_rows.append(row | {"primary": assignment is first})
+            rows.append(row | {"primary": assignment is first})
             check_rows += details
+        claim_rows += [rows[0] | _by_reading(claim, rows), *rows[1:]]
     return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype(
         {"n": "Int64", "units_to_decide": "Int64"}
     ), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
 
 
 # From comparisons to a verdict.
+
+
+def _by_reading(claim: Claim, rows: list[dict]) -> dict[str, str]:
+    """What changes in the primary row of a claim whose verdict depends on how it is read."""
+    readings: dict[str, list[str]] = {}
+    for row in rows:
+        if row["verdict"] not in ("undecided", "untestable"):
+            readings.setdefault(row["verdict"], []).append(row["variant"])
+    if claim.depends is None or len(readings) < 2:
+        return {}
+    words = "; ".join(f"{verdict} with {' or '.join(own)}" for verdict, own in readings.items())
+    return {"verdict": "depends", "reason": f"on {claim.depends}: {words}"}
 
 
 def _judge_variant(
@@ -175,6 +190,10 @@ def _judge_variant(
     verdict = verdicts.verdict(
         [each.mark for each in deciding], [each.mark_family for each in deciding], holds
     )
+    if verdict == "undecided" and all(
+        each.finding.chance_known for each in deciding if each.mark_family == "?"
+    ):
+        verdict = "depends"
     everywhere = verdict == "supported" and holds != "any"
     reasons = [
         _by_own_criterion(claim, verdict),
@@ -200,14 +219,12 @@ def _judge_variant(
 
 
 def _by_own_criterion(claim: Claim, verdict: str) -> str:
-    """The first words of the reason for a claim that does not hold by a threshold of ours, where
-    the paper gives no number.
+    """The first words of the reason for a claim that holds, or does not, by a threshold of ours,
+    where the paper gives no number.
     """
-    return (
-        ""
-        if claim.criterion is None or verdict in ("supported", "undecided")
-        else "fails by our criterion alone"
-    )
+    if claim.criterion is None or verdict == "undecided":
+        return ""
+    return f"{'holds' if verdict == 'supported' else 'fails'} by our criterion alone"
 
 
 def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str:
@@ -418,7 +435,8 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
     point values.
 
     If runs are picked, the chance that runs drawn at random among those that count, one of each
-    condition, do in their place. NaN if a cell is empty, or if the paper's size is unknown.
+    condition, do in their place. NaN if a cell is empty, if the paper's size is unknown, and of
+    extremes, which draws from our runs repeat.
     """
     picked = [
         isinstance(judged.check, OfRuns) and judged.check.pick is not None for judged in deciding
@@ -431,13 +449,14 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
     held = []
     for judged in deciding:
         every = judged.parts or (judged.comparison,)
-        if None in every or any(part.paper_units is None for part in every):
+        statistic = effects.point_statistic(judged.check) if judged.comparison else None
+        if not statistic or statistic in statistics.WITHOUT_INTERVAL:
+            return math.nan
+        if any(part.paper_units is None for part in every):
             return math.nan
         claimed = []
         for part in every:
-            points = effects.drawn_points(
-                part, effects.point_statistic(judged.check), name, part.paper_units
-            )
+            points = effects.drawn_points(part, statistic, name, part.paper_units)
             drawn = effects.effect(judged.check, points, part.cells)
             if np.isnan(drawn).any():
                 return math.nan
@@ -448,20 +467,13 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
 
 
 def _units_to_decide(deciding: list[_Judged]) -> int | Any:
-    """Units with which every comparison marked ? would be decided, if that can be known: more than
-    there are.
+    """Units with which every comparison marked ? would be decided: more than there are, but not
+    beyond `MOST_TIMES` as many; missing where that cannot be known.
     """
-    needed = [
-        np.maximum(judged.units_needed, judged.finding.n + 1)
-        for judged in deciding
-        if judged.mark_family == "?"
-    ]
-    return _whole(np.max(needed)) if needed else pd.NA
-
-
-def _whole(units: float) -> int | Any:
-    """Units as a whole number; missing if they cannot be known, and beyond `MOST_UNITS`."""
-    return math.ceil(units) if units < MOST_UNITS else pd.NA
+    open_ones = [judged for judged in deciding if judged.mark_family == "?"]
+    if not all(each.units_needed <= MOST_TIMES * each.finding.n for each in open_ones):
+        return pd.NA
+    return max(math.ceil(max(each.units_needed, each.finding.n + 1)) for each in open_ones)
 
 
 # Rows.

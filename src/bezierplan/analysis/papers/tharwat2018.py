@@ -133,20 +133,6 @@ def _exponent(rng: np.random.Generator, name: str, apart: float, singer_mu: floa
     return float(np.log(np.maximum(grown, np.finfo(float).tiny)).mean())
 
 
-def optimum_grows(check: "Check", results: "Experiments", published: "Published") -> "Judged":
-    """Claim C48: whether the exact shortest path of a layout grows from the fewest to the most
-    obstacles, in the mean over layouts.
-
-    The effect is the mean relative growth with its interval; the units are the layouts.
-    """
-    runs = select(results[check.experiment].runs, check.where)
-    optima = runs.groupby(["layout", "obstacles"])["bound"].first().unstack("obstacles")
-    growth = (optima.iloc[:, -1] / optima.iloc[:, 0] - 1).to_numpy()
-    low, high = statistics.interval("mean", growth, generator("tharwat2018/C48"))
-    mark = "+" if low > 0 else "-" if high <= 0 else "?"
-    return mark, float(growth.mean()), (low, high), len(growth)
-
-
 def bowl_with_local_minima(
     check: "Check", results: "Experiments", published: "Published"
 ) -> "Judged":

@@ -35,6 +35,7 @@ LOOKS = {
     "partly": ("part", "◑"),
     "contradicted": ("bad", "✕"),
     "no effect": ("bad", "="),
+    "depends": ("open", "±"),
     "undecided": ("open", "?"),
     "untestable": ("open", "–"),
 }

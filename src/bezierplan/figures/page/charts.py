@@ -30,6 +30,7 @@ _VERDICTS = {
     "disagrees": ("#d55e00", "cross"),
     "supported": ("#009e73", "circle"),
     "partly": ("#d6b000", "square"),
+    "depends": ("#777f87", "square"),
     "undecided": ("#8f979f", "square"),
     "untestable": ("#c3c8ce", "square"),
     "no effect": ("#eba878", "cross"),

@@ -14,6 +14,7 @@ WORDS = {
     "partly": "Some comparisons of the claim hold, k of n.",
     "contradicted": "No comparison of the claim holds, and in at least one the opposite does.",
     "no effect": "In every comparison of the claim the difference is too small to matter.",
+    "depends": "On a reading that no sentence excludes, or on the chance of one experiment.",
     "undecided": "Too few runs, or too wide an interval, to tell.",
     "untestable": "The paper does not say enough to test the claim.",
 }

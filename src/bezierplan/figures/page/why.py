@@ -36,6 +36,7 @@ _TIMES = 2.0
 """Relative effects above this are told as multiples, not in per cent."""
 
 _NEEDS = {"all": "in every run", "none": "in no run", "some": "in at least one run"}
+_NEEDS["as printed"] = "in all runs of the paper"
 
 
 def why(row: pd.Series, check: Check, name: str, condition: str, own_criterion: bool) -> str:

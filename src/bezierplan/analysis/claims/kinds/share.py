@@ -1,8 +1,9 @@
 """The share of runs in which an event happens.
 
 Exact binomial test with the Clopper-Pearson interval; for six or more pooled conditions, Student's
-t over their shares. For `all`, `none` and `some`, one (counter)example decides. The effect is the
-share.
+t over their shares. For `all`, `none` and `some`, one (counter)example decides; `as printed` is
+refuted where an experiment of the paper's size is unlikely to have the event in all its runs. The
+effect is the share.
 """
 
 from __future__ import annotations
@@ -67,13 +68,16 @@ class Options(OfRuns):
         Any,
         value(
             lambda given: (
-                given in ("all", "none", "some")
+                given in ("all", "none", "some", "as printed")
                 if isinstance(given, str)
                 else is_number(given) and 0 <= given <= 1
             ),
             "",
         ),
-    ] = Field(description="a share from 0 to 1, or all, none, some")
+    ] = Field(
+        description="a share from 0 to 1, or all, none, some, or as printed: in all runs of an "
+        "experiment as large as the paper's"
+    )
     direction: Literal["at_least", "at_most"] = Field(
         None, description="at_least or at_most, where the threshold is a number"
     )
@@ -111,7 +115,7 @@ def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
     """Whether the share is on the claimed side of the threshold."""
     match check.threshold:
-        case "all":
+        case "all" | "as printed":
             return values == 1
         case "none":
             return values == 0
@@ -149,6 +153,11 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         return finding._replace(mark="+" if holds else "-")
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
     finding = finding._replace(low=float(exact.low), high=float(exact.high))
+    if check.threshold == "as printed" and comparison.paper_units:
+        chances = [end**comparison.paper_units for end in (finding.low, finding.high)]
+        mark = "+" if chances[0] > effects.ALPHA else "-" if chances[1] < effects.ALPHA else "?"
+        chance = f"the chance of {comparison.paper_units} of {comparison.paper_units} is {{:.2g}}"
+        return finding._replace(mark=mark, reason=chance.format((k / n) ** comparison.paper_units))
     if isinstance(check.threshold, str):
         # For `some`, one example decides and many misses are needed to refute it; for `all` and
         # `none` it is the other way round.
