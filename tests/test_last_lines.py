@@ -9,7 +9,7 @@ import pytest
 import snakemake_logger_plugin_bezierplan as plugin
 
 SUMMARY = (
-    "# Outcome at scale full\n\n**Of 3 published numbers, 1 agrees. Of 2 claims, 2 are "
+    "# Outcome at scale full\n\n**3 published numbers: 1 in agreement. 2 claims: 2 "
     "supported.**\n\n**Other** words\n"
 )
 ROUTE, PAGE = Path("results/full/song2016/runs/routes/0.parquet"), Path("results/full/index.html")
@@ -26,7 +26,7 @@ def test_the_last_line_names_the_page_after_what_came_out(tmp_path, monkeypatch)
     PAGE.parent.mkdir(parents=True)
     PAGE.with_name("summary.md").write_text(SUMMARY)
     assert plugin.last_lines({PAGE}, 1)[2:] == [
-        "Of 3 published numbers, 1 agrees.",
+        "3 published numbers: 1 in agreement.",
         "2 claims: 2 supported.",
         page,
     ]

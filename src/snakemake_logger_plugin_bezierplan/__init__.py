@@ -119,7 +119,7 @@ def last_lines(outputs: set[Path], seconds: float) -> list[str]:
     for page in sorted(file for file in outputs if file.name == "index.html"):
         summary = page.with_name("summary.md")
         text = summary.read_text(encoding="utf-8") if summary.is_file() else ""
-        headline = re.search(r"^\*\*(Of .*)\*\*$", text, re.MULTILINE)
+        headline = re.search(r"^\*\*([^*]+)\*\*$", text, re.MULTILINE)
         lines += headline[1].replace(". ", ".\n").splitlines() if headline else []
         lines.append(f"Open {page} in a browser: file://{page.resolve()}")
     return lines if folders else []

@@ -1,7 +1,7 @@
 """Printed lengths that are those of paths through cell centres, to the last digit.
 
 Lengths of polylines between cell centres are sums of a few square roots of whole numbers, so a
-length with four decimals can tell which paths it belongs to. `identify` enumerates every free
+length with four decimals can tell which paths it belongs to. `in_problem` enumerates every free
 polyline with a limited number of edges between two cells, keeps those whose length rounds to the
 printed one, and says how likely a number nearby would match by chance.
 
@@ -87,30 +87,6 @@ def ways(grid: Grid) -> Ways:
     return Ways(cells, lengths)
 
 
-def identify(
-    ways: Ways, start: int, target: int, printed: float, half: float, most_edges: int
-) -> Identified:
-    """The free polylines of at most `most_edges` edges between two cells whose length is printed
-    so.
-
-    printed, half: the number and half a unit of its last digit, in cells.
-    """
-    first, last = (int(np.searchsorted(ways.cells, cell)) for cell in (start, target))
-    reached = _reached(ways, first, printed + NEARBY + half, last, most_edges)
-    every = np.unique(np.concatenate([level[last] for level in reached]))
-    paths = _paths(ways, reached, last, printed, half)
-    length = (
-        sum(ways.lengths[one, other] for one, other in itertools.pairwise(paths[0]))
-        if paths
-        else math.nan
-    )
-    return Identified(
-        [tuple(int(ways.cells[place]) for place in path) for path in paths],
-        _chance(every, printed, half),
-        length,
-    )
-
-
 def applies(entry: Identify, row: dict) -> bool:
     """Whether an enumeration is declared for a published number, from the columns of its row."""
     where = {"metric": entry.metric} | entry.where
@@ -118,26 +94,30 @@ def applies(entry: Identify, row: dict) -> bool:
 
 
 def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Identified | None:
-    """`identify` for a printed length in the problem's unit; None unless start and target are
-    centres of cells of a grid.
+    """The free polylines of at most so many edges from start to target whose length is printed so,
+    in the problem's unit; None unless both are centres of cells of a grid.
     """
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return None
-    cells = [grid.cell_of(*place) for place in (problem.start, problem.target)]
-    if None in cells:
+    ends = [problem.start, problem.target]
+    places = [grid.cell_of(*end) for end in ends]
+    if None in places:
         return None
-    first, last = (int(np.ravel_multi_index(cell, grid.occupied.shape)) for cell in cells)
-    if not np.allclose([grid.centre(first), grid.centre(last)], [problem.start, problem.target]):
+    cells = [int(np.ravel_multi_index(place, grid.occupied.shape)) for place in places]
+    if not np.allclose([grid.centre(cell) for cell in cells], ends):
         return None
-    half = 0.5 * 10.0**-decimals / grid.cell
-    return identify(
-        _ways_of(grid.occupied.tobytes(), grid.occupied.shape),
-        first,
-        last,
-        value / grid.cell,
-        half,
-        edges,
+    printed, half = value / grid.cell, 0.5 * 10.0**-decimals / grid.cell
+    ways = _ways_of(grid.occupied.tobytes(), grid.occupied.shape)
+    first, last = (int(np.searchsorted(ways.cells, cell)) for cell in cells)
+    reached = _reached(ways, first, printed + NEARBY + half, last, edges)
+    every = np.unique(np.concatenate([level[last] for level in reached]))
+    paths = _paths(ways, reached, last, printed, half)
+    legs = itertools.pairwise(paths[0]) if paths else ()
+    return Identified(
+        [tuple(int(ways.cells[place]) for place in path) for path in paths],
+        _chance(every, printed, half),
+        sum(ways.lengths[one, other] for one, other in legs) if paths else math.nan,
     )
 
 
@@ -240,33 +220,30 @@ def _paths(
 ) -> list[tuple[int, ...]]:
     """Places of the matching polylines with fewest edges, found backwards from their ends."""
     for edges in range(1, len(reached)):
-        if not _near(reached[edges][last], printed, half).any():
-            continue
-        found: list[tuple[int, ...]] = []
-        _walk(ways, reached, edges, (last,), printed, half, found)
-        return found
+        if _near(reached[edges][last], printed, half).any():
+            walks = _walks(ways, reached, edges, (last,), printed, half)
+            return list(itertools.islice(walks, MOST_PATHS))
     return []
 
 
-def _walk(
+def _walks(
     ways: Ways,
     reached: list[list[np.ndarray]],
     left: int,
     path: tuple[int, ...],
     length: float,
     half: float,
-    paths: list[tuple[int, ...]],
-) -> None:
-    """Extend a path, given from its end, by all places from which the rest of its length is
+) -> Iterator[tuple[int, ...]]:
+    """All ways to extend a path, given from its end, by places from which the rest of its length is
     left.
     """
     if not left:
-        paths.append(path[::-1])
+        yield path[::-1]
         return
     for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
         rest = length - ways.lengths[path[-1], other]
-        if len(paths) < MOST_PATHS and _near(reached[left - 1][other], rest, half).any():
-            _walk(ways, reached, left - 1, (*path, int(other)), rest, half, paths)
+        if _near(reached[left - 1][other], rest, half).any():
+            yield from _walks(ways, reached, left - 1, (*path, int(other)), rest, half)
 
 
 def _near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:

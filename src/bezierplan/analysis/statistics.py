@@ -80,6 +80,8 @@ STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "share": _mean,  # likewise: the share of runs that have it
     "unstated": _median,  # the paper does not say; the median of ours is printed
 }
+# Those that are quantiles.
+_SHARES = {"median": 0.5, "unstated": 0.5, "quartile1": 0.25, "quartile3": 0.75}
 # These grow with the number of runs, so resampling the same number does not show how far they are
 # from the truth.
 WITHOUT_INTERVAL = ("min", "max", "range")
@@ -120,14 +122,20 @@ def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator
         # In random order, since draws of several cells are added.
         return rng.permutation(_normal(name, values, 1 / size))
     size = min(size, MOST_DRAWN)
-    rows = max(1, BLOCK // size)
-    drawn = np.empty(DRAWS)
-    for first in range(0, DRAWS, rows):
-        block = drawn[first : first + rows]
-        block[:] = STATISTICS[name](
-            values.take(rng.integers(len(values), size=(len(block), size), dtype=np.int32))
-        )
-    return drawn
+    return _in_blocks(
+        name,
+        size,
+        lambda rows: values.take(rng.integers(len(values), size=(rows, size), dtype=np.int32)),
+    )
+
+
+def _in_blocks(name: str, size: int, draw: Callable[[int], np.ndarray]) -> np.ndarray:
+    """A named statistic of experiments (DRAWS,), of `size` values each, of which `draw` gives as
+    many as asked for, (rows, size).
+    """
+    block = max(1, BLOCK // size)
+    counts = [min(block, DRAWS - first) for first in range(0, DRAWS, block)]
+    return np.concatenate([STATISTICS[name](draw(rows)) for rows in counts])
 
 
 def influence(name: str, values: np.ndarray) -> np.ndarray:
@@ -137,26 +145,14 @@ def influence(name: str, values: np.ndarray) -> np.ndarray:
     Its standard deviation, divided by the root of n, is the standard error of the statistic. Raises
     KeyError for `WITHOUT_INTERVAL` and for an unknown name.
     """
-    return {
-        "mean": _mean_influence,
-        "share": _mean_influence,
-        "count": lambda values: len(values) * _mean_influence(values),
-        "std": _std_influence,
-        "median": lambda values: _quantile_influence(values, 0.5),
-        "unstated": lambda values: _quantile_influence(values, 0.5),
-        "quartile1": lambda values: _quantile_influence(values, 0.25),
-        "quartile3": lambda values: _quantile_influence(values, 0.75),
-        "iqr": lambda values: _quantile_influence(values, 0.75) - _quantile_influence(values, 0.25),
-    }[name](values)
-
-
-def _mean_influence(values: np.ndarray) -> np.ndarray:
-    return values - values.mean()
-
-
-def _std_influence(values: np.ndarray) -> np.ndarray:
-    std = values.std()
-    return ((values - values.mean()) ** 2 - std**2) / (2 * std) if std else np.zeros(len(values))
+    if name == "iqr":
+        return _quantile_influence(values, 0.75) - _quantile_influence(values, 0.25)
+    if name in _SHARES:
+        return _quantile_influence(values, _SHARES[name])
+    apart, std = values - values.mean(), values.std()
+    if name == "std":
+        return (apart**2 - std**2) / (2 * std) if std else np.zeros(len(values))
+    return {"mean": 1, "share": 1, "count": len(values)}[name] * apart
 
 
 def _quantile_influence(values: np.ndarray, share: float) -> np.ndarray:
@@ -216,10 +212,8 @@ def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[f
     """
     if len(values) < 2 or name in WITHOUT_INTERVAL:
         return math.nan, math.nan
-    if len(values) > MOST_RESAMPLED and np.isfinite(values).all():
-        draws = normal_draws(
-            statistic(name, values), influence(name, values).std(ddof=1) / math.sqrt(len(values))
-        )
+    if len(values) > MOST_RESAMPLED and _is_normal(name, values):
+        draws = _normal(name, values, 1 / len(values))
     else:
         draws = resampled(name, values, len(values), rng)
     low, high = np.quantile(draws, [TAIL, 1 - TAIL])
@@ -242,18 +236,16 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
     if size > MOST_PREDICTED and _is_normal(name, values):
         return _normal(name, values, 1 / len(values) + 1 / size)
     size = min(size, MOST_PREDICTED)
-    rows = max(1, BLOCK // size)
-    drawn = np.empty(DRAWS)
-    for first in range(0, DRAWS, rows):
-        block = drawn[first : first + rows]
+
+    def draw(rows: int) -> np.ndarray:
         # Only the places of the first draw that the second one uses are filled, each once.
-        places, world = rng.integers(len(values), size=(2, len(block), size), dtype=np.int32)
+        places, world = rng.integers(len(values), size=(2, rows, size), dtype=np.int32)
         places.sort(axis=1)
         asked_first = np.where(np.diff(places, axis=1, prepend=-1) > 0, np.arange(size), 0)
-        block[:] = STATISTICS[name](
-            values[np.take_along_axis(world, np.maximum.accumulate(asked_first, axis=1), axis=1)]
-        )
-    return drawn
+        chosen = np.maximum.accumulate(asked_first, axis=1)
+        return values[np.take_along_axis(world, chosen, axis=1)]
+
+    return _in_blocks(name, size, draw)
 
 
 def predicted_within(
