@@ -9,7 +9,6 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from matplotlib.figure import Figure
 from matplotlib.text import Text
 from panels import options_of, panels_of
 
@@ -155,16 +154,9 @@ def test_methods_need_shared_problems():
     part = TWO._replace(
         runs=TWO.runs[(TWO.runs["method"] == "good") | (TWO.runs["condition"] == "p")]
     )
-    for panel in (performance_profile, expected_running_time):
+    for panel, more in ((performance_profile, {"within": 0.05}), (expected_running_time, {})):
         with pytest.raises(ValueError, match="bad has no run under q"):
-            panel.data(
-                part,
-                options_of(
-                    panel,
-                    cost="evaluations",
-                    **({"within": 0.05} if panel is performance_profile else {}),
-                ),
-            )
+            panel.data(part, options_of(panel, cost="evaluations", **more))
 
 
 def test_expected_running_times_of_one_problem_and_of_several():
@@ -218,46 +210,23 @@ def test_ranks_over_problems_are_those_of_the_median_run():
     assert frame["units"].unique().tolist() == [5]
 
 
-@pytest.mark.parametrize("options", [{"cost": "length"}, {"cost": "cpu_s", "within": 0.05}])
-def test_profile_as_drawn(options, tmp_path):
-    panel = {"kind": "performance_profile", "experiment": "e", **options}
-    words = drawn(panel, tmp_path)
-    assert {"share of problems", "the good one", "bad"} <= set(words)
-    assert any("2 problems" in " ".join(text.split()) for text in words)
-
-
-def test_running_times_as_drawn(tmp_path):
-    words = drawn(
-        {"kind": "expected_running_time", "experiment": "e", "cost": "evaluations"}, tmp_path
-    )
-    assert {"the good one", "bad", "expected evaluations", "never", "within 5 %"} <= set(words)
-
-
-def drawn(panel, folder):
-    file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(panels_of([panel]), Sources({"e": TWO})), file)
-    figure = sheet.draw(
-        panels_of([panel]),
-        sheet.read_data(file),
-        sheet.Scene({"e": {}}, {}, {"good": "the good one"}, "m"),
-        1,
-    )
-    return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [
-        figure.get_label()
-    ]
-
-
-def test_a_profile_is_drawn_as_its_steps():
-    frame, _ = performance_profile.data(TWO, options_of(performance_profile, cost="length")), None
-    axes = Figure().add_subplot()
-    performance_profile.draw(
-        axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(performance_profile, cost="length")
-    )
-    (line,) = [
-        line
-        for line in axes.lines
-        if line.get_drawstyle() == "steps-post" and len(line.get_xdata()) == 4
-    ]
-    x, y = line.get_data()
-    assert list(x[:3]) == pytest.approx([1, 1.04, 15 / 10.3])
-    assert list(y) == [0, 0.5, 1, 1]
+@pytest.mark.parametrize(
+    ("kind", "options", "words"),
+    [
+        ("performance_profile", {"cost": "length"}, {"share of problems", "bad"}),
+        ("performance_profile", {"cost": "cpu_s", "within": 0.05}, {"share of problems", "bad"}),
+        (
+            "expected_running_time",
+            {"cost": "evaluations"},
+            {"expected evaluations", "never", "within 5 %"},
+        ),
+    ],
+)
+def test_words_that_are_drawn(kind, options, words, tmp_path):
+    panels = panels_of([{"kind": kind, "experiment": "e", **options}])
+    file = str(tmp_path / "figure.csv")
+    sheet.write_data(sheet.data(panels, Sources({"e": TWO})), file)
+    scene = sheet.Scene({"e": {}}, {}, {"good": "the good one"}, "m")
+    figure = sheet.draw(panels, sheet.read_data(file), scene, 1)
+    drawn = {text.get_text() for text in figure.findobj(Text)} | {figure.get_label()}
+    assert words | {"the good one"} <= drawn

@@ -85,12 +85,6 @@ def test_rows_are_taken_one_by_one(name):
     assert STATISTICS[name](values) == pytest.approx([statistic(name, row) for row in values])
 
 
-def test_draws_belong_to_a_name():
-    first, again, other = (generator(name).random(3) for name in ("a", "a", "b"))
-    assert (first == again).all()
-    assert (first != other).all()
-
-
 def test_resampled_mean_has_the_standard_error():
     values = np.random.default_rng(1).normal(size=50)
     drawn = resampled("mean", values, 20, generator("standard error"))
@@ -140,12 +134,6 @@ def test_interval_is_empty_where_it_would_say_nothing(name, count):
     assert all(math.isnan(end) for end in interval(name, np.arange(float(count)), generator("a")))
 
 
-@given(samples, st.sampled_from(sorted(STATISTICS)))
-def test_interval_is_ordered(values, name):
-    low, high = interval(name, values, generator("ordered"))
-    assert math.isnan(low) or low <= high
-
-
 @given(
     st.floats(-1e6, 1e6),
     st.integers(1, 30),
@@ -164,18 +152,20 @@ OURS = np.random.default_rng(3).normal(100, 5, size=60)
 
 
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
-@pytest.mark.parametrize(("published", "quantile"), [(0.0, 0.0), (200.0, 1.0)])
-def test_value_far_outside_is_out_of_range(size, published, quantile):
-    assert prediction("mean", OURS, published, size, 2, generator("far"))[:2] == (quantile, False)
-
-
-@pytest.mark.parametrize("size", [None, 1, 10, 60])
-def test_value_in_the_middle_is_in_range(size):
-    quantile, in_range, *_ = prediction(
-        "mean", OURS, float(np.median(OURS)), size, 2, generator("middle")
-    )
+@pytest.mark.parametrize(("name", "away"), [("mean", -100), ("mean", 100), ("median", 90)])
+def test_value_far_off_is_out_of_range_and_one_in_the_middle_in_it(name, away, size):
+    middle = float(np.median(OURS))
+    quantile, in_range, *_ = prediction(name, OURS, middle, size, 2, generator("middle"))
     assert in_range
     assert 0.2 < quantile < 0.8
+    quantile, in_range, *_ = prediction(name, OURS, middle + away, size, 2, generator("far"))
+    assert (quantile, in_range) == (float(away > 0), False)
+
+
+@pytest.mark.parametrize(("factor", "in_range"), [(0.4, False), (1.0, True), (2.5, False)])
+def test_standard_deviation_far_off_is_refused(factor, in_range):
+    printed = factor * statistic("std", OURS)
+    assert prediction("std", OURS, printed, 30, None, generator("far"))[1] == in_range
 
 
 def test_size_of_the_papers_experiment_matters():
@@ -234,37 +224,6 @@ def test_prediction_refuses_few_true_numbers(name, ours, theirs):
     assert refused / 300 <= 0.08
 
 
-@pytest.mark.parametrize("runs", [10, 30])
-def test_resampling_alone_would_refuse_many(runs):
-    # Why the prediction interval draws in two stages: ours are a sample too.
-    rng = np.random.default_rng(5)
-    refused = 0
-    for repeat in range(300):
-        draws, published = (
-            resampled("mean", rng.normal(size=runs), runs, generator(f"alone {repeat}")),
-            rng.normal(size=runs).mean(),
-        )
-        low, high = np.quantile(draws, [statistics.TAIL, 1 - statistics.TAIL])
-        refused += not low <= published <= high
-    assert 0.14 <= refused / 300 <= 0.28
-
-
-@pytest.mark.parametrize(
-    ("name", "away"), [("mean", 1.0), ("median", 1.3), ("min", 3.0), ("share", 0.7)]
-)
-def test_prediction_refuses_what_is_far_off(name, away):
-    rng = np.random.default_rng(6)
-    values = np.ones(30) if name == "share" else rng.normal(size=30)
-    assert not prediction(
-        name,
-        values,
-        statistic(name, values) + (away if name != "share" else -away),
-        30,
-        None,
-        generator("far"),
-    )[1]
-
-
 @pytest.mark.parametrize(("ours", "theirs"), [(10, 10), (30, 30), (10, 40), (200, 10)])
 @pytest.mark.parametrize(
     ("shape", "most"), [("normal", 0.08), ("gamma", 0.12), ("exponential", 0.2)]
@@ -284,14 +243,6 @@ def test_prediction_refuses_few_true_standard_deviations(shape, most, ours, thei
         values, published = draw(size=ours), statistic("std", draw(size=theirs))
         refused += not prediction("std", values, published, theirs, None, generator("std"))[1]
     assert refused / 400 <= most
-
-
-def test_standard_deviation_far_off_is_refused():
-    for factor in (0.4, 2.5):
-        assert not prediction(
-            "std", OURS, factor * statistic("std", OURS), 30, None, generator("far")
-        )[1]
-    assert prediction("std", np.full(30, 5.0), 0.0, 30, None, generator("same"))[:2] == (0.5, True)
 
 
 @pytest.mark.parametrize(
@@ -372,7 +323,6 @@ def test_prediction_interval_is_what_the_quantile_accepts():
                     name,
                     published,
                 )
-    assert np.isnan(prediction("mean", np.array([]), 10.0, 10, None, generator("empty"))[2:]).all()
 
 
 def test_holm_against_a_worked_example():
