@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import baseline_comparison, measures, metrics, summary
+from bezierplan.analysis import baseline_comparison, measures, metrics
 from bezierplan.analysis.results import Results
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
@@ -92,19 +92,15 @@ def test_corners_curve_without_limit_and_a_straight_baseline_is_no_measure():
 
 
 def test_experiments_are_paired_each_with_its_own_baseline():
-    one = Results(
-        pd.DataFrame([run("a", "base", 10.0, arc(1.0)), run("a", "tried", 20.0, arc(1.0))]),
-        {},
-        pd.DataFrame(),
-    )
-    other = Results(
-        pd.DataFrame([run("a", "base", 100.0, arc(1.0)), run("a", "tried", 400.0, arc(1.0))]),
-        {},
-        pd.DataFrame(),
-    )
-    assert baseline_comparison.measured({"one": one, "other": other}, "base")[
-        "length"
-    ].tolist() == [3.0]
+    found = {
+        name: Results(
+            pd.DataFrame([run("a", "base", base, arc(1.0)), run("a", "tried", tried, arc(1.0))]),
+            {},
+            pd.DataFrame(),
+        )
+        for name, base, tried in (("one", 10.0, 20.0), ("other", 100.0, 400.0))
+    }
+    assert baseline_comparison.measured(found, "base")["length"].tolist() == [3.0]
 
 
 def described(**changes):
@@ -160,30 +156,6 @@ def test_the_section_has_a_sentence_for_each_study():
     assert "at 8 to 1,230 times the baseline's CPU time" in paragraphs[3]
     assert "1 gives paths with corners" in paragraphs[3]
     assert baseline_comparison.section(table[:0], {}) == []
-
-
-def test_the_section_stands_in_the_summary():
-    comparison = pd.DataFrame(
-        {
-            "method": ["tried"],
-            "metric": ["length"],
-            "statistic": ["mean"],
-            "value_published": [1.0],
-            "value_ours_scaled": [1.0],
-        }
-    )
-    numbers = summary.numbers(
-        {
-            ("one", "table1"): comparison.assign(
-                in_range=True, possible=True, n_published=1, verdict="agrees", why="", primary=True
-            )
-        }
-    )
-    claims = pd.DataFrame(columns=["study", "id", "primary", "finding", "verdict"])
-    text = summary.report(
-        numbers, claims, pd.DataFrame([described()]), {"one": "The first"}, "full"
-    )
-    assert baseline_comparison.sentence(pd.DataFrame([described()])) in text
 
 
 def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():

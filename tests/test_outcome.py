@@ -41,6 +41,11 @@ def comparison(values, ours, methods=("plain", "other")):
     )
 
 
+CLAIMS = pd.DataFrame(
+    {"study": "one", "id": ["C1"], "primary": True, "finding": False, "verdict": "supported"}
+)
+
+
 def test_interpretations_that_do_not_decide_are_not_counted():
     numbers = summary.numbers(
         {("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2]).assign(primary=[True, False])}
@@ -61,16 +66,7 @@ def test_interpretations_that_do_not_decide_are_not_counted():
 
 def test_published_number_that_is_wrong_is_counted_as_one_that_disagrees():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])})
-    claims = pd.DataFrame(
-        {
-            "study": ["one"],
-            "id": ["C1"],
-            "primary": [True],
-            "finding": [False],
-            "verdict": ["supported"],
-        }
-    )
-    found = headline.outcome(numbers, claims).loc["one"]
+    found = headline.outcome(numbers, CLAIMS).loc["one"]
     assert (found["numbers"], found["agrees"]) == (2, 1)
 
 
@@ -118,16 +114,7 @@ def test_outcome_counts_verdicts_of_numbers():
     table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(
         verdict=words
     )
-    claims = pd.DataFrame(
-        {
-            "study": ["one"],
-            "id": ["C1"],
-            "primary": [True],
-            "finding": [False],
-            "verdict": ["supported"],
-        }
-    )
-    found = headline.outcome(summary.numbers({("one", "table1"): table}), claims).loc["one"]
+    found = headline.outcome(summary.numbers({("one", "table1"): table}), CLAIMS).loc["one"]
     assert found[["numbers", "agrees", "disagrees", "inconclusive"]].to_list() == [4, 1, 1, 2]
 
 
