@@ -175,49 +175,6 @@ def test_an_apex_under_a_thin_wall_touches_it(bulge):
     assert found.feasible == (bulge == 0)
 
 
-@pytest.mark.parametrize(
-    ("pieces", "collision_at"),
-    [
-        (bezier("(1,3)(3,1)"), 0.5),
-        (bezier("(.5,3.5)(2,2)(3.5,.5)"), 0.5),
-        (bezier("(0,2)(4,2)"), 0.5),
-        (polyline("(1,3)(2,2)(3,1)"), 1.0),
-        (polyline("(1,3)(2,2)(2,2)(2,2)(3,1)"), 1.0),
-        (polyline("(1,3)(2,2)(1,3)"), FREE),
-        (polyline("(1,3)(2,2)"), FREE),
-        (polyline("(2,2)(3,1)"), FREE),
-        (polyline("(1,2)(2,2)(2,3)"), FREE),
-        (bezier("(.5,2.5)(2.5,1.5)(1.5,3.5)"), FREE),
-    ],
-    ids=[
-        "straight",
-        "apex",
-        "along lines",
-        "bend on it",
-        "rest on it",
-        "and back",
-        "end on it",
-        "start on it",
-        "round its corner",
-        "near it",
-    ],
-)
-def test_a_closed_contact_may_be_touched_but_not_passed(pieces, collision_at):
-    assert check(pieces, CORNER_CONTACT).feasible
-    found = check(pieces, CORNER_CONTACT, corner_cutting="closed")
-    assert found.feasible == (collision_at is FREE)
-    if not found.feasible:
-        assert found.collision_at == pytest.approx(collision_at, abs=1e-6)
-        assert (found.depth, found.clearance) == (0, 0)
-
-
-def test_a_closed_contact_in_a_grid_of_large_cells():
-    large = cells(4, (1, 2, 1, 1), (2, 1, 1, 1), cell=10.0)
-    assert check(10 * bezier("(1,1)(3,3)"), large).feasible
-    assert not check(10 * bezier("(1,1)(3,3)"), large, corner_cutting="closed").feasible
-    assert check(10 * polyline("(1,1)(2,2)(1.5,1.5)"), large, corner_cutting="closed").feasible
-
-
 def test_the_first_collision_is_the_first_along_the_path():
     found = check(polyline("(-3,1)(3,1)(3,0)(-3,0)(-3,-3)(3,3)"), UNIT_DISC)
     assert found.collision_at == pytest.approx(2 + 1 / 3, abs=1e-8)
@@ -389,13 +346,11 @@ def test_halving_a_curve_of_degree_60_stays_far_below_the_tolerance():
     assert not check(piece[None] - [0.0, 1e-8], circles(bounds=(0.0, 2000.0, 0.0, 2000.0))).feasible
 
 
-def test_unfit_shapes_and_rules_are_refused():
+def test_unfit_shapes_are_refused():
     with pytest.raises(ValueError, match="shape"):
         check(np.zeros((3, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="degree"):
         check(np.zeros((1, 62, 2)), UNIT_DISC)
-    with pytest.raises(ValueError, match="corner cutting"):
-        check(np.zeros((1, 2, 2)), CORNER_CONTACT, corner_cutting="shut")
 
 
 @pytest.mark.parametrize(

@@ -332,13 +332,13 @@ def pieces_along(bound):
 
 
 @settings(deadline=None, max_examples=150)
-@given(PROBLEMS, st.sampled_from(["open", "closed"]))
-def test_a_shortest_path_is_free_and_no_shorter_than_the_straight_line(problem, corner_cutting):
-    bound = shortest_path(problem, corner_cutting)
+@given(PROBLEMS)
+def test_a_shortest_path_is_free_and_no_shorter_than_the_straight_line(problem):
+    bound = shortest_path(problem)
     assume(bound.length < math.inf)
     assert bound.length >= math.dist(problem.start, problem.target) * (1 - 1e-12)
     assert least_length(bound) <= bound.length
-    assert check(pieces_along(bound), region(problem.workspace), corner_cutting).feasible
+    assert check(pieces_along(bound), region(problem.workspace)).feasible
 
 
 @settings(deadline=None, max_examples=60)
@@ -354,22 +354,16 @@ def test_a_straight_line_is_the_shortest_path_if_it_is_free(problem):
 
 
 @settings(deadline=None, max_examples=100)
-@given(
-    PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]), st.sampled_from(["open", "closed"])
-)
-def test_mirroring(problem, pieces, flip, corner_cutting):
+@given(PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]))
+def test_mirroring(problem, pieces, flip):
     mirrored = Problem(
         "",
         mapped(problem.workspace, flip),
         *(tuple(mapped_points(p, flip)) for p in (problem.start, problem.target)),
     )
-    assert shortest_path(mirrored, corner_cutting).length == pytest.approx(
-        shortest_path(problem, corner_cutting).length, rel=1e-9
-    )
-    found = check(pieces, region(problem.workspace), corner_cutting)
-    assert_same_check(
-        check(mapped_points(pieces, flip), region(mirrored.workspace), corner_cutting), found
-    )
+    assert shortest_path(mirrored).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
+    found = check(pieces, region(problem.workspace))
+    assert_same_check(check(mapped_points(pieces, flip), region(mirrored.workspace)), found)
 
 
 @settings(deadline=None, max_examples=60)
@@ -487,22 +481,19 @@ def split(piece, t):
     paths(),
     st.integers(1, 3),
     st.floats(0.05, 0.95),
-    st.sampled_from(["open", "closed"]),
 )
-def test_the_verdict_does_not_depend_on_how_a_path_is_written(
-    workspace, pieces, times, t, corner_cutting
-):
+def test_the_verdict_does_not_depend_on_how_a_path_is_written(workspace, pieces, times, t):
     blocked = region(workspace)
-    found = check(pieces, blocked, corner_cutting)
-    higher = check(np.array([elevated(piece, times) for piece in pieces]), blocked, corner_cutting)
+    found = check(pieces, blocked)
+    higher = check(np.array([elevated(piece, times) for piece in pieces]), blocked)
     assert_same_check(higher, found)
-    halves = check(np.concatenate([split(piece, t) for piece in pieces]), blocked, corner_cutting)
+    halves = check(np.concatenate([split(piece, t) for piece in pieces]), blocked)
     assert halves.feasible == found.feasible
     if not found.feasible:
         piece, part = divmod(halves.collision_at, 2)
         back = piece + (part * t if part < 1 else t + (part - 1) * (1 - t))
         assert back == pytest.approx(found.collision_at, abs=1e-4)
-    reverse = check(pieces[::-1, ::-1], blocked, corner_cutting)
+    reverse = check(pieces[::-1, ::-1], blocked)
     assert reverse.feasible == found.feasible
     assert reverse.clearance == pytest.approx(found.clearance, abs=2e-9)
 
@@ -530,4 +521,3 @@ def test_lattice_centre_and_any_angle_paths(grid, start, target):
             assert found.intervals <= 64 + len(bound.points)
     lengths = [bound.length for bound in bounds]
     assert all(later <= earlier * (1 + 1e-12) for earlier, later in itertools.pairwise(lengths))
-    assert shortest_path(problem, "closed").length >= lengths[-1] * (1 - 1e-12)

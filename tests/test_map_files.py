@@ -1,15 +1,13 @@
 """Maps that people have: ROS map_server maps and MovingAI grids, and every fault in one line."""
 
 import json
-import math
-import re
 
 import numpy as np
 import pytest
 from PIL import Image
 
 import bezierplan as bp
-from bezierplan.workspaces import files
+from bezierplan.workspaces import files, robot
 
 YAML = (
     "image: room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: "
@@ -95,20 +93,6 @@ def test_negated_colours(tmp_path):
     )
 
 
-def test_a_robots_radius_makes_obstacles_grow(tmp_path):
-    wide = np.full((9, 9), 254, dtype=np.uint8)
-    wide[4, 4] = 0
-    grown = ros_map(tmp_path, pixels=wide, robot_radius=0.6).occupied
-    # Of cells of 0.5 m, those with less than 0.6 m between their square and that of the obstacle,
-    # or the border.
-    row, column = np.indices(grown.shape)
-    apart = (
-        np.hypot(np.maximum(np.abs(row - 4) - 1, 0), np.maximum(np.abs(column - 4) - 1, 0)) * 0.5
-    )
-    inside = np.minimum(np.minimum(row, 8 - row), np.minimum(column, 8 - column)) * 0.5
-    assert np.array_equal(grown, (apart < 0.6) | (inside < 0.6))
-
-
 GREY = np.array([[0, 60, 100, 101], [128, 205, 254, 255]], dtype=np.uint8)
 
 
@@ -131,15 +115,11 @@ def test_modes_and_unknown_pixels(tmp_path, mode, unknown, free):
     assert "".join(".#"[int(cell)] for cell in ~grid.occupied[::-1].ravel()) == free
 
 
-@pytest.mark.parametrize("yaw", ["-nan", "nan", ".nan", "6.283185307179586", "1e-9"])
-def test_a_yaw_that_is_none(tmp_path, yaw, caplog):
+@pytest.mark.parametrize("yaw", ["-nan", ".nan", "6.283185307179586", "1e-9"])
+def test_a_yaw_that_is_none(tmp_path, yaw):
+    """map_saver writes nan for an orientation that is not valid."""
     grid = ros_map(tmp_path, YAML.replace("2.0, 0.0]", f"2.0, {yaw}]"))
     assert grid.bounds == (-1.0, 1.0, 2.0, 3.5)
-    assert len(caplog.messages) == ("nan" in yaw)
-    assert all(
-        re.fullmatch(r"room\.yaml: origin: yaw -?nan counts as 0; .*", told)
-        for told in caplog.messages
-    )
 
 
 def test_an_image_without_a_yaml_file(tmp_path):
@@ -154,15 +134,9 @@ def test_an_image_without_a_yaml_file(tmp_path):
         read = bp.read_map(tmp_path / name, resolution=0.5 / 16)
         assert np.array_equal(read.occupied[::16, ::16], grid.occupied)
         assert read.bounds == grid.bounds
-    with pytest.raises(
-        ValueError,
-        match=r"resolution: missing; "
-        r"expected the length of a pixel's side, or the YAML file of .*room\.PNG",
-    ):
+    with pytest.raises(ValueError, match="resolution: missing key; the side of a pixel"):
         bp.read_map(tmp_path / "room.PNG")
-    with pytest.raises(ValueError, match=r"nowhere\.png: no such file"):
-        bp.read_map(tmp_path / "nowhere.png")
-    with pytest.raises(ValueError, match=r"nowhere\.png: cannot be read"):
+    with pytest.raises(ValueError, match=r"nowhere\.png: image: nowhere.png: cannot be read"):
         bp.read_map(tmp_path / "nowhere.png", resolution=1.0)
 
 
@@ -204,78 +178,45 @@ def test_a_margin_is_for_files_without_a_border(tmp_path):
         (
             "court.geojson",
             {},
-            "court.geojson: no border; expected a polygon with role border, a bbox, or a margin",
+            "court.geojson: no border; expected a polygon with role border",
         ),
         ("room.geojson", {"margin": 2}, "^margin: 2: the file has a border of its own"),
-        ("court.geojson", {"margin": -1}, "^margin: -1; expected a number of at least 0"),
-        ("court.geojson", {"margin": math.inf}, "^margin: inf; expected a number of at least 0"),
-        ("court.geojson", {"resolution": 1.0}, "^resolution: only for an image"),
-        ("court.geojson", {"unknown": "free"}, "^unknown: only for a ROS map or an image"),
+        (
+            "court.geojson",
+            {"margin": -1},
+            "^margin: -1: expected in a file without a border",
+        ),
+        ("court.geojson", {"resolution": 1.0}, "^resolution: not for maps of kind polygons"),
+        ("court.geojson", {"unknown": "free"}, "^unknown: not for maps of kind polygons"),
     ):
         with pytest.raises(ValueError, match=told):
             bp.read_map(tmp_path / file, **options)
 
 
 ROS_FAULTS = {
-    "resolution of 0": (
-        ("resolution: 0.5", "resolution: 0"),
-        "room.yaml: resolution: 0; expected a number above 0",
-    ),
-    "resolution in words": (
-        ("resolution: 0.5", "resolution: fine"),
-        "room.yaml: resolution: fine; expected a number",
-    ),
-    "no image": (
-        ("image: room.png", "image: hall.png"),
-        "room.yaml: image: hall.png: no such file",
-    ),
-    "no key image": (
-        ("image: room.png\n", ""),
-        "room.yaml: image: missing; expected the keys image, resolution",
-    ),
-    "no resolution": (
-        ("resolution: 0.5\n", ""),
-        "room.yaml: resolution: missing; expected a number",
-    ),
-    "turned": (("2.0, 0.0]", "2.0, 0.3]"), "room.yaml: origin: .*; expected a yaw of 0"),
-    "origin": (("[-1.0, 2.0, 0.0]", "here"), r"room.yaml: origin: here; expected \[x, y, yaw\]"),
-    "thresholds": (
-        ("free_thresh: 0.196", "free_thresh: 0.9"),
-        "room.yaml: free_thresh: 0.9; expected a number from 0 to occupied_thresh",
-    ),
-    "mode": (
-        ("negate: 0", "negate: 0\nmode: Raw"),
-        "room.yaml: mode: Raw; expected one of trinary, scale, raw",
-    ),
-    "far away": (
-        ("[-1.0, 2.0, 0.0]", "[1e9, 0, 0]"),
-        "room.yaml: origin, resolution: the border: 1e.09 is not a coordinate",
-    ),
-    "no mapping": ((YAML, "just a word\n"), "room.yaml: image: missing"),
+    "resolution of 0": (("resolution: 0.5", "resolution: 0"), "resolution: 0: expected units per"),
+    "resolution in words": (("on: 0.5", "on: fine"), "resolution: 'fine': expected units per"),
+    "no image": (("image: room.png", "image: hall.png"), "image: hall.png: no such file"),
+    "no key image": (("image: room.png\n", ""), "image: missing key; the name of an image"),
+    "turned": (("2.0, 0.0]", "2.0, 0.3]"), "origin: .*: expected .x, y, yaw."),
+    "origin": (("[-1.0, 2.0, 0.0]", "here"), "origin: 'here': expected .x, y, yaw."),
+    "mode": (("negate: 0", "negate: 0\nmode: Raw"), "mode: Raw: unknown; did you mean raw"),
+    "no mapping": ((YAML, "just a word\n"), "'just a word': expected a mapping with image"),
 }
 
 
 @pytest.mark.parametrize("fault", ROS_FAULTS)
 def test_ros_fault_is_one_line(tmp_path, fault):
     (old, new), told = ROS_FAULTS[fault]
-    with pytest.raises(ValueError, match=told) as found:
+    with pytest.raises(ValueError, match=f"^room.yaml: {told}") as found:
         ros_map(tmp_path, YAML.replace(old, new))
     assert "\n" not in str(found.value)
 
 
 def test_a_huge_image_is_refused_before_it_is_read(tmp_path):
-    ros_map(tmp_path)
-    header = b"P5\n100000 100000\n255\n"
-    (tmp_path / "huge.pgm").write_bytes(header)
-    (tmp_path / "room.yaml").write_text(YAML.replace("room.png", "huge.pgm"))
-    with pytest.raises(
-        ValueError,
-        match=r"image: 100,000 x 100,000 pixels; "
-        r"expected at most 16,000,000; most_pixels raises the limit",
-    ):
-        files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
-    with pytest.raises(ValueError, match=r"4 x 3 pixels; expected at most 11"):
-        ros_map(tmp_path, most_pixels=11)
+    (tmp_path / "huge.pgm").write_bytes(b"P5\n5000 4000\n255\n")
+    with pytest.raises(ValueError, match="4,000 x 5,000 cells; expected at most 16,000,000"):
+        bp.read_map(tmp_path / "huge.pgm", resolution=1.0)
 
 
 def test_what_is_no_image_is_refused(tmp_path):
@@ -312,12 +253,10 @@ def test_map_fault_is_one_line(tmp_path, fault):
     assert str(found.value).startswith("room.map: ")
 
 
-def test_a_robots_radius_leaves_cells_free_that_are_as_far(tmp_path):
-    wide = np.full((11, 11), 254, dtype=np.uint8)
-    wide[5, 5] = 0
+def test_a_robots_radius_leaves_cells_free_that_are_as_far():
+    wide = np.zeros((11, 11), dtype=bool)
+    wide[5, 5] = True
     # The eight cells around an occupied one touch it; those beyond are 0.5 m away from it, as are
     # those beside the border from that.
-    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5).occupied.sum() == 9 + 40
-    assert (
-        ros_map(tmp_path, pixels=wide, robot_radius=0.5 + 1e-6).occupied.sum() == 9 + 12 + 40 + 32
-    )
+    for radius, occupied in {0.5: 9 + 40, 0.5 + 1e-6: 9 + 12 + 40 + 32}.items():
+        assert robot.by_cells(bp.Grid(wide, 0.5, "m"), radius).occupied.sum() == occupied

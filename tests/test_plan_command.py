@@ -252,7 +252,7 @@ FAULTS = {
         "--out: path.pdf; expected a file that ends in .svg, .png",
     ),
     "the map itself": ([GAPS, *ENDS, "--out", GAPS], "--out: .*with the map's name"),
-    "cell": ([GAPS, *ENDS, "--cell", "inf"], "--cell: inf; expected a number above 0"),
+    "cell": ([GAPS, *ENDS, "--cell", "inf"], "--cell: inf: expected the side of a cell"),
     "folder": (
         [GAPS, *ENDS, "--out", "nowhere/path.svg"],
         "--out: nowhere/path.svg: no folder nowhere; expected one that exists",

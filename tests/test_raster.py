@@ -116,9 +116,7 @@ def test_an_obstacle_without_a_cell_is_told(caplog):
 
 
 def test_too_many_cells_are_refused():
-    with pytest.raises(
-        ValueError, match=r"cell: 0.001: the grid would have 20001 x 20001 cells; expected at most"
-    ):
+    with pytest.raises(ValueError, match=r"20,001 x 20,001 cells; expected at most 16,000,000"):
         drawn("gaps", 0.001, "overlap")
 
 

@@ -245,7 +245,6 @@ def read_map(
     margin: float | None = None,
     resolution: float | None = None,
     unknown: str | None = None,
-    most_pixels: int | None = None,
 ) -> Workspace:
     """Read a map from a file.
 
@@ -271,8 +270,6 @@ def read_map(
         dark pixels are occupied.
     unknown : {"occupied", "free"}, optional
         What pixels of a ROS map or an image count as that are unknown; occupied by default.
-    most_pixels : int, optional
-        The most pixels of an image.
 
     Returns
     -------

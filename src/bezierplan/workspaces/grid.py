@@ -9,20 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bezierplan.workspaces import text_file
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grown import Grown
-from bezierplan.workspaces.limits import check_numbers
+from bezierplan.workspaces.limits import check_cells, check_numbers
 from bezierplan.workspaces.polygons import Polygons
 
 # A coordinate this close below a grid line, in cells, counts as on it. Control points at cell
 # centres put many samples of a curve exactly on grid lines, where rounding alone would decide; with
 # this margin every program finds the same cell: the one above or to the right.
 ON_LINE = 1e-9
-
-MOST_CELLS = 4_000_000
-"""Most cells of a map file."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +108,7 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     """A grid from text, top row first: `.` is a free cell, `#` an occupied one.
 
     Raises ValueError, naming the line, for an empty or ragged map, for any other character, and for
-    more than `MOST_CELLS` cells.
+    too many cells.
 
     >>> room = from_lines(["....", ".##.", "#..."], cell=0.5, unit="m")
     >>> room.occupied[0].tolist()
@@ -136,10 +132,7 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
                 f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all "
                 "lines need the same number"
             )
-    if len(lines) * len(lines[0]) > MOST_CELLS:
-        raise ValueError(
-            f"{len(lines):,} x {len(lines[0]):,} cells; expected at most {MOST_CELLS:,} cells"
-        )
+    check_cells(len(lines), len(lines[0]))
     occupied = np.array(
         [np.frombuffer(line.encode(), dtype=np.uint8) == ord("#") for line in reversed(lines)]
     )
@@ -150,28 +143,17 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
     """Heights (rows, columns) of a grid of that shape from text: one number per cell, separated by
     spaces, top row first.
 
-    Raises ValueError, naming the line, for a wrong number of rows or cells, and for anything that
-    is not a finite number within the limits of coordinates.
+    Raises ValueError for a wrong number of rows or cells, and for anything that is not a finite
+    number within the limits of coordinates.
     """
-    rows, columns = shape
-    if len(lines) != rows:
-        raise ValueError(f"{len(lines)} lines of heights; expected {rows}, as many as the map has")
-    heights = np.empty(shape)
-    for number, line in enumerate(lines, start=1):
-        words = line.split()
-        if len(words) != columns:
-            raise ValueError(
-                f"line {number} has {len(words)} heights; "
-                f"expected {columns}, as many as the map has cells"
-            )
-        for column, word in enumerate(words):
-            try:
-                heights[rows - number, column] = text_file.number(word)
-            except ValueError:
-                raise ValueError(
-                    f"line {number}: {word[:40]!r} is not a height; expected a finite number"
-                ) from None
-        check_numbers(heights[rows - number], f"line {number}")
+    try:
+        heights = np.array([line.split() for line in reversed(lines)], dtype=float)
+    except ValueError:
+        heights = np.empty(0)
+    if heights.shape != shape:
+        rows, columns = shape
+        raise ValueError(f"expected {rows} lines of {columns} numbers, one a cell")
+    check_numbers(heights, "heights")
     return heights
 
 

@@ -2,12 +2,9 @@
 also judged on the map itself.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from bezierplan.workspaces.files import Workspace
 
 
 class Grown(NamedTuple):
@@ -16,17 +13,17 @@ class Grown(NamedTuple):
     """
 
     radius: float
-    original: "Workspace"
+    original: Any
     centres: np.ndarray
 
 
-def grown_of(workspace: "Workspace") -> Grown | None:
+def grown_of(workspace: Any) -> Grown | None:
     """By how much a map has grown and from which; None for a map as it was given."""
     drawn = getattr(workspace, "drawn", None)
     return (drawn.grown if drawn else None) or workspace.grown
 
 
-def original(workspace: "Workspace") -> "Workspace":
+def original(workspace: Any) -> Any:
     """The map before it grew."""
     grown = grown_of(workspace)
     return grown.original if grown else workspace

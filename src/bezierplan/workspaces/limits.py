@@ -5,6 +5,9 @@ import numpy as np
 LARGEST = 1e5
 """Largest size of a coordinate, in units: beyond it the checker could not keep its tolerance."""
 
+MOST_CELLS = 16_000_000
+"""Most cells or pixels of a map: 4,000 x 4,000."""
+
 SMALLEST_GAP = 1e-7
 """Between obstacles, or an obstacle and the border, a smaller gap, in units, is meant to be closed:
 the checker could not tell.
@@ -31,6 +34,12 @@ def check_numbers(values: np.ndarray, where: str) -> None:
             f"{where}: {wrong[0]:g} is not a coordinate; expected finite numbers of at most "
             f"{LARGEST:g} in size"
         )
+
+
+def check_cells(rows: int, columns: int) -> None:
+    """Raise ValueError for more than `MOST_CELLS` cells."""
+    if rows * columns > MOST_CELLS:
+        raise ValueError(f"{rows:,} x {columns:,} cells; expected at most {MOST_CELLS:,}")
 
 
 def check_bounds(bounds: tuple[float, float, float, float]) -> None:

@@ -11,14 +11,12 @@ from typing import Literal
 import numpy as np
 
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.limits import check_cells, check_thickness
 from bezierplan.workspaces.polygons import Polygons
 
 logger = logging.getLogger(__name__)
 
 Rule = Literal["overlap", "centre"]
-
-# More cells than this indicate a mistake in `cell`.
-MOST_CELLS = 4_000_000
 
 # Two sides closer than this, in cells, count as one: walls often lie on grid lines.
 _SAME_LINE = 1e-6
@@ -31,18 +29,15 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
     free cells is free; or if its centre lies in one or on its edge (`centre`), so that a path may
     cut up to half a cell into a wall. A cell whose centre is outside the border is occupied.
 
-    Raises ValueError, naming the key, for more than `MOST_CELLS` cells. Warns of obstacles that
+    Raises ValueError for cells that are too small or too many. Warns of obstacles that
     occupy no cell.
     """
     import shapely
 
+    check_thickness(cell, "cell:")
     left, right, bottom, top = polygons.bounds
     columns, rows = (round((high - low) / cell) + 1 for low, high in ((left, right), (bottom, top)))
-    if rows * columns > MOST_CELLS:
-        raise ValueError(
-            f"cell: {cell:g}: the grid would have {rows} x {columns} cells; expected at most "
-            f"{MOST_CELLS:g}, so a larger cell"
-        )
+    check_cells(rows, columns)
     x, y = left + cell * np.arange(columns), bottom + cell * np.arange(rows)
     occupied = (y[:, None] > top + _SAME_LINE * cell) | (x > right + _SAME_LINE * cell)
     for number, (outer, *holes) in enumerate(polygons.obstacles):

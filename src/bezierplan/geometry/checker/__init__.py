@@ -13,13 +13,12 @@ the type of the region when the kernel is compiled.
 """
 
 import math
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry.checker.certificates import is_free
 from bezierplan.geometry.checker.collision import first_collision
-from bezierplan.geometry.checker.corner_cutting import CONTACT_RADIUS, first_corner_cut
 from bezierplan.geometry.checker.distances import (
     CLEARANCE_TOLERANCE,
     DEPTH_TOLERANCE,
@@ -32,7 +31,7 @@ from bezierplan.geometry.checker.hulls import (
     TOLERANCE,
     resolution,
 )
-from bezierplan.geometry.region import CircleRegion, GridRegion, Region, from_origin
+from bezierplan.geometry.region import CircleRegion, Region, from_origin
 
 __all__ = ["TOLERANCE", "Check", "check", "first_collision", "is_free", "refuse_unfit"]
 
@@ -53,7 +52,7 @@ class Check(NamedTuple):
     depth : float
         Largest depth in the blocked region, in units: the distance to free space; where discs
         overlap or extend beyond the border, the largest of their depths, a lower bound. 0 when
-        free, and where a path cuts a closed corner.
+        free.
     clearance : float
         Least distance to the blocked region, in units; 0 when colliding.
     tolerance : float
@@ -70,9 +69,7 @@ class Check(NamedTuple):
     intervals: int
 
 
-def check(
-    pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open"
-) -> Check:
+def check(pieces: np.ndarray, region: Region) -> Check:
     """Check a path of Bézier pieces.
 
     Parameters
@@ -81,9 +78,6 @@ def check(
         Control points, in the region's unit; each piece begins where the previous one ends.
     region : Region
         The blocked region of a workspace (`region.region`).
-    corner_cutting : {'open', 'closed'}
-        Whether a path may pass between two occupied cells that share only a corner; touching the
-        corner is always allowed. Only matters on grids.
 
     Returns
     -------
@@ -94,7 +88,7 @@ def check(
     ------
     ValueError
         For coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above
-        32; for a degree above 60; and for an unknown corner-cutting rule.
+        32, and for a degree above 60.
 
     Notes
     -----
@@ -117,15 +111,9 @@ def check(
     (True, 0.25)
     """
     pieces = np.ascontiguousarray(pieces, dtype=float)
-    if corner_cutting not in ("open", "closed"):
-        raise ValueError(f"unknown rule of corner cutting {corner_cutting!r}; known: open, closed")
     refuse_unfit(pieces)
     pieces = from_origin(pieces, region)
     collision_at, intervals = first_collision(pieces, region)
-    if corner_cutting == "closed" and isinstance(region, GridRegion):
-        cut_at = first_corner_cut(pieces, region.contacts, CONTACT_RADIUS * region.cell)
-        if cut_at < collision_at:
-            return Check(False, cut_at, 0.0, 0.0, 0.0, intervals)
     if collision_at < math.inf:
         depth = largest_depth(pieces, region, collision_at)
         return Check(

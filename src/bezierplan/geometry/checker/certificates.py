@@ -147,10 +147,6 @@ def _is_free_in_grid(points, region):
     return True
 
 
-def _depth_in_grid(x, y, region):
-    return distance_to_edges(x, y, region.edges, region.bins) if is_blocked(x, y, region) else 0.0
-
-
 # --------------------------------------------------------------------------------------------------
 # Distance to boundary edges, for cells and polygons
 
@@ -193,6 +189,10 @@ def _largest_distance_to_edges(
                         other = distance_to_segment(other_x, other_y, ax, ay, bx, by)
                         least = min(least, max(first, other))
     return least
+
+
+def _depth_by_edges(x, y, region):
+    return distance_to_edges(x, y, region.edges, region.bins) if is_blocked(x, y, region) else 0.0
 
 
 def _depth_bound_by_edges(points, region):
@@ -292,17 +292,10 @@ def _depth_bound_in_circles(points, region):
 # Polygons: chains of the boundary edges that a hull touches
 
 
-def _depth_in_polygons(x, y, region):
-    """A point is in free space if a ray from it crosses the boundary an odd number of times."""
-    inside_free = False
-    for ax, ay, bx, by in region.edges:
-        if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
-            inside_free = not inside_free
-    return 0.0 if inside_free else distance_to_edges(x, y, region.edges, region.bins)
-
-
 def _is_blocked_in_polygons(x, y, region):
-    """As `_depth_in_polygons`, where only edges near the point and its ray are looked at."""
+    """A point is in free space if a ray from it crosses the boundary an odd number of times; only
+    edges near the point and its ray are looked at.
+    """
     bins, edges = region.bins, region.edges
     row = int((y - bins.low[1]) // bins.side)
     begin, _ = columns_between(x, x, bins)
@@ -463,9 +456,9 @@ _IS_FREE = {
     PolygonRegion: _is_free_in_polygons,
 }
 _DEPTH_AT = {
-    GridRegion: _depth_in_grid,
+    GridRegion: _depth_by_edges,
     CircleRegion: _depth_in_circles,
-    PolygonRegion: _depth_in_polygons,
+    PolygonRegion: _depth_by_edges,
 }
 _DEPTH_BOUND = {
     GridRegion: _depth_bound_by_edges,

@@ -5,8 +5,6 @@ They use the same region as the certified check, which finds the resulting paths
 allowed. There is one file for each kind of region, and one for the lattice.
 """
 
-from typing import Literal
-
 import numpy as np
 
 from bezierplan.geometry.checker import TOLERANCE, check
@@ -21,20 +19,13 @@ from bezierplan.workspaces.problem import Problem
 __all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_path"]
 
 
-def shortest_path(
-    problem: Problem,
-    corner_cutting: Literal["open", "closed"] = "open",
-    blocked: Region | None = None,
-) -> Bound:
+def shortest_path(problem: Problem, blocked: Region | None = None) -> Bound:
     """The shortest path from start to target.
 
     Parameters
     ----------
     problem : Problem
         The workspace with both ends.
-    corner_cutting : {'open', 'closed'}
-        Whether it may pass between two occupied cells that share only a corner; only matters on
-        grids.
     blocked : Region, optional
         The region of the workspace, if it is known.
 
@@ -42,12 +33,6 @@ def shortest_path(
     -------
     Bound
         No path if start or target is blocked.
-
-    Raises
-    ------
-    ValueError
-        For an unknown corner-cutting rule, and for the rule `closed` on a grid with more than
-        `grid.MOST_NODES` corners.
 
     Notes
     -----
@@ -70,10 +55,10 @@ def shortest_path(
     """
     blocked = region(problem.workspace) if blocked is None else blocked
     for point in (problem.start, problem.target):
-        if not check(np.array([[point, point]]), blocked, corner_cutting).feasible:
+        if not check(np.array([[point, point]]), blocked).feasible:
             return no_path()
     if isinstance(blocked, GridRegion):
-        return shortest_on_grid(problem, blocked, corner_cutting)
+        return shortest_on_grid(problem, blocked)
     if isinstance(blocked, CircleRegion):
         return shortest_around_circles(problem, blocked)
     return shortest_among_polygons(problem, blocked)

@@ -35,35 +35,32 @@ _SAME_FRACTION = 1e-12
 _CENTRE_TOLERANCE = 1e-9
 
 
-def shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str) -> Bound:
+def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
     """The visibility graph of start, target and the corners at which a shortest path can turn.
 
-    Those are the vertices with exactly one occupied cell around them, and contacts. A closed
-    contact becomes two nodes, one per free quadrant, each with directions of its own quadrant only.
+    Those are the vertices with exactly one occupied cell around them, and contacts, at which two
+    occupied cells share only a corner.
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
-    corners, slopes, quadrants = _grid_corners(cells, corner_cutting == "closed")
+    corners, slopes = _grid_corners(cells)
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
     lattice = np.concatenate(
         [np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale]
     )
     most = _FEW_NODES if cells.size > _MANY_CELLS else MOST_NODES
-    if len(lattice) > most and corner_cutting == "open":
+    if len(lattice) > most:
         if not _joined(cells, lattice[0], lattice[1], scale):
             return no_path()
         direct = bool((lattice[0] == lattice[1]).all()) or _sees(
-            lattice[0], lattice[1], cells, scale, False
+            lattice[0], lattice[1], cells, scale
         )
         points = np.concatenate([ends / blocked.cell, corners])
         nodes = shadows.search(
             shadows.scene(cells, corners, slopes, scale), lattice[:2], points, direct
         )
         return moved(along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
-    refuse_large(len(lattice))
-    slopes = np.concatenate([[0, 0], slopes])
-    quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
-    visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, corner_cutting == "closed")
+    visible = _visible_on_grid(lattice, np.concatenate([[0, 0], slopes]), cells, scale)
     return moved(
         shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin
     )
@@ -87,8 +84,7 @@ def centre_path(problem: Problem) -> Bound:
     refuse_large(len(cells))
     lattice = 2 * cells[:, ::-1] + 1
     any_slope = np.zeros(len(cells), dtype=np.int64)
-    any_quadrant = np.zeros((len(cells), 2), dtype=np.int64)
-    visible = _visible_on_grid(lattice, any_slope, any_quadrant, walled(grid.occupied), 2, False)
+    visible = _visible_on_grid(lattice, any_slope, walled(grid.occupied), 2)
     return moved(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
 
 
@@ -113,12 +109,9 @@ def refuse_large(nodes: int) -> None:
         )
 
 
-def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Corners (n, 2) as x and y in cells, slopes (n,) and quadrants (n, 2) of the directions that a
-    shortest path can take from them.
-
-    A slope of +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0. A quadrant holds the
-    signs of dx and dy, or zeros for any.
+def _grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (n, 2) as x and y in cells, and slopes (n,) of the directions that a shortest path
+    can take from them: +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0.
     """
     below_left, below_right, above_left, above_right = around = occupied_around(cells)
     number = around.view(np.int8).sum(axis=0, dtype=np.int8)
@@ -130,15 +123,7 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
     row, column = np.nonzero(rising | falling)
     corners = np.column_stack([column, row])
     slopes = np.where(rising[row, column], 1, -1)
-    quadrants = np.zeros_like(corners)
-    if closed:
-        contact = pair[row, column]
-        twice = np.repeat(np.arange(len(corners)), np.where(contact, 2, 1))
-        corners, slopes, contact = corners[twice], slopes[twice], contact[twice]
-        first = np.concatenate([[True], twice[1:] != twice[:-1]])[: len(twice)]
-        side = np.where(first, 1, -1)
-        quadrants = np.where(contact[:, None], np.column_stack([side, side * slopes]), 0)
-    return corners, slopes, quadrants
+    return corners, slopes
 
 
 def _lattice(points: np.ndarray, finest: int) -> int:
@@ -172,10 +157,8 @@ def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int
 def _visible_on_grid(
     nodes: np.ndarray,
     slopes: np.ndarray,
-    quadrants: np.ndarray,
     cells: np.ndarray,
     scale: int,
-    closed: bool,
 ) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
@@ -188,36 +171,23 @@ def _visible_on_grid(
             dy = nodes[j, 1] - nodes[i, 1]
             if slopes[i] * dx * dy < 0 or slopes[j] * dx * dy < 0:
                 continue
-            if not (_in_quadrant(dx, dy, quadrants[i]) and _in_quadrant(-dx, -dy, quadrants[j])):
-                continue
-            if dx == 0 and dy == 0:
-                # The two nodes of a closed contact coincide and do not see each other.
-                visible[i, j] = quadrants[i, 0] == 0 or quadrants[j, 0] == 0
-            else:
-                visible[i, j] = _sees(nodes[i], nodes[j], cells, scale, closed)
+            visible[i, j] = (dx == 0 and dy == 0) or _sees(nodes[i], nodes[j], cells, scale)
     return visible
 
 
 @allocation_free
-def _in_quadrant(dx: int, dy: int, quadrant: np.ndarray) -> bool:
-    return dx * quadrant[0] >= 0 and dy * quadrant[1] >= 0
-
-
-@allocation_free
-def _sees(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int, closed: bool) -> bool:
+def _sees(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int) -> bool:
     """Whether the segment between two different points of the lattice is free."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     if dx == 0:
-        return _sees_along_column(start[0], min(start[1], end[1]), abs(dy), cells, scale, closed)
+        return _sees_along_column(start[0], min(start[1], end[1]), abs(dy), cells, scale)
     if dy == 0:
-        return _sees_along_column(start[1], min(start[0], end[0]), abs(dx), cells.T, scale, closed)
-    return _sees_across(start[0], start[1], dx, dy, cells, scale, closed)
+        return _sees_along_column(start[1], min(start[0], end[0]), abs(dx), cells.T, scale)
+    return _sees_across(start[0], start[1], dx, dy, cells, scale)
 
 
 @allocation_free
-def _sees_along_column(
-    x: int, low: int, length: int, cells: np.ndarray, scale: int, closed: bool
-) -> bool:
+def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int) -> bool:
     """Whether a vertical segment is free. On a grid line it runs along edges, which are blocked if
     both of their cells are occupied.
     """
@@ -226,23 +196,11 @@ def _sees_along_column(
     for row in range(low // scale, (low + length - 1) // scale + 1):
         if cells[row + 1, column + 1] and (not on_line or cells[row + 1, column]):
             return False
-        if closed and on_line and row * scale > low and _is_contact(cells, row, column):
-            return False
     return True
 
 
 @allocation_free
-def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
-    """Whether two occupied cells share only a corner at a vertex, given by its grid lines."""
-    below_left, below_right = cells[row, column], cells[row, column + 1]
-    above_left, above_right = cells[row + 1, column], cells[row + 1, column + 1]
-    return below_left == above_right and below_right == above_left and below_left != below_right
-
-
-@allocation_free
-def _sees_across(
-    x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int, closed: bool
-) -> bool:
+def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int) -> bool:
     """Whether a slanted segment is free: a walk over the cells that it enters.
 
     to_x and to_y are the distances from the segment's start to the next vertical and horizontal
@@ -260,13 +218,6 @@ def _sees_across(
         if to_x >= width and to_y >= height:
             return True
         order = to_x * height - to_y * width
-        if (
-            order == 0
-            and closed
-            and cells[row + 1, column + 1 + step_x]
-            and cells[row + 1 + step_y, column + 1]
-        ):
-            return False
         if order <= 0:
             column += step_x
             to_x += scale

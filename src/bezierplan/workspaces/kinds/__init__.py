@@ -25,19 +25,17 @@ from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any, ClassVar
 
-from pydantic import AfterValidator, Field, PlainValidator
+from pydantic import AfterValidator, Field
 
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
-    DEVICES,
-    LONGEST_NAME,
     Line,
     Model,
     NotNegative,
     Number,
     Positive,
     after,
-    expected,
+    is_line,
     is_number,
     keys,
     unwrapped,
@@ -48,32 +46,13 @@ from bezierplan.schema.model import (
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.text_file import read_text
 
-_NOT_IN_NAMES = frozenset('{}*?[]<>|":\\')
-"""Characters that Snakemake reads as a pattern, or that no file can have on Windows."""
+
+def _is_file_name(entry: Any) -> bool:
+    """Whether it can be a file's name, which Snakemake does not read as a pattern."""
+    return is_line(entry, 200) and not set("{}*?[]\\") & set(entry)
 
 
-def _fits_everywhere(part: str) -> bool:
-    """Whether a file or folder can have a name on every system."""
-    return (
-        part == part.strip()
-        and len(part) <= LONGEST_NAME
-        and part.partition(".")[0].lower() not in DEVICES
-    )
-
-
-def _check_file(value: Any) -> str:
-    if not (isinstance(value, str) and value.isprintable() and 0 < len(value) <= 200):
-        raise expected("the name of a file")
-    if _NOT_IN_NAMES & set(value) or not all(map(_fits_everywhere, value.split("/"))):
-        wanted = (
-            f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and "
-            "names of devices"
-        )
-        raise wrong(f"{value!r}: expected {wanted}")
-    return value
-
-
-_IS_FILE = PlainValidator(_check_file)
+_IS_FILE = value(_is_file_name, "the name of a file, without { } * ? [ ]")
 File = Annotated[str, _IS_FILE]
 Unit = Annotated[
     str,
@@ -113,6 +92,7 @@ MARGIN = (
     "in a file without a border, how far the border lies from the obstacles, in units, a "
     "number of at least 0"
 )
+UNKNOWN = "what pixels count as that are unknown: occupied or free"
 CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 
 

@@ -10,7 +10,6 @@ from bezierplan.workspaces import raster
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, text
-from bezierplan.workspaces.limits import check_thickness
 
 
 class Options(Workspace):
@@ -29,7 +28,6 @@ class Options(Workspace):
 
 def load(description: dict, folder: Path) -> Grid:
     """The cells that the polygons of a GeoJSON file occupy."""
-    check_thickness(description["cell"], "cell:")
     content = text(description, "file", folder)
     with naming(description["file"]):
         polygons = polygons_from_geojson(content, description["unit"], description.get("margin"))

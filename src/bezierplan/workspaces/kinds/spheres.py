@@ -1,6 +1,5 @@
 """Spheres in a box: three dimensions, which only panels of kind `spheres` show."""
 
-import math
 from pathlib import Path
 from typing import Annotated
 
@@ -28,17 +27,8 @@ def load(description: dict, folder: Path) -> Spheres:
     """The spheres that a description lists."""
     x_low, x_high, y_low, y_high, z_low, z_high = map(float, description["bounds"])
     bounds = x_low, x_high, y_low, y_high, z_low, z_high
-    check_numbers(np.array(bounds), "bounds")
-    if not all(low < high for low, high in zip(bounds[::2], bounds[1::2])):
-        raise ValueError(f"bounds: {list(bounds)}; expected {BOUNDS} with low below high")
     table = np.array(description["spheres"], dtype=float).reshape(-1, 4)
     check_numbers(table, "spheres")
     for i, radius in enumerate(table[:, 3]):
         check_thickness(radius, f"spheres: sphere {i}: radius")
-    for i, (*centre, radius) in enumerate(table.tolist()):
-        if math.dist(centre, np.clip(centre, bounds[::2], bounds[1::2])) >= radius:
-            raise ValueError(
-                f"spheres: sphere {i}: lies outside the bounds; "
-                "expected a sphere that reaches into them"
-            )
     return Spheres(bounds, table[:, :3], table[:, 3], description["unit"])

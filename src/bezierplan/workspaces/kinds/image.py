@@ -1,0 +1,28 @@
+"""An image, whose pixels are cells."""
+
+from pathlib import Path
+from typing import ClassVar
+
+from pydantic import Field
+
+from bezierplan.workspaces import ros
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.kinds import UNKNOWN, File, Size, Workspace, naming
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    made: ClassVar[str] = "grid"
+
+    file: File = Field(description="an image in the study's folder; dark pixels are occupied")
+    resolution: Size = Field(description="the side of a pixel, a number of at least 1e-6")
+    unknown: ros.Unknown = Field("occupied", description=UNKNOWN)
+
+
+def load(description: dict, folder: Path) -> Grid:
+    """The pixels of an image, with its lower left corner at 0, 0."""
+    with naming(description["file"]):
+        unknown = description.get("unknown", "occupied")
+        image = folder / description["file"]
+        return ros.read_image(image, description["resolution"], description["unit"], unknown)
