@@ -9,7 +9,7 @@ import pytest
 from fields import assert_path_fits, drawn
 
 from bezierplan.geometry import cell_length, curves, shortest_paths
-from bezierplan.planners import grid_genetic, planner_settings, setting_fault
+from bezierplan.planners import grid_genetic
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -19,11 +19,6 @@ SETTINGS = {
     "crossover_probability": 0.8,
     "mutation_probability": 0.2,
     "diagonal_cost": 1.5,
-    "attempts": 40,
-    "longest_walk": 6.0,
-    "least_detour": 3,
-    "detour_share": 0.125,
-    "straight_on": 0.8,
     "random_step": 0.0,
 }
 
@@ -105,14 +100,6 @@ def test_a_diagonal_step_may_pass_between_two_occupied_cells():
     assert found.path.points.tolist() == [[0.5, 0.5], [1.5, 1.5]]
 
 
-def test_few_first_walks_are_filled_with_copies():
-    # Walks through a winding corridor are given up if they may not be much longer than it is.
-    corridor = on_map("........", "#######.", "........", ".#######", "........")
-    found = plan(corridor, attempts=1)
-    assert 0 < found.extra["first_walks"] < 60
-    assert found.objective == least(corridor)
-
-
 def test_start_equal_to_target_is_answered_without_a_search():
     found = plan(on_map("....", "....", target=(0.5, 0.5)))
     assert found.objective == 0
@@ -144,17 +131,9 @@ def test_costs_are_in_units():
     assert plan(problem).objective == pytest.approx(0.1 * plan(drawn(0)).objective, rel=1e-12)
 
 
-def test_same_seed_gives_the_same_bits():
-    one, other = plan(drawn(3), seed=7), plan(drawn(3), seed=7)
-    assert np.array_equal(one.history, other.history)
-    assert np.array_equal(one.path.points, other.path.points)
-
-
-def walker(grid, longest_walk=1000, detour=(3, 4), straight_on=0.8, random_step=0.0):
+def walker(grid, longest_walk=1000, detour=4, random_step=0.0):
     walled = np.pad(grid, 1, constant_values=True)
-    return grid_genetic._Walker(
-        walled.ravel(), walled.shape[1], longest_walk, *detour, straight_on, random_step
-    )
+    return grid_genetic._Walker(walled.ravel(), walled.shape[1], longest_walk, detour, random_step)
 
 
 def is_path(cells, walled, columns):
@@ -311,25 +290,3 @@ def test_a_failed_walk_leaves_the_path_as_it_is():
             grid_genetic._walk_anew(np.random.default_rng(seed), given, walk, 20, last_visit) == 20
         )
         assert np.array_equal(walk[:20], path)
-
-
-def test_settings():
-    kinds = planner_settings(grid_genetic)
-    assert set(kinds) == set(SETTINGS)
-    assert not any(setting_fault(kinds[name], value) for name, value in SETTINGS.items())
-    bad = {
-        "population": 1,
-        "generations": -1,
-        "crossover_probability": 1.1,
-        "mutation_probability": -0.1,
-        "diagonal_cost": 0.9,
-    }
-    bad |= {
-        "attempts": 0,
-        "longest_walk": 0.5,
-        "least_detour": 0,
-        "detour_share": -1.0,
-        "straight_on": 2.0,
-        "random_step": 2.0,
-    }
-    assert all(setting_fault(kinds[name], value) for name, value in bad.items())

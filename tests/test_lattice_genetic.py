@@ -59,15 +59,6 @@ def test_without_the_best_kept_it_may_be_lost_but_not_forgotten():
     assert not np.array_equal(kept.history, lost.history)
 
 
-def test_what_a_chromosome_without_a_path_counts_matters_to_the_roulette():
-    tight = {"longest_join": 65, "generations": 20}
-    one, other = (
-        plan("ga", seed=1, undecodable_length=length, **tight) for length in (36.0, 2000.0)
-    )
-    assert one.history[0] == other.history[0]
-    assert not np.array_equal(one.history, other.history)
-
-
 def test_a_join_that_no_path_fits_in_finds_none():
     assert plan("ga", longest_join=20).path is None
     assert plan("ga_rows", longest_join=20).path is None

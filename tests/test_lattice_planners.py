@@ -48,7 +48,6 @@ SETTINGS = {
         "initial": "uniform",
         "mutation": "cell",
         "longest_join": 600,
-        "undecodable_length": 200.0,
     },
     "ant_colony_genetic": COLONY | GENETIC | {"mutation": "one_cell", "longest_join": 600},
     "fish_swarm_genetic": GENETIC
@@ -56,12 +55,6 @@ SETTINGS = {
         "corners": "one",
         "fish": 20,
         "tries": 8,
-        "sight": 6.0,
-        "crowding": 0.618,
-        "follow_every": 5,
-        "releases": 200,
-        "longest_path": 200,
-        "longest_walk": 60,
     },
 }
 VARIANTS = {
@@ -197,7 +190,7 @@ def test_history_never_rises_and_ends_with_the_objective(name):
 @each_variant
 def test_a_sealed_target_has_no_path(name):
     problem = Problem("test", SEALED, SEALED.centre(0), SEALED.centre(11))
-    found = plan(name, problem, releases=5)
+    found = plan(name, problem)
     assert found.path is None
     assert found.objective == math.inf
     assert not found.claimed_feasible
@@ -252,7 +245,7 @@ def test_lengths_are_in_units(name):
         (200.0, 200.0),
     )
     assert grid.cell == 1.0
-    scaled = plan(name, large, undecodable_length=2000.0)
+    scaled = plan(name, large)
     assert scaled.history == pytest.approx(10 * plan(name, problem).history)
 
 

@@ -115,12 +115,6 @@ FAULTS = {
         "  tries: 0.5\n",
         "tries: 0.5; expected a whole number",
     ),
-    "a path of no cell": (
-        EXPERIMENTS,
-        "  longest_path: 200\n",
-        "  longest_path: 0\n",
-        "longest_path: 0; expected a whole number at least 1",
-    ),
     "a map of blocks without a side": (
         EXPERIMENTS,
         "workspace: blocks60, side: 20,",

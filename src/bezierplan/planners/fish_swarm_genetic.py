@@ -22,6 +22,14 @@ workspaces = ("grid",)
 exact = True
 
 
+# How far a fish sees others, in cells; the share of the fish in sight from which on nobody is
+# followed; steps after which a fish looks for others.
+_SIGHT, _CROWDING, _FOLLOW_EVERY = 6.0, 0.618, 5
+# Most swarms released; cells behind it with which a fish dies; most cells of a section foraged
+# again.
+_RELEASES, _LONGEST_PATH, _LONGEST_WALK = 200, 200, 60
+
+
 class Settings(NamedTuple):
     """Settings of the swarm and the genetic algorithm; ma2020 gives none."""
 
@@ -34,14 +42,6 @@ class Settings(NamedTuple):
         Range(0),
         About("random neighbours examined for one closer to the target before any is taken"),
     ]
-    sight: Annotated[float, Range(0), About("how far a fish sees others", unit="cells")]
-    crowding: Annotated[
-        float, Range(0), About("share of the fish in sight from which on nobody is followed")
-    ]
-    follow_every: Annotated[int, Range(1), About("steps after which a fish looks for others")]
-    releases: Annotated[int, Range(1), About("most swarms released")]
-    longest_path: Annotated[int, Range(1), About("cells behind it with which a fish dies")]
-    longest_walk: Annotated[int, Range(1), About("most cells of a section foraged again")]
     population: Annotated[int, Range(2), About("paths of a generation")]
     generations: Annotated[int, Range(0), About("generations after the first")]
     crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
@@ -59,11 +59,11 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     """Shortest path over the 8-connected lattice of a grid.
 
     Swarms of fish are released at the start until there are enough paths for the population. A fish
-    enters no cell twice. Every follow_every steps it looks for others within sight, including those
-    that have arrived: if there are fewer than crowding times fish of them and the one nearest to
-    the target is nearer than itself, it moves to the neighbour nearest to that one. A fish with no
-    neighbour left dies. If there are fewer paths than the population, they are repeated in turn.
-    Children lose their loops.
+    enters no cell twice. Every `_FOLLOW_EVERY` steps it looks for others within sight, including
+    those that have arrived: if there are fewer than `_CROWDING` times the fish and the one nearest
+    to the target is nearer than itself, it moves to the neighbour nearest to that one. A fish with
+    no neighbour left dies. If there are fewer paths than the population, they are repeated in
+    turn. Children lose their loops.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             settings.mutation_probability,
             settings.elitism,
             cell_paths.WALK,
-            settings.longest_walk,
+            _LONGEST_WALK,
             settings.tries,
         )
         turns = np.resize(np.arange(len(sizes)), settings.population)
@@ -122,14 +122,14 @@ def _release(rng, lattice, swarm):
     (n,), and the number of releases.
     """
     wanted = swarm.population
-    arrivals = np.empty((wanted, swarm.longest_path), dtype=np.int64)
+    arrivals = np.empty((wanted, _LONGEST_PATH), dtype=np.int64)
     arrival_sizes = np.empty(wanted, dtype=np.int64)
-    paths = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64)
+    paths = np.empty((swarm.fish, _LONGEST_PATH), dtype=np.int64)
     sizes = np.empty(swarm.fish, dtype=np.int64)
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
     cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     arrived = released = 0
-    while arrived < wanted and released < swarm.releases:
+    while arrived < wanted and released < _RELEASES:
         released += 1
         visited[:] = 0
         visited[:, lattice.start] = 1
@@ -143,13 +143,13 @@ def _release(rng, lattice, swarm):
                 if states[i] != _SWIMMING:
                     continue
                 cell = -1
-                if step % swarm.follow_every == 0:
+                if step % _FOLLOW_EVERY == 0:
                     cell = _follow(lattice, i, cells, states, visited[i], swarm)
                 if cell < 0:
                     cell = cell_paths.forage(
                         rng, lattice, cells[i], lattice.target, swarm.tries, visited[i]
                     )
-                if cell < 0 or sizes[i] == swarm.longest_path:
+                if cell < 0 or sizes[i] == _LONGEST_PATH:
                     states[i] = _DEAD
                     continue
                 paths[i, sizes[i]] = cells[i] = cell
@@ -178,14 +178,14 @@ def _follow(lattice, i, cells, states, visited, swarm):
         if (
             j != i
             and states[j] != _DEAD
-            and cell_paths.distance_square(lattice, cells[i], cells[j]) <= swarm.sight**2
+            and cell_paths.distance_square(lattice, cells[i], cells[j]) <= _SIGHT**2
         ):
             in_sight += 1
             distance = cell_paths.distance_square(lattice, cells[j], lattice.target)
             if distance < near:
                 leader, near = cells[j], distance
     chosen = -1
-    if leader >= 0 and in_sight < swarm.crowding * swarm.fish:
+    if leader >= 0 and in_sight < _CROWDING * swarm.fish:
         for cell in lattice.neighbours[cells[i]]:
             if cell >= 0 and not visited[cell]:
                 distance = cell_paths.distance_square(lattice, cell, leader)

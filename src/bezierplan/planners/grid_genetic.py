@@ -31,6 +31,14 @@ exact = True
 _COLUMN_STEPS = (1, 0, -1, 0, 1, -1, -1, 1)
 _ROW_STEPS = (0, 1, 0, -1, 1, 1, -1, -1)
 
+# First walks tried for each chromosome; missing ones are copies of those found.
+_ATTEMPTS = 40
+# Steps after which a walk is abandoned, as a multiple of rows + columns.
+_LONGEST_WALK = 6
+# Where no free neighbour is nearer to the goal: fewest random steps, most of them as a share of the
+# columns, and the probability that a random step keeps the direction, if that cell is free.
+_LEAST_DETOUR, _DETOUR_SHARE, _STRAIGHT_ON = 3, 0.125, 0.8
+
 
 class Settings(NamedTuple):
     """Settings of the search; elhoseny2017 names the method and gives one of them."""
@@ -43,29 +51,6 @@ class Settings(NamedTuple):
         float,
         Range(1, 2),
         About("of a diagonal step; a straight one costs 1", "elhoseny2017, Section 4.6", "cells"),
-    ]
-    attempts: Annotated[
-        int,
-        Range(1),
-        About("first walks tried for each chromosome; missing ones are copies of those found"),
-    ]
-    longest_walk: Annotated[
-        float,
-        Range(1),
-        About("steps after which a walk is abandoned, as a multiple of rows + columns"),
-    ]
-    least_detour: Annotated[
-        int, Range(1), About("fewest random steps where no free neighbour is nearer to the goal")
-    ]
-    detour_share: Annotated[
-        float,
-        Range(0),
-        About("most such steps more than that, minus one, as a share of the columns"),
-    ]
-    straight_on: Annotated[
-        float,
-        Range(0, 1),
-        About("probability that a random step keeps the direction, if that cell is free"),
     ]
     random_step: Annotated[
         float,
@@ -108,12 +93,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     walker = _Walker(
         walled=walled.ravel(),
         columns=walled.shape[1],
-        longest_walk=int(settings.longest_walk * (rows + columns)),
-        least_detour=settings.least_detour,
-        most_detour=max(
-            settings.least_detour, settings.least_detour - 1 + int(settings.detour_share * columns)
-        ),
-        straight_on=settings.straight_on,
+        longest_walk=_LONGEST_WALK * (rows + columns),
+        most_detour=max(_LEAST_DETOUR, _LEAST_DETOUR - 1 + int(_DETOUR_SHARE * columns)),
         random_step=settings.random_step,
     )
     if problem.start == problem.target:
@@ -160,17 +141,14 @@ def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
 
 
 class _Walker(NamedTuple):
-    """What a walk depends on, including settings of `plan`. walled: bool (cells,), the framed grid
-    row by row; columns: of the framed grid. longest_walk: in steps; least_detour, most_detour:
-    steps of a detour, both inclusive.
+    """What a walk depends on. walled: bool (cells,), the framed grid row by row; columns: of the
+    framed grid. longest_walk: in steps; most_detour: steps of a detour, inclusive.
     """
 
     walled: np.ndarray
     columns: int
     longest_walk: int
-    least_detour: int
     most_detour: int
-    straight_on: float
     random_step: float
 
 
@@ -236,7 +214,7 @@ def _first_walks(rng, walker, start, target, rules, walk, last_visit):
     paths = [walk[:0]]
     paths.clear()
     costs = np.empty(2 * rules.population)
-    for attempt in range(rules.attempts * rules.population):
+    for attempt in range(_ATTEMPTS * rules.population):
         if len(paths) == rules.population:
             break
         walk[0] = start
@@ -286,13 +264,13 @@ def _extend(rng, walker, walk, count, goal):
                     nearest = distance
                     nearer = k
             if nearer < 0:
-                detour = integer(rng, walker.least_detour, walker.most_detour + 1)
+                detour = integer(rng, _LEAST_DETOUR, walker.most_detour + 1)
             else:
                 step = nearer
         if detour > 0:
             detour -= 1
             blocked = step < 0 or walled[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
-            if blocked or rng.random() >= walker.straight_on:
+            if blocked or rng.random() >= _STRAIGHT_ON:
                 step = _random_step(rng, walled, columns, cell)
                 if step < 0:
                     return 0

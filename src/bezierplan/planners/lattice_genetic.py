@@ -24,7 +24,7 @@ from bezierplan.planners.parts.genetic import (
     swap_tails,
 )
 from bezierplan.planners.parts.random_integers import integer
-from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
+from bezierplan.planners.parts.settings import with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice
 from bezierplan.workspaces.problem import Problem
 
@@ -33,6 +33,8 @@ exact = True
 
 # Number of times one cell is drawn in each row until these can be joined.
 _MOST_DRAWS = 10_000
+# Length, in cells, of a chromosome whose cells cannot be joined.
+_UNDECODABLE = 200.0
 
 
 Coding = IntEnum("Coding", "via_cells rows", start=0)
@@ -41,8 +43,8 @@ Mutation = IntEnum("Mutation", "cell bit_flip", start=0)
 
 
 class Settings(NamedTuple):
-    """Settings of the search; ma2020 gives none. The coding rows does not use genes, initial,
-    mutation and undecodable_length.
+    """Settings of the search; ma2020 gives none. The coding rows does not use genes, initial or
+    mutation.
     """
 
     corners: Annotated[
@@ -54,9 +56,6 @@ class Settings(NamedTuple):
     genes: Annotated[int, Range(0, 60), About("free cells of a chromosome")]
     initial: Annotated[Initial, About("genes are drawn uniformly, or also sorted by column + row")]
     longest_join: Annotated[int, Range(2), About("most cells of a path, repeated ones included")]
-    undecodable_length: Annotated[
-        float, Range(1), About("length of a chromosome whose cells cannot be joined", unit=UNITS)
-    ]
     population: Annotated[int, Range(2), About("chromosomes of a generation")]
     generations: Annotated[int, Range(0), About("generations after the first")]
     crossover_probability: Annotated[
@@ -118,7 +117,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         if settings.initial == Initial.sorted:
             order = np.argsort((places.row + places.column)[cells[:, 1:-1]], axis=1, kind="stable")
             cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
-        best, history = _search(moves, places, free, cells, in_cells(settings, grid.cell))
+        best, history = _search(moves, places, free, cells, settings)
     else:
         paths, sizes = _first_paths(
             starts, places, _rows_between(places), population, settings.longest_join
@@ -160,9 +159,7 @@ def _search(rng, lattice, free, cells, rules):
     for generation in range(rules.generations + 1):
         for i in range(population):
             size = cell_paths.join(lattice, cells[i], path, marks)
-            lengths[i] = (
-                cell_paths.length(path[:size], lattice) if size else rules.undecodable_length
-            )
+            lengths[i] = cell_paths.length(path[:size], lattice) if size else _UNDECODABLE
             if size and lengths[i] < best_length:
                 cell_paths.put(cells[i], best, 0)
                 best_path, best_length = path[:size].copy(), lengths[i]

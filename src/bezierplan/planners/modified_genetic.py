@@ -26,7 +26,6 @@ from bezierplan.planners.parts.gene_curves import (
     MOST_POINTS,
     CurveKind,
     FitnessLength,
-    Invalid,
     Scratch,
     scratch_for,
     validate,
@@ -48,19 +47,14 @@ PATH_KINDS = {CurveKind.single: "bezier", CurveKind.composite: "piecewise_quadra
 # Capacity of a list of genes: a crossover of two chromosomes yields at most twice as many.
 _ROOM = 2 * MOST_POINTS + 1
 
-# Fitness of a chromosome that fills a place in the first population because no valid one was found.
-_UNFIT = 1e-9
+# Cost of a chromosome that fills a place in the first population because no valid one was found.
+_UNFIT = 1e9
 
-Mutation = IntEnum("Mutation", "gene chromosome one_flip shift", start=0)
+Mutation = IntEnum("Mutation", "gene shift", start=0)
 Diversity = IntEnum("Diversity", "none more_offspring relaxing unique", start=0)
 GeneLattice = IntEnum("GeneLattice", "coarse cell", start=0)
-GeneOrder = IntEnum("GeneOrder", "columns rows", start=0)
 PointOrder = IntEnum("PointOrder", "projection index geodesic", start=0)
 FirstPopulation = IntEnum("FirstPopulation", "random roadmaps", start=0)
-Survival = IntEnum("Survival", "best_of_all generational", start=0)
-Offspring = IntEnum("Offspring", "both mutated", start=0)
-Parents = IntEnum("Parents", "fitness random", start=0)
-Compared = IntEnum("Compared", "pool offspring", start=0)
 
 # A shift moves a control point by at most this share of the lattice points of a side.
 _SHIFT_REACH = 0.1
@@ -79,8 +73,7 @@ class Settings(NamedTuple):
     mutation: Annotated[
         Mutation,
         About(
-            "each gene changes, one of a chromosome, or always one (one_flip); or it loses, gains "
-            "or has shifted a control point (shift)"
+            "each gene changes, or a chromosome loses, gains or has shifted a control point (shift)"
         ),
     ]
     mutation_rate: Annotated[
@@ -105,20 +98,8 @@ class Settings(NamedTuple):
         Range(0, 1),
         About("factor of eta from one iteration to the next", PAPER + ", Section 3.3"),
     ]
-    compared: Annotated[
-        Compared,
-        About(
-            "whose mean Q is compared with eta before more offspring are made: all of the pool, or "
-            "the offspring alone",
-            PAPER + ", Algorithm 2, lines 8 and 12",
-        ),
-    ]
     most_batches: Annotated[int, Range(0), About("most extra batches of offspring in an iteration")]
     gene_lattice: Annotated[GeneLattice, About("genes are 21 x 21 points, or every cell")]
-    gene_order: Annotated[
-        GeneOrder,
-        About("genes are numbered column by column from the left, or row by row from the bottom"),
-    ]
     point_order: Annotated[
         PointOrder,
         About(
@@ -159,40 +140,9 @@ class Settings(NamedTuple):
         FitnessLength,
         About(
             "length whose reciprocal is the fitness: sampled, or counted over cells "
-            "(`cell_length`)",
+            "(`cell_length.cells4`)",
             PAPER + ", eqs. 8, 9",
         ),
-    ]
-    invalid: Annotated[
-        Invalid,
-        About(
-            "a curve that touches occupied cells is deleted, or lengthened for each of them",
-            PAPER + ", Section 3.2.2",
-        ),
-    ]
-    penalty: Annotated[float, Range(0), About("length added for each occupied cell", unit="cells")]
-    survival: Annotated[
-        Survival,
-        About(
-            "the best of parents and offspring survive, or the best of the offspring alone",
-            PAPER + ", Algorithm 2, line 15",
-        ),
-    ]
-    offspring: Annotated[
-        Offspring,
-        About(
-            "children and their mutants join the pool, or mutants alone", PAPER + ", Algorithm 2"
-        ),
-    ]
-    parents: Annotated[
-        Parents,
-        About(
-            "drawn in proportion to their fitness, or all alike",
-            PAPER + ", Algorithm 1, line 9, and Section 3.2.2",
-        ),
-    ]
-    children_per_parent: Annotated[
-        int, Range(1, 2), About("children in a batch for each chromosome of the population")
     ]
 
 
@@ -273,12 +223,12 @@ def plan(
         return Plan.of_one(Path("polyline", grid.in_units(ends)), 0.0, "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
-    orders = (
-        GeneLattice(settings.gene_lattice),
-        GeneOrder(settings.gene_order),
-        PointOrder(settings.point_order),
+    field = field_of(
+        grid,
+        ends,
+        GeneLattice(settings.gene_lattice).name,
+        PointOrder(settings.point_order).name,
     )
-    field = field_of(grid, ends, *(each.name for each in orders))
     first, counts = _from_roadmaps(problem, rng, field, settings)
     if last is not None:
         known = genes_at(grid.in_cells(last), field)
@@ -331,8 +281,7 @@ def _from_roadmaps(
             break
         _, way, _ = roadmap(problem, rng, settings.roadmap_nodes, settings.roadmap_neighbours)
         column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
-        line, place = (row, column) if field.by_rows else (column, row)
-        genes = np.unique(line * field.places[0] + place)
+        genes = np.unique(column * field.places[0] + row)
         genes = genes[field.settable[genes]]
         if 0 < len(genes) <= MOST_POINTS:
             ones[len(counts), : len(genes)] = genes
@@ -356,11 +305,7 @@ def search(
     """
     batches = 1 + (rules.most_batches if rules.diversity == Diversity.more_offspring else 0)
     size = rules.population
-    children = (
-        2
-        * (size * rules.children_per_parent // 2)
-        * (2 if rules.offspring == Offspring.both else 1)
-    )
+    children = 4 * (size // 2)
     pool = gene_lists.empty_pool(size + batches * children, _ROOM)
     spare = gene_lists.empty_pool(size, _ROOM)
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
@@ -377,26 +322,25 @@ def search(
                     child[k] = first[row, k]
             else:
                 count = _random_chromosome(rng, child, field, rules)
-            cost, free = validate(child[:count], field, rules, np.inf, scratch)
+            cost = validate(child[:count], field, rules, np.inf, scratch)
             evaluations += 1
             if cost < np.inf or row < len(first):
                 break
-        gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, row)
+        gene_lists.put(child, count, min(cost, _UNFIT), pool, row)
     eta = rules.eta
     for iteration in range(rules.iterations + 1):
         for row in range(size):
-            if pool.free[row] and pool.cost[row] < best_cost:
+            if pool.cost[row] < min(best_cost, _UNFIT):
                 best, best_cost = pool.ones[row, : pool.count[row]].copy(), pool.cost[row]
         history[iteration] = best_cost
         distinct[iteration] = gene_lists.distinct(pool, size)
         if iteration == rules.iterations:
             break
 
-        if rules.parents == Parents.fitness:
-            wheel = np.cumsum(1.0 / pool.cost[:size])
-        else:
-            wheel = np.cumsum(np.ones(size))
-        limit = _highest_cost_that_counts(pool, rules)
+        wheel = np.cumsum(1.0 / pool.cost[:size])
+        # A child that costs more than any parent does not survive, so nobody needs to know by how
+        # much; unless equal chromosomes are told by their costs.
+        limit = np.inf if rules.diversity == Diversity.unique else pool.cost[:size].max()
         filled, pairs = size, 0.0
         for batch in range(batches):
             before = filled
@@ -408,44 +352,19 @@ def search(
             lost += invalid
             further += batch > 0
             if rules.diversity == Diversity.more_offspring:
-                begin = 0 if rules.compared == Compared.pool else size
                 pairs += gene_lists.sum_of_q(
-                    pool, begin, before if batch > 0 else 0, filled, len(field.points)
+                    pool, before if batch > 0 else 0, filled, len(field.points)
                 )
-                compared = filled - begin
-                if compared > 1:
-                    q[iteration] = pairs / (compared * (compared - 1) / 2)
+                q[iteration] = pairs / (filled * (filled - 1) / 2)
                 if not q[iteration] > eta:
                     break
-        # Where a diversity rule rejects so many children that places remain free, the last parents
-        # keep them.
-        gene_lists.select(
-            pool,
-            min(size, filled - size) if rules.survival == Survival.generational else 0,
-            filled,
-            spare,
-        )
-        population_q[iteration] = gene_lists.sum_of_q(pool, 0, 0, size, len(field.points)) / (
+        gene_lists.select(pool, filled, spare)
+        population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (
             size * (size - 1) / 2
         )
         eta *= rules.eta_decay
     return Found(
         best, best_cost, history, distinct, q, population_q, further, evaluations, 1.0 - lost / bred
-    )
-
-
-@allocation_free
-def _highest_cost_that_counts(pool, rules):
-    """A child that costs more than any parent does not survive, so nobody needs to know by how
-    much; unless no parent survives, or equal chromosomes are told by their costs.
-    """
-    highest = 0.0
-    for place in range(rules.population):
-        highest = max(highest, pool.cost[place])
-    return (
-        np.inf
-        if rules.survival == Survival.generational or rules.diversity == Diversity.unique
-        else highest
     )
 
 
@@ -459,34 +378,28 @@ def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, r
     pool, of chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
-    for _ in range(rules.population * rules.children_per_parent // 2):
+    for _ in range(rules.population // 2):
         one, other = _parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
         cut = integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
-            for mutated in range(0 if rules.offspring == Offspring.both else 1, 2):
+            for mutated in range(2):
                 count = gene_lists.cross(pool, head, tail if crossed else head, cut, child)
                 if mutated:
                     count = _mutate(rng, child, count, field, rules)
                 for replaced in range(rules.replacements + 1):
                     if replaced > 0:
                         count = _random_chromosome(rng, child, field, rules)
-                    cost, free = _validated(child[:count], memory, field, rules, limit, scratch)
+                    cost = _validated(child[:count], memory, field, rules, limit, scratch)
                     tried += 1
                     invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
                         break
-                if cost == np.inf:
-                    if rules.survival == Survival.best_of_all:
-                        continue
-                    # No parent survives, so the place is filled as in the first population.
-                    cost = 1.0 / _UNFIT
-                if rules.diversity in (Diversity.relaxing, Diversity.unique) and _is_too_alike(
+                if cost < np.inf and not _is_too_alike(
                     child[:count], cost, pool, filled, eta, field, rules
                 ):
-                    continue
-                gene_lists.put(child, count, cost, free, pool, filled)
-                filled += 1
+                    gene_lists.put(child, count, cost, pool, filled)
+                    filled += 1
     return filled, tried, invalid
 
 
@@ -497,9 +410,9 @@ def _validated(ones, memory, field, rules, limit, scratch):
     """
     place, known = gene_lists.entry(ones, memory)
     if not known:
-        cost, free = validate(ones, field, rules, limit, scratch)
-        gene_lists.put(ones, len(ones), cost, free, memory, place)
-    return memory.cost[place], memory.free[place]
+        cost = validate(ones, field, rules, limit, scratch)
+        gene_lists.put(ones, len(ones), cost, memory, place)
+    return memory.cost[place]
 
 
 @allocation_free
@@ -533,13 +446,8 @@ def _mutate(rng, child, count, field, rules):
             if field.settable[gene]:
                 count = gene_lists.flip(child, count, gene)
             gene += 1 + gene_lists.gap(rng, unchanged)
-    elif rules.mutation == Mutation.shift:
-        if rng.random() < rules.mutation_rate:
-            count = _change_point(rng, child, count, field)
-    elif rules.mutation == Mutation.one_flip or rng.random() < rules.mutation_rate:
-        gene = integer(rng, 0, genes)
-        if field.settable[gene]:
-            count = gene_lists.flip(child, count, gene)
+    elif rng.random() < rules.mutation_rate:
+        count = _change_point(rng, child, count, field)
     return count
 
 

@@ -16,10 +16,8 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, roulette
 from bezierplan.planners.parts.node_mutation import (
-    Direction,
     Mutation,
     ObstacleNode,
-    Ref21Test,
     WithoutObstacle,
     mutate,
 )
@@ -55,7 +53,7 @@ keeps_best = False
 PAPER = "meledje"
 
 Initial = IntEnum("Initial", "feasible rejection unrestricted", start=0)
-Selection = IntEnum("Selection", "linear_rank best_half tournament roulette", start=0)
+Selection = IntEnum("Selection", "linear_rank best_half roulette", start=0)
 Cut = IntEnum("Cut", "same independent", start=0)
 MutationFor = IntEnum("MutationFor", "path node", start=0)
 RandomNode = IntEnum("RandomNode", "free any", start=0)
@@ -126,16 +124,6 @@ class Settings(NamedTuple):
             "whether ref12 and proposed keep a node better than all its neighbours",
             PAPER + ", Table 1, step 4",
         ),
-    ]
-    direction: Annotated[
-        Direction,
-        About(
-            "steps that ref21 accepts: "
-            "within a right angle of the line to the target, or with its signs"
-        ),
-    ]
-    ref21_test: Annotated[
-        Ref21Test, About("what ref21 tests: the two edges of the new node, or the whole path")
     ]
     random_node: Annotated[RandomNode, About("cells that `random` draws from")]
     penalty: Annotated[
@@ -313,17 +301,8 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         paths[i, 0] = start
         lengths[i] = _first_path(starts, paths[i], target, free, ground, rules)
         if lengths[i] == 0:
-            return _Found(
-                np.empty(0, dtype=np.int64),
-                np.inf,
-                0,
-                np.full(1, np.inf),
-                1,
-                False,
-                0.0,
-                np.nan,
-                0.0,
-            )
+            none = np.full(1, np.inf)
+            return _Found(paths[i, :0].copy(), np.inf, 0, none, 1, False, 0.0, np.nan, 0.0)
     children, child_lengths = paths.copy(), lengths.copy()
     objective, met = np.empty(population), np.empty(population, dtype=np.int64)
     ranks = np.arange(population, 0, -1).astype(np.float64)
@@ -353,8 +332,12 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
 
         if rules.selection == Selection.roulette:
             parents = roulette(moves, 1.0 / objective, population)
+        elif rules.selection == Selection.linear_rank:
+            parents = order[roulette(moves, ranks, population)]
         else:
-            parents = _select(moves, order, ranks, rules.selection)
+            parents = np.empty_like(order)
+            for i in range(population):
+                parents[i] = order[below(moves, population // 2)]
         if rules.cut == Cut.independent and 2 * lengths.max() > children.shape[1]:
             children = np.empty((population, 2 * lengths.max()), dtype=np.int64)
         for i in range(0, population, 2):
@@ -538,22 +521,3 @@ def _random_path(rng, path, target, free):
         path[k] = free[below(rng, len(free))]
     path[inner + 1] = target
     return inner + 2
-
-
-# Selection (meledje, Section 2.5).
-
-
-@compiled
-def _select(rng, order, ranks, selection):
-    """As many parents as there are paths, drawn with replacement. order: paths, best first; ranks:
-    their weights for a linear ranking.
-    """
-    if selection == Selection.linear_rank:
-        return order[roulette(rng, ranks, len(order))]
-    parents = np.empty_like(order)
-    for i in range(len(order)):
-        if selection == Selection.best_half:
-            parents[i] = order[below(rng, len(order) // 2)]
-        else:
-            parents[i] = order[min(below(rng, len(order)), below(rng, len(order)))]
-    return parents

@@ -10,7 +10,6 @@ import numpy as np
 
 from bezierplan.geometry.cell_length import (
     cells4,
-    cells8,
     occupied_cells,
     parts,
     sum_of_steps,
@@ -33,8 +32,7 @@ _ON_LINE = 1e-9
 _ROUNDING = 1e-9
 
 CurveKind = IntEnum("CurveKind", "single composite", start=0)
-FitnessLength = IntEnum("FitnessLength", "length cells4 cells8", start=0)
-Invalid = IntEnum("Invalid", "delete penalty", start=0)
+FitnessLength = IntEnum("FitnessLength", "length cells4", start=0)
 _FREE, _OCCUPIED, _UNKNOWN = range(3)
 
 
@@ -79,17 +77,16 @@ def scratch_for(field: Field) -> Scratch:
 @allocation_free
 def validate(
     ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, scratch: Scratch
-) -> tuple[float, bool]:
+) -> float:
     """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome,
-    infinite if it is to be deleted, and whether its curve is collision-free. `Obstacles` needs no
-    test, as genes of occupied cells are never set. rules: `modified_genetic.Settings`. scratch:
-    `scratch_for` the field.
+    infinite if it is to be deleted. `Obstacles` needs no test, as genes of occupied cells are never
+    set. rules: `modified_genetic.Settings`. scratch: `scratch_for` the field.
 
     limit: nobody needs to know by how much a length exceeds it, so a cost above it may be less than
     the length.
     """
     if not 0 < len(ones) <= MOST_POINTS:
-        return np.inf, False
+        return np.inf
     points = scratch.points[: write_polygon(ones, field, scratch.points, scratch.order)]
     for i in range(1, len(points) - 1):  # `Distance Threshold`
         for j in range(1, i):
@@ -98,32 +95,24 @@ def validate(
                 max(width, height) < rules.least_distance
                 and math.hypot(width, height) < rules.least_distance
             ):
-                return np.inf, False
-    sight = _UNKNOWN
-    if rules.invalid == Invalid.delete:
-        sight, least = _at_first_sight(
-            points, rules.curve == CurveKind.composite, field.room, scratch
-        )
-        if sight == _OCCUPIED:
-            return np.inf, False
-        if sight == _FREE and rules.fitness_length == FitnessLength.length and least > limit:
-            return least, True
-    count = _write_curve(points, rules.curve == CurveKind.composite, scratch)
+                return np.inf
+    composite = rules.curve == CurveKind.composite
+    by_length = rules.fitness_length == FitnessLength.length
+    sight, least = _at_first_sight(points, composite, field.room, scratch)
+    if sight == _OCCUPIED:
+        return np.inf
+    if sight == _FREE and by_length and least > limit:
+        return least
+    count = _write_curve(points, composite, scratch)
     x, y = scratch.x[:count], scratch.y[:count]
-    if sight == _FREE and rules.fitness_length == FitnessLength.length:
-        return sum_of_steps(x, y, scratch.t), True
-    count = write_touched_cells(x, y, scratch.columns, scratch.rows)
-    columns, rows = scratch.columns[:count], scratch.rows[:count]
-    bad = occupied_cells(columns, rows, field.occupied)  # `Valid Path`
-    if bad > 0 and rules.invalid == Invalid.delete:
-        return np.inf, False
-    if rules.fitness_length == FitnessLength.length:
-        length = sum_of_steps(x, y, scratch.t)
-    elif rules.fitness_length == FitnessLength.cells4:
-        length = cells4(columns, rows)
-    else:
-        length = cells8(columns, rows)
-    return length + rules.penalty * bad, bad == 0
+    if sight == _UNKNOWN or not by_length:
+        count = write_touched_cells(x, y, scratch.columns, scratch.rows)
+        columns, rows = scratch.columns[:count], scratch.rows[:count]
+        if occupied_cells(columns, rows, field.occupied) > 0:  # `Valid Path`
+            return np.inf
+        if not by_length:
+            return cells4(columns, rows)
+    return sum_of_steps(x, y, scratch.t)
 
 
 @allocation_free

@@ -23,9 +23,8 @@ class Field(NamedTuple):
     nearest occupied cell, 0 for an occupied one; the longer side where all cells are free. points:
     (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
     points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places:
-    the number of lattice points along the longer side, then how many lines of genes, and how many
-    genes of a line, lie on the map: columns and rows, or the other way round if by_rows. start,
-    target: x and y.
+    the number of lattice points along the longer side, then how many columns and rows of genes lie
+    on the map. start, target: x and y.
     """
 
     occupied: np.ndarray
@@ -35,15 +34,13 @@ class Field(NamedTuple):
     settable: np.ndarray
     choices: np.ndarray
     places: tuple[int, int, int]
-    by_rows: bool
     start: tuple[float, float]
     target: tuple[float, float]
 
 
-def field_of(
-    grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, point_order: str
-) -> Field:
-    """The genes of a grid and the order in which they are joined; ends: (2, 2) both ends in cells.
+def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) -> Field:
+    """The genes of a grid, column by column, and the order in which they are joined; ends: (2, 2)
+    both ends in cells.
 
     Raises ValueError if no cell of the lattice is free.
     """
@@ -57,10 +54,7 @@ def field_of(
         if gene_lattice == "coarse"
         else np.arange(longer)
     )
-    column, row = (
-        index.ravel()
-        for index in np.meshgrid(steps, steps, indexing="ij" if gene_order == "columns" else "xy")
-    )
+    column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij"))
     points = np.column_stack([column, row]) + 0.5
     settable = (column < columns) & (row < rows)
     settable[settable] = ~grid.occupied[row[settable], column[settable]]
@@ -86,9 +80,7 @@ def field_of(
         rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
     room = ndimage.distance_transform_cdt(~grid.occupied, "chessboard")
     room[room < 0] = longer  # there is no occupied cell
-    by_rows = gene_order == "rows"
-    on_map = int((steps < columns).sum()), int((steps < rows).sum())
-    places = (len(steps), *(reversed(on_map) if by_rows else on_map))
+    places = len(steps), int((steps < columns).sum()), int((steps < rows).sum())
     return Field(
         grid.occupied,
         room,
@@ -97,7 +89,6 @@ def field_of(
         settable,
         choices,
         places,
-        by_rows,
         *map(tuple, ends.tolist()),
     )
 

@@ -15,58 +15,47 @@ from bezierplan.planners.parts.sorting import sort
 
 class Pool(NamedTuple):
     """Chromosomes: ones (places, room) the genes that are 1, ascending; count (places,) how many;
-    cost (places,) the inverse of the fitness; free (places,) whether the curve is collision-free.
+    cost (places,) the inverse of the fitness.
     """
 
     ones: np.ndarray
     count: np.ndarray
     cost: np.ndarray
-    free: np.ndarray
 
 
 @compiled
 def empty_pool(places: int, room: int) -> Pool:
     """A pool with room for `places` chromosomes of `room` genes each."""
-    return Pool(
-        np.empty((places, room), np.int64),
-        np.zeros(places, np.int64),
-        np.empty(places),
-        np.zeros(places, np.bool_),
-    )
+    return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places))
 
 
 @allocation_free
-def put(ones: np.ndarray, count: int, cost: float, free: bool, pool: Pool, place: int) -> None:
+def put(ones: np.ndarray, count: int, cost: float, pool: Pool, place: int) -> None:
     """Write a chromosome to a place of the pool, in place."""
     for k in range(count):
         pool.ones[place, k] = ones[k]
-    pool.count[place], pool.cost[place], pool.free[place] = count, cost, free
+    pool.count[place], pool.cost[place] = count, cost
 
 
 @compiled
-def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
-    """Move the best of the chromosomes at the places from `first` on to the front, in place; ties
-    in their original order.
+def select(pool: Pool, filled: int, spare: Pool) -> None:
+    """Move the best of the first chromosomes to the front, in place; ties in their original order.
 
     spare: a pool with as many places as survive, overwritten.
     """
     survivors = len(spare.cost)
-    highest = 0.0
-    for i in range(first, first + survivors):
-        highest = max(highest, pool.cost[i])
+    highest = pool.cost[:survivors].max()
     # Some that cost no more are enough, so the others need no sorting.
-    order, count = np.empty(filled - first, dtype=np.int64), 0
-    for i in range(first, filled):
+    order, count = np.empty(filled, dtype=np.int64), 0
+    for i in range(filled):
         order[count] = i
         count += pool.cost[i] <= highest
     sort(order[:count], pool.cost)
     for place in range(survivors):
         i = order[place]
-        put(pool.ones[i], pool.count[i], pool.cost[i], pool.free[i], spare, place)
+        put(pool.ones[i], pool.count[i], pool.cost[i], spare, place)
     for place in range(survivors):
-        put(
-            spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place
-        )
+        put(spare.ones[place], spare.count[place], spare.cost[place], pool, place)
 
 
 @allocation_free
@@ -158,9 +147,9 @@ def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 
 
 @compiled
-def sum_of_q(pool: Pool, begin: int, first: int, filled: int, genes: int) -> float:
-    """Sum of Q over the pairs of chromosomes from the place `begin` on in the pool, the second of
-    which is at a place from `first` on.
+def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
+    """Sum of Q over the pairs of chromosomes in the pool, the second of which is at a place from
+    `first` on.
 
     A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum
     is made in the order of the places.
@@ -196,9 +185,9 @@ def sum_of_q(pool: Pool, begin: int, first: int, filled: int, genes: int) -> flo
         for gene in pool.ones[chromosome, : pool.count[chromosome]]:
             marked[gene] = 0
     total = 0.0
-    for j in range(max(first, begin + 1), filled):
+    for j in range(max(first, 1), filled):
         row = values[kind[j]]
-        for i in range(begin, j):
+        for i in range(j):
             total += row[kind[i]]
     return total
 

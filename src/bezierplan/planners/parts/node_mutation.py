@@ -21,8 +21,6 @@ from bezierplan.workspaces.ground import (
 Mutation = IntEnum("Mutation", "random random_repair ref12 ref21 proposed", start=0)
 WithoutObstacle = IntEnum("WithoutObstacle", "any_node none", start=0)
 ObstacleNode = IntEnum("ObstacleNode", "edge neighbour", start=0)
-Direction = IntEnum("Direction", "forward same_signs", start=0)
-Ref21Test = IntEnum("Ref21Test", "edges path", start=0)
 
 # Number of times random mutation is repeated to obtain a feasible path.
 _MOST_REPAIRS = 50
@@ -137,27 +135,16 @@ def _cost_through(path, k, cell, ground, penalty):
 @allocation_free
 def _ref21(rng, path, ground, rules, neighbours):
     """Replace a random inner node by the first of its free neighbours, in random order, that lies
-    in the direction of the target and whose two edges are free, or which makes the whole path free
-    (reference 21).
+    in the direction of the target and whose two edges are free (reference 21).
     """
     k = 1 + below(rng, len(path) - 2)
     count = free_neighbours(path[k], ground, rules.neighbourhood, neighbours)
-    elsewhere = 0
-    if rules.ref21_test == Ref21Test.path:
-        elsewhere = path_met(path[:k], ground) + path_met(path[k + 1 :], ground)
     for tried in range(count):
         chosen = tried + below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
-        accepted = elsewhere == 0 and _towards(
-            path[0],
-            cell,
-            path[-1],
-            ground.occupied.shape[1],
-            rules.direction == Direction.same_signs,
-        )
         if (
-            accepted
+            _towards(path[0], cell, path[-1], ground.occupied.shape[1])
             and obstacles_met(ground, path[k - 1], cell) == 0
             and obstacles_met(ground, cell, path[k + 1]) == 0
         ):
@@ -167,11 +154,11 @@ def _ref21(rng, path, ground, rules, neighbours):
 
 
 @allocation_free
-def _towards(start, cell, target, columns, same_signs):
-    """Whether a cell's direction to the target agrees with that from the start to the target."""
+def _towards(start, cell, target, columns):
+    """Whether a cell's direction to the target makes less than a right angle with that from the
+    start to the target.
+    """
     across, up = target % columns - cell % columns, target // columns - cell // columns
     whole_across = target % columns - start % columns
     whole_up = target // columns - start // columns
-    if same_signs:
-        return np.sign(across) == np.sign(whole_across) and np.sign(up) == np.sign(whole_up)
     return across * whole_across + up * whole_up > 0
