@@ -4,7 +4,10 @@
 
 rule claims:
     input:
-        inputs(targets.claims_inputs),
+        runs=read(of(jobs.Claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        problems=read(of(jobs.Claims), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.Claims), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        published=of_study(lambda study, job: study.published_files()),
     output:
         claims=report(
             f"{RESULTS}/claims.csv",
@@ -15,18 +18,25 @@ rule claims:
         checks=f"{RESULTS}/claim_checks.csv",
     log:
         f"{RESULTS}/logs/claims.log",
-    priority: CLAIMS
+    benchmark:
+        f"{RESULTS}/logs/claims.tsv"
+    priority: 3
+    resources:
+        mem_mb=more(2000),
+        runtime=more(20),
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.claims_params, "job", "published", "code"),
+        **params(jobs.Claims),
     script:
-        "../scripts/claims.py"
+        "../scripts/job.py"
 
 
 rule audit:
     input:
-        inputs(targets.audit_inputs),
+        problems=read(of(jobs.Audit), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.Audit), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        published=of_study(lambda study, job: study.published_files()),
     output:
         report(
             f"{RESULTS}/audit.csv",
@@ -39,32 +49,45 @@ rule audit:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.audit_params, "job", "published", "code"),
+        **params(jobs.Audit),
     script:
-        "../scripts/audit.py"
+        "../scripts/job.py"
 
 
 # One job per alternative: most of its chunks take less time than starting a process.
 rule alternative:
     input:
-        inputs(targets.alternative_inputs),
+        runs=read(
+            of(jobs.Alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+        ),
+        problems=read(of(jobs.Alternative), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.Alternative), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        published=of_study(lambda study, job: study.published_files()),
     output:
-        runs=directory(f"{ALTERNATIVE}/runs"),
-        claims=f"{ALTERNATIVE}/claims.csv",
-        checks=f"{ALTERNATIVE}/claim_checks.csv",
+        runs=directory(f"{RESULTS}/sensitivity/{{alternative}}/runs"),
+        claims=f"{RESULTS}/sensitivity/{{alternative}}/claims.csv",
+        checks=f"{RESULTS}/sensitivity/{{alternative}}/claim_checks.csv",
     log:
         f"{RESULTS}/logs/sensitivity/{{alternative}}.log",
+    resources:
+        mem_mb=more(2000),
+        runtime=more(20),
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.alternative_params, "chunks", "job", "published", "code"),
+        **params(jobs.Alternative),
     script:
-        "../scripts/alternative.py"
+        "../scripts/job.py"
 
 
 rule sensitivity:
     input:
-        inputs(targets.sensitivity_inputs),
+        claims=f"{RESULTS}/claims.csv",
+        alternatives=collect(
+            f"{RESULTS}/sensitivity/{{alternative}}/claims.csv",
+            alternative=lambda wildcards: alternatives.tried(STUDIES[wildcards.study]),
+            allow_missing=True,
+        ),
     output:
         report(
             f"{RESULTS}/sensitivity.csv",
@@ -77,6 +100,6 @@ rule sensitivity:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.sensitivity_params, "described", "code"),
+        **params(jobs.Sensitivity),
     script:
-        "../scripts/sensitivity.py"
+        "../scripts/job.py"

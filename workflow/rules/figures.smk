@@ -4,41 +4,33 @@
 
 rule figure:
     input:
-        inputs(targets.figure_inputs),
+        runs=read(of(jobs.Figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        problems=read(of(jobs.Figure), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.Figure), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        published=of_study(lambda study, job: study.published_drawn(job.figure)),
+        maps=of_study(lambda study, job: study.maps(jobs.workspaces_of_figure(study, job.figure))),
     output:
         svg=report(
-            f"{RESULTS}/figures/{{figure}}.svg",
+            f"{RESULTS}/{{tree}}/{{figure}}.svg",
             category="{study}",
             labels={"item": "{figure}", "shows": "figure"},
             caption="../report/artefact.rst",
         ),
-        png=f"{RESULTS}/figures/{{figure}}.png",
-        pdf=f"{RESULTS}/figures/{{figure}}.pdf",
-        caption=f"{RESULTS}/figures/{{figure}}.txt",
-        data=f"{RESULTS}/figures/{{figure}}.csv",
+        png=f"{RESULTS}/{{tree}}/{{figure}}.png",
+        pdf=f"{RESULTS}/{{tree}}/{{figure}}.pdf",
+        caption=f"{RESULTS}/{{tree}}/{{figure}}.txt",
+        data=f"{RESULTS}/{{tree}}/{{figure}}.csv",
     log:
-        f"{RESULTS}/logs/figures/{{figure}}.log",
+        f"{RESULTS}/logs/{{tree}}/{{figure}}.log",
+    wildcard_constraints:
+        study=studies_with(DRAWN),
+    resources:
+        mem_mb=more(1500),
+        runtime=more(5),
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.figure_params, "job", "folder", "sources", "code"),
+        **params(jobs.Figure),
         caption=caption,
     script:
-        "../scripts/figure.py"
-
-
-# The same on a sheet of one text column: `snakemake narrow`.
-rule narrow_figure:
-    input:
-        inputs(targets.narrow_inputs),
-    output:
-        svg=f"{RESULTS}/figures/{{figure}}.narrow.svg",
-        pdf=f"{RESULTS}/figures/{{figure}}.narrow.pdf",
-    log:
-        f"{RESULTS}/logs/figures/{{figure}}.narrow.log",
-    conda:
-        "../envs/bezierplan.yaml"
-    params:
-        **params(targets.figure_params, "job", "folder", "code"),
-    script:
-        "../scripts/narrow_figure.py"
+        "../scripts/job.py"

@@ -1,4 +1,50 @@
-# The only expensive rule: a method on every condition of an experiment, one block of repeats.
+# Workspaces, starts and targets are drawn once, shared by all methods of an experiment; runs do not
+# depend on bounds. Runs are the only expensive rule: a method on every condition of an experiment,
+# one block of repeats.
+#
+# Priorities: of the jobs that can start, problems come first, then claims, which take longest of all
+# that follows the runs, then runs, bounds, and at last tables and figures, many short jobs, so that
+# no core is left without work while another has a long job.
+
+
+rule problems:
+    input:
+        maps=of_study(lambda study, job: study.maps_of(job.experiment, job.scale)),
+    output:
+        f"{RESULTS}/problems/{{experiment}}.parquet",
+    log:
+        f"{RESULTS}/logs/problems/{{experiment}}.log",
+    priority: 4
+    resources:
+        mem_mb=more(1500),
+        runtime=more(5),
+    conda:
+        "../envs/bezierplan.yaml"
+    params:
+        **params(jobs.Problems),
+    script:
+        "../scripts/job.py"
+
+
+rule bounds:
+    input:
+        problems=f"{RESULTS}/problems/{{experiment}}.parquet",
+    output:
+        f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
+    log:
+        f"{RESULTS}/logs/bounds/{{experiment}}.log",
+    benchmark:
+        f"{RESULTS}/logs/bounds/{{experiment}}.tsv"
+    priority: 1
+    resources:
+        mem_mb=more(1500),
+        runtime=more(10),
+    conda:
+        "../envs/bezierplan.yaml"
+    params:
+        **params(jobs.Bounds),
+    script:
+        "../scripts/job.py"
 
 
 rule runs:
@@ -9,12 +55,27 @@ rule runs:
         times=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
     log:
         f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
+    benchmark:
+        f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.tsv"
     wildcard_constraints:
-        study=studies_of(STILL),
-    priority: of_runs
+        study=studies_with(STILL),
+    priority: 2
+    resources:
+        mem_mb=more(1500),
+        runtime=more(20),
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.run_params, "job", "code"),
+        **params(jobs.Runs),
     script:
-        "../scripts/runs.py"
+        "../scripts/job.py"
+
+
+# Runs in worlds that move are simulated drives, with a trace of each.
+use rule runs as drives with:
+    output:
+        runs=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
+        times=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
+        traces=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.traces.parquet",
+    wildcard_constraints:
+        study=studies_with(MOVING),

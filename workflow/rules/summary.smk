@@ -1,9 +1,18 @@
 # All studies together: the summary, and the page that shows everything.
+COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
+CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
 rule baseline_comparison:
     input:
-        inputs(targets.baseline_comparison_inputs),
+        runs=read(
+            of(jobs.BaselineComparison),
+            f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
+        ),
+        problems=read(of(jobs.BaselineComparison), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(
+            of(jobs.BaselineComparison), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
+        ),
     output:
         report(
             "results/{scale}/baseline_comparison.csv",
@@ -19,14 +28,16 @@ rule baseline_comparison:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.baseline_comparison_params, "job", "code"),
+        **params(jobs.BaselineComparison),
     script:
-        "../scripts/baseline_comparison.py"
+        "../scripts/job.py"
 
 
 rule summary:
     input:
-        inputs(targets.summary_inputs),
+        comparisons=[f"results/{{scale}}/{key}/{tree(name)}/{name}.comparison.csv" for key, name in COMPARED],
+        claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
+        baseline_comparison="results/{scale}/baseline_comparison.csv",
     output:
         numbers="results/{scale}/numbers.csv",
         claims="results/{scale}/claims.csv",
@@ -41,16 +52,23 @@ rule summary:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.summary_params, "job", "code"),
+        **params(jobs.Summary),
     script:
-        "../scripts/summary.py"
+        "../scripts/job.py"
 
 
 # Every path that the page shows, judged again from its row, and every bound, computed again, in
 # processes that no planner was in.
 rule verified:
     input:
-        inputs(page.verified_inputs),
+        runs=read(
+            of(page.Verified, root=PREFIX),
+            f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
+        ),
+        problems=read(of(page.Verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(
+            of(page.Verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
+        ),
     output:
         "results/{scale}/verified.json",
     log:
@@ -59,21 +77,45 @@ rule verified:
         "../envs/bezierplan.yaml"
     threads: 2
     params:
-        **params(partial(page.verified_params, root=PREFIX), "job", "code"),
+        **params(page.Verified, root=PREFIX),
     script:
-        "../scripts/verified.py"
+        "../scripts/job.py"
 
 
-# A page that was cut short is missing.
-for scale in () if workflow.output_settings.dryrun else experiments.SCALES:
-    made = Path(PREFIX + page.file(scale))
-    if made.is_file() and not page.is_whole(made):
-        made.unlink()
-
-
+# It shows what the papers have, and of the rest what there is.
 rule page:
     input:
-        inputs(page.inputs),
+        runs=read(
+            of(page.Page, root=PREFIX),
+            f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
+        ),
+        problems=read(of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(
+            of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
+        ),
+        artefacts=lambda wildcards: [
+            file
+            for study in STUDIES.values()
+            for name in page.shown_of(study, wildcards.scale, PREFIX)
+            for file in files_of(wildcards.scale, study, name)
+        ],
+        claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
+        audits=expand(
+            "results/{scale}/{study}/audit.csv",
+            study=[key for key, study in STUDIES.items() if page.has_audit(study)],
+            allow_missing=True,
+        ),
+        sensitivity=lambda wildcards: [
+            f"results/{wildcards.scale}/{key}/sensitivity.csv"
+            for key, study in STUDIES.items()
+            if page.tried(study, wildcards.scale, PREFIX)
+        ],
+        summary=expand(
+            "results/{scale}/{table}.csv",
+            table=["numbers", "claims", "baseline_comparison"] if COMPARED else [],
+            allow_missing=True,
+        ),
+        verified="results/{scale}/verified.json",
     output:
         # Not part of the report, which has a page of its own.
         page="results/{scale}/index.html",
@@ -84,6 +126,6 @@ rule page:
     # The last job of a workflow, so the others leave it the cores.
     threads: 2
     params:
-        **params(partial(page.params, root=PREFIX), "job", "tried", "look", "outcome", "code"),
+        **params(page.Page, root=PREFIX),
     script:
-        "../scripts/page.py"
+        "../scripts/job.py"

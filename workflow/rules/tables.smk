@@ -1,74 +1,107 @@
-# Tables, laid out like the paper's, and the comparison of each with the published numbers; tables
-# without runs have no comparison.
+# Tables, laid out like the paper's; published.csv holds the printed numbers in the same rows and
+# columns, comparison.csv each of them next to ours.
 
 
 rule table:
     input:
-        inputs(targets.table_inputs),
+        runs=read(
+            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+        ),
+        problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        published=of_study(lambda study, job: [study.published_file(job.table)]),
     output:
         table=report(
-            f"{RESULTS}/tables/{{table}}.csv",
+            f"{RESULTS}/{{tree}}/{{table}}.csv",
             category="{study}",
             labels={"item": "{table}", "shows": "our numbers, laid out as in the paper"},
             caption="../report/artefact.rst",
         ),
+        published=f"{RESULTS}/{{tree}}/{{table}}.published.csv",
         comparison=report(
-            f"{RESULTS}/tables/{{table}}.comparison.csv",
+            f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
             category="{study}",
             labels={"item": "{table}", "shows": "published numbers next to ours"},
             caption="../report/artefact.rst",
         ),
     log:
-        f"{RESULTS}/logs/tables/{{table}}.log",
+        f"{RESULTS}/logs/{{tree}}/{{table}}.log",
     wildcard_constraints:
-        study=studies_with(COMPARED),
+        study=studies_with(PRINTED),
+    resources:
+        mem_mb=more(1500),
+        runtime=more(5),
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.table_params, "job", "published", "code"),
+        **params(jobs.TableOfRuns),
         caption=caption,
     script:
-        "../scripts/table.py"
+        "../scripts/job.py"
 
 
+# Of numbers that no paper prints.
+use rule table as unprinted_table with:
+    input:
+        runs=read(
+            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+        ),
+        problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+    output:
+        table=report(
+            f"{RESULTS}/{{tree}}/{{table}}.csv",
+            category="{study}",
+            labels={"item": "{table}", "shows": "our numbers"},
+            caption="../report/artefact.rst",
+        ),
+        comparison=f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
+    wildcard_constraints:
+        study=studies_with(UNPRINTED),
+
+
+# What a paper prints, what follows from it, and several comparisons together.
 rule listing:
     input:
-        inputs(targets.listing_inputs),
+        published=of_study(lambda study, job: study.published_of(job.table)),
+        comparisons=lambda wildcards: [
+            f"{RESULTS}/{tree(name)}/{name}.comparison.csv"
+            for name in getattr(STUDIES[wildcards.study].tables[wildcards.table], "of", [])
+        ],
     output:
         report(
-            f"{RESULTS}/tables/{{listing}}.csv",
+            f"{RESULTS}/{{tree}}/{{table}}.csv",
             category="{study}",
-            labels={
-                "item": "{listing}",
-                "shows": "what the paper prints, or what follows from it",
-            },
+            labels={"item": "{table}", "shows": "what the paper prints, or what follows from it"},
             caption="../report/artefact.rst",
         ),
     log:
-        f"{RESULTS}/logs/tables/{{listing}}.log",
+        f"{RESULTS}/logs/{{tree}}/{{table}}.log",
     wildcard_constraints:
         study=studies_with(LISTED),
+    resources:
+        mem_mb=more(1500),
+        runtime=more(5),
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.listing_params, "job", "published", "code"),
+        **params(jobs.TableWithoutRuns),
         caption=caption,
     script:
-        "../scripts/listing.py"
+        "../scripts/job.py"
 
 
-# All tables of a study as LaTeX, with their captions: one quick job, which a new title runs again
-# instead of the tables.
+# A quick job, which a new title runs again instead of the table.
 rule latex:
     input:
-        inputs(targets.latex_inputs),
+        table=f"{RESULTS}/{{tree}}/{{table}}.csv",
     output:
-        f"{RESULTS}/tables.tex",
+        f"{RESULTS}/{{tree}}/{{table}}.tex",
     log:
-        f"{RESULTS}/logs/latex.log",
+        f"{RESULTS}/logs/{{tree}}/{{table}}.tex.log",
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(targets.latex_params, "captions", "code"),
+        **params(jobs.Latex),
     script:
-        "../scripts/latex.py"
+        "../scripts/job.py"

@@ -1,60 +1,62 @@
-# Names for what a user may want: everything, a scale, a study, a table or figure. `snakemake
-# --list-target-rules` lists them. What takes time to find is a function, which only a start for
-# that target calls.
+# Names for what a user may want: the papers, what goes beyond them, a scale, a study, a table or
+# figure. `snakemake --list-target-rules` lists them.
+
+
+def files_in(scale, folder, study=None):
+    """Files of all tables and figures of one tree: of a study, or of all."""
+    return [
+        file
+        for own in STUDIES.values()
+        if study in (None, own.key)
+        for name in (*own.tables, *own.figures)
+        if tree(name) == folder
+        for file in files_of(scale, own, name)
+    ]
+
 
 try:
     reading.check_names(
         STUDIES,
         [
             *(rule.name for rule in workflow.rules),
-            "all",
-            "smoke",
-            "extended",
-            "alternatives",
-            "published",
-            "narrow",
-            "default",
+            *("all", "smoke", "beyond", "extended", "alternatives", "default"),
         ],
     )
-except checked.Fault as fault:
+except Fault as fault:
     sys.exit(str(fault))
 
 
 rule all:
     input:
-        targets.files_of_scale(STUDIES, "full"),
-        page.file("full"),
+        files_in("full", "paper"),
+        "results/full/index.html",
 
 
 rule smoke:
     input:
-        lambda wildcards: targets.files_of_smoke(STUDIES),
-        page.file("smoke"),
+        files_in("smoke", "paper"),
+        "results/smoke/index.html",
+
+
+# The page shows them when it is made again: `make beyond` does.
+rule beyond:
+    input:
+        files_in("full", "beyond"),
 
 
 rule extended:
     input:
-        targets.files_of_scale(STUDIES, "extended"),
-        page.file("extended"),
-
-
-rule narrow:
-    input:
-        targets.files_of_narrow(STUDIES, "full"),
+        files_in("extended", "paper"),
+        files_in("extended", "beyond"),
+        "results/extended/index.html",
 
 
 rule alternatives:
     input:
-        targets.files_of_sensitivity(STUDIES, "full"),
-
-
-# What `make verify-outcome` compares with docs/outcome.
-rule published:
-    input:
-        lambda wildcards: [
-            file
-            for study, table in targets.published_tables(STUDIES)
-            for file in targets.files_of(STUDIES, "full", study, table)
+        [
+            f"results/full/{key}/sensitivity.csv"
+            for key, study in STUDIES.items()
+            if alternatives.tried(study)
         ],
 
 
@@ -64,7 +66,13 @@ for study in STUDIES:
         name:
             study
         input:
-            targets.files_of_study(STUDIES, "full", study),
+            files_in("full", "paper", study),
+
+    rule:
+        name:
+            f"{study}_beyond"
+        input:
+            files_in("full", "beyond", study),
 
     for item in [*STUDIES[study].tables, *STUDIES[study].figures]:
 
@@ -72,7 +80,7 @@ for study in STUDIES:
             name:
                 f"{study}_{item}"
             input:
-                targets.files_of(STUDIES, "full", study, item),
+                files_of("full", STUDIES[study], item),
 
 
 # Our logger, if it is the one in use, tells the nearest name of a mistyped one.

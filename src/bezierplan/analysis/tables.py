@@ -180,6 +180,25 @@ def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame
     return wide
 
 
+def printed(file: str, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame:
+    """The numbers of a file of published numbers, in the rows and columns of their table, as the
+    paper prints them.
+    """
+    numbers = pd.read_csv(file, dtype=str, keep_default_na=False)
+    titles = {entry.metric: entry.label for entry in reversed(spec.values)}
+    numbers = numbers.rename(columns={"value": "number"}).assign(
+        value=[titles.get(spec.reads.get(name, name), name) for name in numbers["metric"]]
+    )
+    index, columns = ([name for name in levels if name in numbers] for levels in _levels(spec))
+    for key in {*index, *columns}:
+        numbers[key] = [labels.get(name, name) for name in numbers[key]]
+    wide = numbers.pivot_table(
+        values="number", index=index, columns=columns, aggfunc="first", sort=False
+    )
+    wide.columns = [": ".join([name] if isinstance(name, str) else name) for name in wide.columns]
+    return wide
+
+
 def _with_counts(
     wide: pd.DataFrame, counted: pd.DataFrame, asked: pd.DataFrame, stems: list[str]
 ) -> pd.DataFrame:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import pyarrow.parquet as parquet
 
@@ -12,15 +11,14 @@ from bezierplan.running.inputs import Files
 
 
 def with_chunks(
-    experiments: Mapping[str, Files], chunks: Iterable[tuple[int, dict[str, Any]]], folder: Path
+    experiments: Mapping[str, Files], chunks: Iterable[tuple[int, Chunk]], folder: Path
 ) -> dict[str, Files]:
-    """Run chunks, by number and as params hold them, and write each with its times into
+    """Run chunks, each with its number, and write each with its times into
     `<folder>/<experiment>/<method>`; returns the files of experiments with theirs.
     """
     files = {name: each._replace(runs={**each.runs}) for name, each in experiments.items()}
     made = {name: problems.read(each.problems) for name, each in experiments.items()}
-    for number, plain in chunks:
-        chunk = Chunk(**plain)
+    for number, chunk in chunks:
         file = folder / chunk.experiment / chunk.method / f"{number}.parquet"
         file.parent.mkdir(parents=True, exist_ok=True)
         runs, times = execution.run_chunk(made[chunk.experiment], chunk)

@@ -53,10 +53,6 @@ class Chunk(NamedTuple):
     policy: dict[str, Any] | None = None
     """What the robot does, where the world moves."""
 
-    def plain(self) -> dict[str, Any]:
-        """The chunk as Snakemake's params hold it; where nothing moves there is no policy."""
-        return {name: value for name, value in self._asdict().items() if name != "policy" or value}
-
     def conditions(self) -> list[Condition]:
         """Its conditions, in order."""
         return list(conditions(list(self.problems), self.vary))

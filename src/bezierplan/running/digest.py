@@ -9,9 +9,12 @@ import ast
 import contextlib
 import hashlib
 import importlib.metadata
+import inspect
 import json
 import os
 import sys
+import textwrap
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -171,6 +174,26 @@ def versioned_digest(*modules: str) -> str:
     return " ".join(
         [digest, *(f"{name} {library_version(name)}" for name in COMPUTING if name in libraries)]
     )
+
+
+@cache
+def function_digest(functions: tuple[Callable, ...], *modules: str) -> str:
+    """Digest of some functions, of all that they import from this package, and of further modules,
+    with the versions of the libraries among `COMPUTING` that these import.
+    """
+    trees = []
+    named = set(modules)
+    for function in functions:
+        tree, imports = _parsed(textwrap.dedent(inspect.getsource(function)).encode())
+        trees.append(tree)
+        named.update(
+            name
+            for _, base, part in imports
+            for name in (base, f"{base}.{part}")
+            if name.split(".")[0] == ROOT and _module(name).file()
+        )
+    functions_digest = hashlib.sha256("\n".join(trees).encode()).hexdigest()[:16]
+    return f"{functions_digest} {versioned_digest(*sorted(named))}"
 
 
 @cache

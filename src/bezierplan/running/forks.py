@@ -19,7 +19,7 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, TextIO
 
@@ -114,12 +114,13 @@ class Forks:
             "bench_iteration",
         )
         name = file.get_path_or_uri(secret_free=True)
-        if not self.succeeds(name, source, Snakemake(*(job[each] for each in names))):
+        work = Snakemake(*(job[each] for each in names))
+        if not self.succeeds(name, source, work, job["bench_record"]):
             raise subprocess.CalledProcessError(1, name)
 
-    def succeeds(self, name: str, source: str, snakemake: Any) -> bool:
+    def succeeds(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
         """Run a script in a fork, in this process's folder and with the object that scripts know as
-        `snakemake`; did it come to its end?
+        `snakemake`; did it come to its end? benchmark: Snakemake's record of what it takes.
         """
         ours, theirs = socket.socketpair()
         with ours:
@@ -129,7 +130,8 @@ class Forks:
             with contextlib.suppress(ConnectionError):
                 ours.sendall(pickle.dumps((os.getcwd(), name, source, snakemake)))
                 ours.shutdown(socket.SHUT_WR)
-                return ours.recv(1) == DONE
+                with _measured(int(ours.recv(20) or 0), benchmark):
+                    return ours.recv(1) == DONE
             return False
 
     def _hand_over(self, job: socket.socket) -> None:
@@ -153,6 +155,18 @@ class Forks:
                 stderr=stream_for(sys.stderr),
                 env=os.environ | ONE_THREAD,
             ).pid
+
+
+@contextlib.contextmanager
+def _measured(process: int, benchmark: Any) -> Iterator[None]:
+    """Fill Snakemake's record of what a process takes, if there are both."""
+    if benchmark is None or not process:
+        yield
+        return
+    from snakemake.benchmark import benchmarked
+
+    with benchmarked(process, benchmark):
+        yield
 
 
 def stream_for(stream: TextIO | None) -> int | None:
@@ -215,6 +229,7 @@ def run(parent: socket.socket) -> None:
     os.dup(parent.fileno())
     with parent.makefile("rb") as stream:
         folder, name, source, snakemake = pickle.load(stream)
+    parent.send(str(os.getpid()).encode())
     # A workflow may have changed its folder since this process's parent was started.
     os.chdir(folder)
     exec(

@@ -1,14 +1,29 @@
-"""Names of the input files of jobs.
+"""The input files of jobs, and where results lie.
 
-Snakemake hands a job lists of files, each with a name. What a file is of stands in that name, such
-as `runs/routes/smooth`, so that no job takes paths apart: where files lie is up to the workflow,
-and to the one of which it is a module.
+A job knows which results it reads (`Shows`), and Snakemake hands it their files in that order, so
+no job takes paths apart: where files lie is up to the rules, and to a workflow of which this one is
+a module.
 """
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable
+from itertools import islice
+from pathlib import Path
 from typing import Any, NamedTuple
 
-RUNS, PROBLEMS, BOUNDS = "runs", "problems", "bounds"
+Shows = dict[str, dict[str, int]]
+"""Experiment -> method -> number of chunks of runs."""
+
+PAPER, BEYOND = "paper", "beyond"
+
+
+def tree(artefact: str) -> str:
+    """The folder of a table or figure: `paper` if it has a number in the paper.
+
+    >>> tree("table1"), tree("figure_scale")
+    ('paper', 'beyond')
+    """
+    return PAPER if re.fullmatch(r"(table|figure)[0-9]+", artefact) else BEYOND
 
 
 class Files(NamedTuple):
@@ -24,46 +39,21 @@ class Files(NamedTuple):
         return [chunk for chunks in self.runs.values() for chunk in chunks]
 
 
-def named(part: str, files: Mapping[str, Any]) -> dict[str, Any]:
-    """Input files of a job: what they are of, after the name of what they all are.
-
-    >>> named("published", {"table1": "a.csv"})
-    {'published/table1': 'a.csv'}
-    """
-    return {f"{part}/{name}": file for name, file in files.items()}
-
-
-def part(inputs: Any, name: str) -> dict[str, Any]:
-    """A job's inputs of one kind: what they are of -> file or files; the reverse of `named`."""
+def experiments(shows: Shows, given: Any) -> dict[str, Files]:
+    """The files of each experiment, from a job's inputs `runs`, `problems` and `bounds`."""
+    runs = iter(getattr(given, "runs", ()))
     return {
-        key.removeprefix(f"{name}/"): files
-        for key, files in inputs.items()
-        if key.startswith(f"{name}/")
+        name: Files(
+            {method: list(islice(runs, number)) for method, number in methods.items()},
+            problems,
+            bounds,
+        )
+        for (name, methods), problems, bounds in zip(
+            shows.items(), given.problems, given.bounds, strict=True
+        )
     }
 
 
-def of_experiments(experiments: Mapping[str, Files]) -> dict[str, Any]:
-    """Input files of a job that reads the results of experiments."""
-    runs = {
-        f"{name}/{method}": chunks
-        for name, files in experiments.items()
-        for method, chunks in files.runs.items()
-    }
-    others = {
-        each: {name: getattr(files, each) for name, files in experiments.items()}
-        for each in (PROBLEMS, BOUNDS)
-    }
-    return named(RUNS, runs) | named(PROBLEMS, others[PROBLEMS]) | named(BOUNDS, others[BOUNDS])
-
-
-def experiments(inputs: Any) -> dict[str, Files]:
-    """The files of each experiment of a job's inputs; the reverse of `of_experiments`."""
-    runs: dict[str, dict[str, list[str]]] = {}
-    for name, chunks in part(inputs, RUNS).items():
-        experiment, _, method = name.rpartition("/")
-        runs.setdefault(experiment, {})[method] = list(chunks)
-    bounds = part(inputs, BOUNDS)
-    return {
-        name: Files(runs.get(name, {}), file, bounds[name])
-        for name, file in part(inputs, PROBLEMS).items()
-    }
+def by_table(files: Iterable[str]) -> dict[str, str]:
+    """Files of published numbers, or of comparisons with them, by the table that they are of."""
+    return {Path(file).name.split(".")[0]: file for file in files}

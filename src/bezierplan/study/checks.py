@@ -28,10 +28,16 @@ from bezierplan.running.interface import check_settings
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list, parsed
 from bezierplan.study import published
-from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
+from bezierplan.study.alternatives import (
+    alternatives,
+    concerned,
+    in_first_variant,
+    methods_changed,
+    with_alternative,
+)
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study, files_of, relative
-from bezierplan.study.design import Design, fits, in_first_variant
+from bezierplan.study.design import Design, fits
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
 from bezierplan.study.planner_checks import check_complete, loaded

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.study.artefacts import Figure
 from bezierplan.study.claims import Assumption
@@ -127,16 +127,10 @@ class Study:
                 }
         return described
 
-    def home(self, experiment: str, scale: str) -> str:
-        """The scale under which runs are kept: `full` for `extended` if that has the same runs."""
-        content = self.experiments[experiment]
-        layouts = [self.problems[name].layouts for name in content.problems]
-        sizes = [content.repeats, content.chunk, *filter(None, layouts)]
-        return (
-            "full"
-            if scale == "extended" and all(size["extended"] == size["full"] for size in sizes)
-            else scale
-        )
+    def maps_of(self, experiment: str, scale: str) -> list[str]:
+        """Map files of an experiment."""
+        problems = self.problems_of(experiment, scale).values()
+        return self.maps({problem["workspace"] for problem in problems})
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
@@ -144,13 +138,34 @@ class Study:
         return sorted({relative(file) for each in named for file in each})
 
     def compared(self) -> dict[str, Pivot]:
-        """The tables of runs, which are compared with published numbers; see also `listing_job`."""
+        """The tables of runs, which are compared with published numbers; the others have none."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
     def published_file(self, table: str) -> str | None:
         """The file of a table's published numbers relative to the working folder, or None."""
         file = getattr(self.tables[table], "published", None)
         return file and relative(self.folder / "published" / file)
+
+    def with_published(self) -> dict[str, Pivot]:
+        """The tables of runs that have published numbers."""
+        return {name: table for name, table in self.compared().items() if table.published}
+
+    def published_of(self, table: str) -> list[str]:
+        """Files of published numbers that a table without runs shows: its own, all for a function,
+        none for comparisons.
+        """
+        if isinstance(self.tables[table], Comparison):
+            return []
+        file = self.published_file(table)
+        return [file] if file else self.published_files()
+
+    def published_drawn(self, figure: str) -> list[str]:
+        """Files of published numbers that a figure draws."""
+        drawn = any(
+            panel.published_drawn or getattr(panel, "published", False)
+            for panel in self.figures[figure].panels
+        )
+        return self.published_files() if drawn else []
 
     def published_files(self) -> list[str]:
         """All files of published numbers, relative to the working folder."""

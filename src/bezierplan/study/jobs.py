@@ -1,27 +1,78 @@
-"""The jobs that follow from a study: named tuples of all that a job depends on but files.
+"""The jobs of the workflow, each declared once: a class whose fields are all values that a job
+depends on, and whose `run` is the function that works. From that function, and from the modules
+that the values name, follows the digest of code (`Job.digest`) by which Snakemake sees that a job
+must run again. Files stand in the rules alone.
 
-A script receives them as plain values (`schema.model.plain`), so that Snakemake detects changes.
+`run` imports what it needs itself: the workflow makes jobs at every start, and imports none of it.
 """
 
-import itertools
-from collections import Counter
-from typing import Any
+import hashlib
+import inspect
+from collections.abc import Iterable
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Self
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Shown
-from bezierplan.analysis.jobs import ClaimsJob, ListingJob, PivotJob
-from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
+from bezierplan.analysis.jobs import AuditJob, MeasuredJob, SummaryJob, Tried
+from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.figures import style
-from bezierplan.figures.figure_job import FigureJob
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
+from bezierplan.running.digest import content_digest, function_digest, module_of
+from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import keys, one_or_list
-from bezierplan.study.alternatives import experiments_of_claims
-from bezierplan.study.artefacts import Figure
-from bezierplan.study.definition import Study
+from bezierplan.study import alternatives
+from bezierplan.study.artefacts import Figure as FigureOfStudy
+from bezierplan.study.definition import Study, relative
 from bezierplan.study.experiments import Experiment
+
+Studies = dict[str, Study]
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a job is made of. `of` makes it from the studies and the wildcards of its rule.
+
+    shows: experiment, or study/experiment -> method -> number of chunks: the results that it reads,
+    in the order of its input files.
+    """
+
+    shows: Shows = field(default_factory=dict, kw_only=True)
+
+    @classmethod
+    def of(cls, studies: Studies, **wildcards: str) -> Self:
+        """The job of some wildcards."""
+        raise NotImplementedError
+
+    def run(self, given: Any, made: Any, threads: int) -> None:
+        """Do the work. given, made: input and output files, by their names in the rule."""
+        raise NotImplementedError
+
+    def modules(self) -> Iterable[str | None]:
+        """Modules that `run` imports by name, because of the values."""
+        return ()
+
+    @property
+    def digest(self) -> str:
+        """Of the values, and of the code that works, with the versions of libraries that compute.
+        Objects that have the same text are the same.
+        """
+        values = repr([(each.name, getattr(self, each.name)) for each in fields(self)])
+        works = tuple(
+            function
+            for name, function in inspect.getmembers(type(self), inspect.isfunction)
+            if not name.startswith("__") and name != "modules"
+        )
+        code = function_digest(works, *sorted(set(filter(None, self.modules()))))
+        return f"{hashlib.sha256(values.encode()).hexdigest()[:16]} {code}"
+
+
+# --------------------------------------------------------------------------------------------------
+# Problems, bounds and runs
 
 
 def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
@@ -35,6 +86,84 @@ def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
         for name in sorted({problem["workspace"] for problem in problems.values()})
     }
     return Descriptions(study.key, problems, workspaces)
+
+
+def kinds_of_workspace(workspaces: dict[str, dict]) -> list[str]:
+    """Modules of the kinds of some workspaces."""
+    return [f"bezierplan.workspaces.kinds.{each['kind']}" for each in workspaces.values()]
+
+
+@dataclass(frozen=True)
+class Problems(Job):
+    """The problems of an experiment: drawn once, shared by all its methods."""
+
+    descriptions: Descriptions
+    folder: str
+    maps: str
+    """Digest of map files."""
+
+    @classmethod
+    def of(cls, studies, scale, study, experiment):
+        """Problems; of an experiment of drives, with their worlds."""
+        own, kind = studies[study], Worlds if studies[study].moves(experiment) else Problems
+        described = problems_job(own, experiment, scale)
+        maps = content_digest(*own.maps(described.workspaces))
+        return kind(described, relative(own.folder), maps)
+
+    def modules(self):
+        """Those of the kinds of workspace."""
+        return kinds_of_workspace(self.descriptions.workspaces)
+
+    def run(self, given, made, threads):
+        """Build the problems."""
+        from bezierplan.running import problems
+
+        built = problems.build_all(self.descriptions, Path(self.folder))
+        problems.write(built, self.descriptions.homes, made[0])
+
+
+@dataclass(frozen=True)
+class Worlds(Problems):
+    """The problems of an experiment of drives, with the worlds that move."""
+
+    def run(self, given, made, threads):
+        """Build the problems and worlds."""
+        from bezierplan.running import worlds
+
+        built, moving = worlds.build_all(self.descriptions, Path(self.folder))
+        worlds.write(built, self.descriptions.homes, moving, made[0])
+
+
+@dataclass(frozen=True)
+class Bounds(Job):
+    """The exact shortest path of each problem of an experiment."""
+
+    @classmethod
+    def of(cls, studies, scale, study, experiment):
+        """Bounds; of an experiment of drives, what no robot can beat."""
+        return (BoundsOfDrives if studies[study].moves(experiment) else Bounds)()
+
+    def run(self, given, made, threads):
+        """Compute the bounds."""
+        import pyarrow.parquet as parquet
+
+        from bezierplan.running import problems
+
+        parquet.write_table(problems.bounds_of(problems.read(given.problems)), made[0])
+
+
+@dataclass(frozen=True)
+class BoundsOfDrives(Bounds):
+    """For each problem what no robot can beat."""
+
+    def run(self, given, made, threads):
+        """Compute the bounds."""
+        import pyarrow.parquet as parquet
+
+        from bezierplan.running import problems, rides, worlds
+
+        file = given.problems
+        parquet.write_table(rides.bounds_of(problems.read(file), worlds.read(file)), made[0])
 
 
 def job(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
@@ -77,13 +206,9 @@ def _problems_met(
         settings = {
             key: value for key, value in problem.get("settings", {}).items() if key in accepted
         }
-        met[name] = _place(problem) | ({"settings": settings} if settings else {})
+        place = {key: problem[key] for key in PLACE if key in problem}
+        met[name] = place | ({"settings": settings} if settings else {})
     return met
-
-
-def _place(problem: dict) -> dict:
-    """What the runs table records about a problem's place."""
-    return {key: problem[key] for key in PLACE if key in problem}
 
 
 def chunks(study: Study, experiment: str, method: str, scale: str) -> range:
@@ -99,79 +224,58 @@ def chunks(study: Study, experiment: str, method: str, scale: str) -> range:
     return range(-(-repeats // content.chunk[scale]))
 
 
-def table_job(study: Study, table: str, scale: str) -> PivotJob:
-    """What a table of runs depends on."""
-    spec = study.compared()[table]
-    experiment = study.experiments[spec.experiment]
-    # The experiment's own methods unless the table selects some: baselines appear only in the
-    # comparison.
-    where = {"method": experiment.methods} | spec.where
-    return PivotJob(
-        name=f"{study.key}/{table}",
-        spec=Pivot.model_validate(spec.plain("monotone", "fitted") | {"where": where}),
-        labels=study.labels,
-        variants={
-            name: method for name, method in study.variants().items() if name in experiment.methods
-        },
-        baselines=[name for name in study.methods_of(spec.experiment) if name in study.baselines],
-        repeats=experiment.repeats[scale],
-    )
+def chunks_of(study: Study, experiment: str, methods: Iterable[str], scale: str) -> dict[str, int]:
+    """Number of chunks of each of some methods."""
+    return {method: len(chunks(study, experiment, method, scale)) for method in methods}
 
 
-def listing_job(study: Study, table: str) -> ListingJob:
-    """What a table without runs depends on."""
-    return ListingJob(study.tables[table], study.module(), study.labels)
+@dataclass(frozen=True)
+class Runs(Job):
+    """A method on every condition of an experiment, one block of repeats."""
+
+    chunk: Chunk
+
+    @classmethod
+    def of(cls, studies, scale, study, experiment, method, chunk):
+        """Runs; of an experiment of drives, drives."""
+        kind = Drives if studies[study].moves(experiment) else Runs
+        return kind(job(studies[study], experiment, method, scale, int(chunk)))
+
+    def modules(self):
+        """The planner."""
+        return [module_of(self.chunk.planner)]
+
+    def run(self, given, made, threads):
+        """Run the method."""
+        import pyarrow.parquet as parquet
+
+        from bezierplan.running import execution, problems, rows
+
+        runs, times = execution.run_chunk(problems.read(given.problems), self.chunk)
+        rows.write(runs, made.runs)
+        parquet.write_table(times, made.times)
 
 
-def figure_job(study: Study, figure: str, scale: str) -> FigureJob:
-    """What a figure depends on."""
-    spec = study.figures[figure]
-    experiments = experiments_of(study, figure)
-    bare = sorted({panel.workspace for panel in spec.panels if getattr(panel, "workspace", None)})
-    return FigureJob(
-        study=study.key,
-        columns=spec.columns,
-        panels=[_planned(study, panel) for panel in spec.panels],
-        module=study.module(),
-        labels=study.labels,
-        looks=looks(study),
-        workspaces={name: study.workspaces[name].plain() for name in bare},
-        repeats={name: study.experiments[name].repeats[scale] for name in experiments},
-        chunks=_chunks_rerun(study, figure, scale),
-        unit=_unit(study, experiments[0])
-        if experiments
-        else study.workspaces[bare[0] if bare else next(iter(study.workspaces))].unit,
-    )
+@dataclass(frozen=True)
+class Drives(Runs):
+    """A robot that drives under every condition of an experiment, one block of repeats."""
+
+    def run(self, given, made, threads):
+        """Let the robot drive."""
+        import pyarrow.parquet as parquet
+
+        from bezierplan.running import problems, rides, rows, worlds
+
+        runs, times, traces = rides.run_chunk(
+            problems.read(given.problems), worlds.read(given.problems), self.chunk
+        )
+        rows.write(runs, made.runs)
+        parquet.write_table(times, made.times)
+        parquet.write_table(traces, made.traces, compression="zstd")
 
 
-def looks(study: Study) -> dict[str, str]:
-    """Method -> the name of its look in every figure."""
-    return style.looks_of({method: study.planner(method) for method in study.methods}, study.looks)
-
-
-def _planned(study: Study, panel: Panel) -> Panel:
-    """A panel with all its settings, if it plans by itself."""
-    return (
-        panel.but(settings=study.resolved(panel.method) | panel.settings) if panel.plans else panel
-    )
-
-
-def _chunks_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, Chunk]]:
-    """The chunks whose runs a figure reruns, to draw what no table keeps, by experiment and
-    method.
-    """
-    again = {panel.experiment for panel in study.figures[figure].panels if panel.rerun}
-    return {
-        name: {
-            method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)
-        }
-        for name in sorted(again)
-    }
-
-
-def _unit(study: Study, experiment: str) -> str:
-    """The unit of length of an experiment: that of its first problem's workspace."""
-    return study.workspace_of(study.experiments[experiment].problems[0]).unit
+# --------------------------------------------------------------------------------------------------
+# Tables and figures
 
 
 def experiments_of(study: Study, artefact: str) -> list[str]:
@@ -196,111 +300,275 @@ def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
     return [method for method in study.methods_of(experiment) if method in needed]
 
 
-def claims_job(
-    study: Study, claims: list[Claim], scale: str, primary_alone: bool = False
-) -> ClaimsJob:
-    """What claims depend on.
+def shown_by(study: Study, artefact: str, scale: str) -> Shows:
+    """The results that a table or figure shows."""
+    return {
+        name: chunks_of(study, name, methods_of(study, artefact, name), scale)
+        for name in experiments_of(study, artefact)
+    }
 
-    primary_alone: whether they are judged in their primary variant only.
+
+def looks(study: Study) -> dict[str, str]:
+    """Method -> the name of its look in every figure."""
+    return style.looks_of({method: study.planner(method) for method in study.methods}, study.looks)
+
+
+def labels_of(study: Study, artefact: str) -> dict[str, str]:
+    """Labels, except those of methods, problems and workspaces that a table or figure cannot show.
+    A function may name any.
     """
-    judged = [claim.in_primary_variant() for claim in claims] if primary_alone else claims
-    experiments = {name: study.experiments[name] for name in experiments_of_claims(judged)}
-    return ClaimsJob(
-        study=study.key,
-        module=study.module(),
-        claims=claims,
-        primary_alone=primary_alone,
-        artefacts={
-            name: parts
-            for name, artefact in (study.tables | study.figures).items()
-            if (parts := _shown(artefact))
-        },
-        variant_of=study.variants(),
-        paired={name: experiment.paired for name, experiment in experiments.items()},
-        paper_repeats={
-            name: experiment.repeats["full"] for name, experiment in experiments.items()
-        },
-        labels=study.labels,
-        repeats={name: experiment.repeats[scale] for name, experiment in experiments.items()},
+    spec = (study.tables.get(artefact) or study.figures[artefact]).plain()
+    panels = spec.get("panels", [])
+    if spec.get("kind") in ("function", "comparison") or any("data" in panel for panel in panels):
+        return study.labels
+    shown = {panel["method"] for panel in panels if "method" in panel}
+    for experiment in experiments_of(study, artefact):
+        content = study.experiments[experiment]
+        shown |= {*study.methods_of(experiment), *content.problems}
+        shown |= {str(value) for values in content.vary.values() for value in values}
+        for problem in (study.problems[name] for name in content.problems):
+            shown |= {problem.workspace, problem.route}
+    names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
+    return {
+        name: label for name, label in study.labels.items() if name in shown or name not in names
+    }
+
+
+@dataclass(frozen=True)
+class TableOfRuns(Job):
+    """A table of runs, and its comparison with published numbers."""
+
+    name: str
+    """`study/table`."""
+    spec: Pivot
+    """Without its title, which stands in the caption alone."""
+    labels: dict[str, str]
+    """Name -> how it is printed."""
+    variants: dict[str, str]
+    """Method -> the method whose published numbers it is compared with."""
+    baselines: list[str]
+    repeats: int
+    published: str
+    """Digest of the file of published numbers."""
+
+    @classmethod
+    def of(cls, studies, scale, study, table, tree=""):
+        """The table of a name."""
+        own = studies[study]
+        spec = own.compared()[table]
+        experiment = own.experiments[spec.experiment]
+        # The experiment's own methods unless the table selects some: baselines appear only in the
+        # comparison.
+        where = {"method": experiment.methods} | spec.where
+        file = own.published_file(table)
+        return cls(
+            name=f"{study}/{table}",
+            spec=spec.but(title=table, monotone=[], fitted=[], where=where),
+            labels=labels_of(own, table),
+            variants={
+                name: method
+                for name, method in own.variants().items()
+                if name in experiment.methods
+            },
+            baselines=[name for name in own.methods_of(spec.experiment) if name in own.baselines],
+            repeats=experiment.repeats[scale],
+            published=content_digest(file) if file else "",
+            shows=shown_by(own, table, scale),
+        )
+
+    def run(self, given, made, threads):
+        """Make the table and its comparison."""
+        from bezierplan.analysis import comparison, results, tables
+        from bezierplan.running import inputs
+
+        ((experiment, files),) = inputs.experiments(self.shows, given).items()
+        runs = results.read(files, self.repeats, experiment)
+        file = given.published[0] if self.published else None
+        published = comparison.read_published(file, self.spec)
+        compared = comparison.compare(
+            runs, self.spec, published, self.variants, self.baselines, self.name
+        )
+        tables.pivot(runs, self.spec, self.labels).to_csv(made.table, lineterminator="\n")
+        if file:
+            printed = tables.printed(file, self.spec, self.labels)
+            printed.to_csv(made.published, lineterminator="\n")
+        compared.to_csv(made.comparison, index=False, float_format="%.10g", lineterminator="\n")
+
+
+@dataclass(frozen=True)
+class TableWithoutRuns(Job):
+    """What a paper prints, what follows from it, or several comparisons."""
+
+    spec: Table
+    """Without its title."""
+    module: str | None
+    """That of the study, whose function makes the table."""
+    labels: dict[str, str]
+    published: str
+    """Digest of files of published numbers."""
+
+    @classmethod
+    def of(cls, studies, scale, study, table, tree=""):
+        """The table of a name."""
+        own = studies[study]
+        spec = own.tables[table].but(title=table)
+        module = own.module() if spec.kind == "function" else None
+        published = content_digest(*own.published_of(table))
+        return cls(spec, module, labels_of(own, table), published)
+
+    def modules(self):
+        """That of the study."""
+        return [self.module]
+
+    def run(self, given, made, threads):
+        """Make the table."""
+        import importlib
+
+        from bezierplan.analysis import listing
+        from bezierplan.running import inputs
+
+        functions = vars(importlib.import_module(self.module)) if self.module else {}
+        table = listing.table(self.spec, inputs.by_table(given.published), functions, self.labels)
+        table.to_csv(made[0], index=False, float_format="%.10g", lineterminator="\n")
+
+
+@dataclass(frozen=True)
+class Latex(Job):
+    """A table as LaTeX, with its caption, which alone holds the title."""
+
+    label: str
+    caption: str
+
+    @classmethod
+    def of(cls, studies, scale, study, table, tree=""):
+        """The table of a name."""
+        return cls(f"{study}-{table}", caption(studies[study], table, scale))
+
+    def run(self, given, made, threads):
+        """Set the table."""
+        from bezierplan.analysis import latex
+
+        study, _, name = self.label.partition("-")
+        tables = latex.captioned({name: given.table}, {name: self.caption}, study)
+        Path(made[0]).write_text(latex.document(tables), encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Figure(Job):
+    """A figure: pictures, exactly the data drawn in them, and what its caption says of the runs."""
+
+    study: str
+    columns: int
+    panels: list[Panel]
+    module: str | None
+    """That of the study, with the functions that panels name."""
+    labels: dict[str, str]
+    """Name -> how it is printed."""
+    looks: dict[str, str]
+    """Method -> the name of its look."""
+    workspaces: dict[str, dict[str, Any]]
+    """By name, those that are drawn without runs, as their files describe them."""
+    repeats: dict[str, int]
+    """By experiment."""
+    chunks: dict[str, dict[str, Chunk]]
+    """Those whose runs the figure reruns, to draw what no table keeps, by experiment and method."""
+    unit: str
+    """That of lengths."""
+    folder: str
+    """That of the study, with its maps."""
+    sources: str
+    """Digest of map files and published numbers."""
+
+    @classmethod
+    def of(cls, studies, scale, study, figure, tree=""):
+        """The figure of a name."""
+        own = studies[study]
+        spec, experiments = own.figures[figure], experiments_of(own, figure)
+        again = {panel.experiment for panel in spec.panels if panel.rerun}
+        bare = workspaces_of_figure(own, figure)
+        any_method = any(getattr(panel, "data", None) for panel in spec.panels)
+        methods = {method for name in experiments for method in own.methods_of(name)}
+        first = own.problems[own.experiments[experiments[0]].problems[0]] if experiments else None
+        home = first.workspace if first else [*bare, *own.workspaces][0]
+        return cls(
+            study=study,
+            columns=spec.columns,
+            panels=[_planned(own, panel) for panel in spec.panels],
+            module=own.module() if any_method else None,
+            labels=labels_of(own, figure),
+            looks={
+                name: look for name, look in looks(own).items() if any_method or name in methods
+            },
+            workspaces={name: own.workspaces[name].plain() for name in bare},
+            repeats={name: own.experiments[name].repeats[scale] for name in experiments},
+            chunks={
+                name: {
+                    method: job(own, name, method, scale, 0)
+                    for method in methods_of(own, figure, name)
+                }
+                for name in sorted(again)
+            },
+            unit=own.workspaces[home].unit,
+            folder=relative(own.folder),
+            sources=content_digest(*own.maps(bare), *own.published_drawn(figure)),
+            shows=shown_by(own, figure, scale),
+        )
+
+    def modules(self):
+        """Kinds of panel and workspace, the study's, and planners that run again."""
+        again = [chunk.planner for methods in self.chunks.values() for chunk in methods.values()]
+        return [
+            self.module,
+            *(f"bezierplan.figures.panels.{panel.kind}" for panel in self.panels),
+            *map(module_of, again),
+            *kinds_of_workspace(self.workspaces),
+        ]
+
+    def run(self, given, made, threads):
+        """Draw the figure from its data, which are first written and read back."""
+        import importlib
+
+        from bezierplan.analysis import results
+        from bezierplan.figures import sheet
+        from bezierplan.figures.panels import Sources
+        from bezierplan.running import inputs
+        from bezierplan.workspaces import files as workspace_files
+
+        published = {
+            name: results.published_table(file)
+            for name, file in inputs.by_table(given.published).items()
+        }
+        numbers = results.joined_numbers(published)
+        read = results.read_all(inputs.experiments(self.shows, given), self.repeats)
+        experiments = {
+            name: runs._replace(published=numbers, jobs=self.chunks.get(name))
+            for name, runs in read.items()
+        }
+        workspaces = {
+            name: workspace_files.load(described, Path(self.folder))
+            for name, described in self.workspaces.items()
+        }
+        problems = {name: runs.problems for name, runs in experiments.items()}
+        functions = vars(importlib.import_module(self.module)) if self.module else {}
+        scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks)
+        sources = Sources(experiments, workspaces, functions, published, self.study)
+        sheet.write_data(sheet.data(self.panels, sources), made.data)
+        figure = sheet.draw(self.panels, sheet.read_data(made.data), scene, self.columns)
+        sheet.save(figure, made.svg, made.png, made.pdf)
+        Path(made.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
+
+
+def workspaces_of_figure(study: Study, figure: str) -> list[str]:
+    """Names of the workspaces that a figure draws without runs."""
+    panels = study.figures[figure].panels
+    return sorted({panel.workspace for panel in panels if getattr(panel, "workspace", None)})
+
+
+def _planned(study: Study, panel: Panel) -> Panel:
+    """A panel with all its settings, if it plans by itself."""
+    return (
+        panel.but(settings=study.resolved(panel.method) | panel.settings) if panel.plans else panel
     )
-
-
-def _shown(artefact: Table | Figure) -> list[Shown]:
-    """What a table or figure shows of runs."""
-    if isinstance(artefact, Pivot):
-        given = {name: each for name, each in artefact.plain().items() if name in keys(Shown)}
-        return [Shown.model_validate(given)]
-    panels = artefact.panels if isinstance(artefact, Figure) else []
-    return [
-        Shown(experiment=panel.experiment, where=panel.where)
-        for panel in panels
-        if getattr(panel, "experiment", None)
-    ]
-
-
-def kind_of(study: Study, artefact: str) -> str:
-    """The kind of a table, or of the first panel of a figure; for a comparison, of its tables."""
-    if artefact in study.figures:
-        return study.figures[artefact].panels[0].kind
-    table = study.tables[artefact]
-    return "pivot" if isinstance(table, Comparison) else table.kind
-
-
-def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[str, str, str]]]:
-    """The small subset: the first artefact of each kind, as (study, artefact), and one method of
-    each planner that none of them runs, as (study, experiment, method).
-    """
-    artefacts, kinds, planners = [], set(), set()
-    for key, study in studies.items():
-        for artefact in itertools.chain(study.tables, study.figures):
-            if kind_of(study, artefact) not in kinds:
-                kinds.add(kind_of(study, artefact))
-                artefacts.append((key, artefact))
-                for experiment in experiments_of(study, artefact):
-                    planners.update(
-                        study.planner(method) for method in methods_of(study, artefact, experiment)
-                    )
-    methods = []
-    for key, study in studies.items():
-        for experiment in study.experiments:
-            for method in study.methods_of(experiment):
-                if study.planner(method) not in planners:
-                    planners.add(study.planner(method))
-                    methods.append((key, experiment, method))
-    return artefacts, methods
-
-
-def leaders(studies: dict[str, Study], scale: str) -> dict[tuple[str, str, str], int]:
-    """The first method of each planner among the runs of a scale, as (study, experiment, method),
-    numbered within its study.
-    """
-    made = []
-    if scale == "smoke":
-        artefacts, alone = smoke(studies)
-        for key, artefact in artefacts:
-            study = studies[key]
-            made += [
-                (key, name, method)
-                for name in experiments_of(study, artefact)
-                for method in methods_of(study, artefact, name)
-            ]
-        made += alone
-    else:
-        for key, study in studies.items():
-            made += [
-                (key, name, method)
-                for name in study.experiments
-                for method in study.methods_of(name)
-            ]
-    first: dict[str, tuple[str, str, str]] = {}
-    for key, experiment, method in made:
-        first.setdefault(studies[key].planner(method), (key, experiment, method))
-    numbers = Counter[str]()
-    places = {}
-    for leader in first.values():
-        places[leader] = numbers[leader[0]]
-        numbers[leader[0]] += 1
-    return places
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
@@ -353,15 +621,23 @@ def caption(study: Study, artefact: str, scale: str) -> str:
 
 def _fewer(study: Study, experiment: Experiment, methods: list[str]) -> str:
     """Where these methods make fewer runs at scale extended, as the end of a sentence."""
-    told = ""
+    end = ""
     for factor, fewer in experiment.fewer.items():
         shown = {
             name: count for name, count in fewer.items() if factor != "method" or name in methods
         }
         for count in sorted(set(shown.values())):
             names = [study.labels.get(name, name) for name, own in shown.items() if own == count]
-            told += f", {count} where {factor.replace('_', ' ')} is {' or '.join(names)}"
-    return told
+            end += f", {count} where {factor.replace('_', ' ')} is {' or '.join(names)}"
+    return end
+
+
+def escaped(text: str) -> str:
+    """Text as one line of literal reStructuredText: no markup, no directive, no HTML."""
+    return "".join(
+        f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign
+        for sign in " ".join(text.split())
+    )
 
 
 def _listed(settings: dict[str, Any], before: str) -> str:
@@ -372,9 +648,310 @@ def _listed(settings: dict[str, Any], before: str) -> str:
     )
 
 
-def published_drawn(study: Study, figure: str) -> bool:
-    """Whether a figure shows published numbers."""
-    return any(
-        panel.published_drawn or getattr(panel, "published", False)
-        for panel in study.figures[figure].panels
-    )
+# --------------------------------------------------------------------------------------------------
+# Claims, audit, alternatives
+
+
+@dataclass(frozen=True)
+class Claims(Job):
+    """The claims of a study, judged on the runs of some experiments."""
+
+    study: str
+    module: str | None
+    """That of the study, with the functions that claims name."""
+    claims: list[Claim]
+    artefacts: dict[str, list[Shown]]
+    """What each table and figure shows of runs."""
+    variant_of: dict[str, str]
+    """Method -> the method whose published numbers count."""
+    paired: dict[str, bool]
+    """By experiment, whether runs with equal repeat numbers share a start or a random workspace."""
+    paper_repeats: dict[str, int]
+    """By experiment, repeats of the paper, used if the printed numbers do not state them."""
+    labels: dict[str, str]
+    repeats: dict[str, int]
+    """By experiment, the repeats that are judged."""
+    published: str
+    """Digest of files of published numbers."""
+
+    @classmethod
+    def of(cls, studies, scale, study):
+        """The claims of a study."""
+        own = studies[study]
+        experiments = alternatives.experiments_of_claims(own.claims)
+        shows = {
+            name: chunks_of(own, name, own.experiments[name].methods, scale) for name in experiments
+        }
+        return cls(**_claims(own, own.claims, scale), shows=shows)
+
+    def modules(self):
+        """That of the study, and kinds of check."""
+        kinds = {check.test for claim in self.claims for check in claim.checks}
+        return [self.module, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
+
+    def files(self, given, made):
+        """Files of the results by experiment."""
+        from bezierplan.running import inputs
+
+        return inputs.experiments(self.shows, given)
+
+    def run(self, given, made, threads):
+        """Judge the claims."""
+        import importlib
+
+        from bezierplan.analysis import results
+        from bezierplan.analysis.claims import judge
+        from bezierplan.running import inputs
+
+        judged, checks = judge.judge(
+            self.claims,
+            results.read_all(self.files(given, made), self.repeats),
+            {
+                name: results.published_table(file)
+                for name, file in inputs.by_table(given.published).items()
+            },
+            self.artefacts,
+            self.study,
+            vars(importlib.import_module(self.module)) if self.module else {},
+            variant_of=self.variant_of,
+            paired=self.paired,
+            repeats=self.paper_repeats,
+            labels=self.labels,
+        )
+        for table, file in ((judged, made.claims), (checks, made.checks)):
+            table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
+
+
+def _claims(study: Study, claims: list[Claim], scale: str) -> dict[str, Any]:
+    """Fields of the job that judges some claims of a study."""
+    experiments = {
+        name: study.experiments[name] for name in alternatives.experiments_of_claims(claims)
+    }
+    return {
+        "study": study.key,
+        "module": study.module(),
+        "claims": claims,
+        "artefacts": {
+            name: parts
+            for name, artefact in (study.tables | study.figures).items()
+            if (parts := _shown(artefact))
+        },
+        "variant_of": study.variants(),
+        "paired": {name: experiment.paired for name, experiment in experiments.items()},
+        "paper_repeats": {
+            name: experiment.repeats["full"] for name, experiment in experiments.items()
+        },
+        "labels": study.labels,
+        "repeats": {name: experiment.repeats[scale] for name, experiment in experiments.items()},
+        "published": content_digest(*study.published_files()),
+    }
+
+
+def _shown(artefact: Table | FigureOfStudy) -> list[Shown]:
+    """What a table or figure shows of runs."""
+    if isinstance(artefact, Pivot):
+        entry = {name: each for name, each in artefact.plain().items() if name in keys(Shown)}
+        return [Shown.model_validate(entry)]
+    panels = artefact.panels if isinstance(artefact, FigureOfStudy) else []
+    return [
+        Shown(experiment=panel.experiment, where=panel.where)
+        for panel in panels
+        if getattr(panel, "experiment", None)
+    ]
+
+
+@dataclass(frozen=True)
+class Alternative(Claims):
+    """Claims judged in their primary variant on runs with one alternative of an assumption, which
+    this job makes, and on the other methods' runs by default. One job, for most of its chunks take
+    less time than starting a process.
+    """
+
+    chunks: list[tuple[int, Chunk]]
+    """Numbers and chunks of runs that the alternative changes."""
+
+    @classmethod
+    def of(cls, studies, scale, study, alternative):
+        """The alternative of a name."""
+        own = studies[study]
+        tried = alternatives.with_alternative(own, alternative)
+        claims = alternatives.headline_claims(own, alternative)
+        changed = alternatives.methods_changed(own, alternative)
+        methods = {
+            name: alternatives.methods_of_claims(own, claims, name)
+            for name in alternatives.experiments_of_claims(claims)
+        }
+        return cls(
+            **_claims(own, claims, scale),
+            chunks=[
+                (number, alternatives.judged_only(job(tried, name, method, scale, number), claims))
+                for name, compared in methods.items()
+                for method in compared
+                if method in changed
+                for number in chunks(own, name, method, scale)
+            ],
+            shows={
+                name: chunks_of(own, name, [one for one in compared if one not in changed], scale)
+                for name, compared in methods.items()
+            },
+        )
+
+    def modules(self):
+        """Planners as well."""
+        return [*super().modules(), *(module_of(chunk.planner) for _, chunk in self.chunks)]
+
+    def files(self, given, made):
+        """Files of the results by experiment, with the runs that are made here."""
+        from bezierplan.running import again, inputs
+
+        return again.with_chunks(
+            inputs.experiments(self.shows, given), self.chunks, Path(made.runs)
+        )
+
+
+@dataclass(frozen=True)
+class Sensitivity(Job):
+    """Verdicts under each alternative beside those under the defaults."""
+
+    described: dict[str, Tried]
+
+    @classmethod
+    def of(cls, studies, scale, study):
+        """The alternatives of a study."""
+        return cls(alternatives.alternatives_described(studies[study]))
+
+    def run(self, given, made, threads):
+        """Compare the verdicts."""
+        import pandas as pd
+
+        from bezierplan.analysis import sensitivity
+
+        tried = {
+            name: pd.read_csv(file)
+            for name, file in zip(self.described, given.alternatives, strict=True)
+        }
+        table = sensitivity.sensitivity(pd.read_csv(given.claims), tried, self.described)
+        table.to_csv(made[0], index=False, float_format="%.10g", lineterminator="\n")
+
+
+@dataclass(frozen=True)
+class Audit(Job):
+    """A paper's own numbers, checked against each other and against exact bounds."""
+
+    audit: AuditJob
+    identified: list[str]
+    """Experiments among whose paths printed lengths are sought."""
+    published: str
+    """Digest of files of published numbers."""
+
+    @classmethod
+    def of(cls, studies, scale, study):
+        """The audit of a study."""
+        own = studies[study]
+        tables = {Path(each.published).stem: each for each in own.with_published().values()}
+        return cls(
+            AuditJob(
+                study,
+                own.module(),
+                {name: table.experiment for name, table in tables.items()},
+                {name: table.primary for name, table in tables.items()},
+                {name: Layout.of(table) for name, table in tables.items()},
+            ),
+            sorted({table.experiment for table in tables.values() if table.identify}),
+            content_digest(*own.published_files()),
+            shows={name: {} for name in sorted({each.experiment for each in tables.values()})},
+        )
+
+    def modules(self):
+        """That of the study."""
+        return [self.audit.module]
+
+    def run(self, given, made, threads):
+        """Check the numbers."""
+        from bezierplan.analysis import audit
+        from bezierplan.running import inputs
+
+        files = inputs.experiments(self.shows, given)
+        table = audit.audited(
+            self.audit,
+            {name: files[name].problems for name in self.identified},
+            {name: each.bounds for name, each in files.items()},
+            inputs.by_table(given.published),
+        )
+        table.to_csv(made[0], index=False, float_format="%.10g", lineterminator="\n")
+
+
+# --------------------------------------------------------------------------------------------------
+# All studies together
+
+
+@dataclass(frozen=True)
+class BaselineComparison(Job):
+    """The methods of all studies beside the baselines that the studies name."""
+
+    measured: dict[str, MeasuredJob]
+    """By study."""
+
+    @classmethod
+    def of(cls, studies, scale):
+        """The studies that name a baseline."""
+        measured = {key: study for key, study in studies.items() if study.baseline_comparison}
+        return cls(
+            {
+                key: MeasuredJob(
+                    study.baseline_comparison.baseline,
+                    {
+                        name: study.experiments[name].repeats[scale]
+                        for name in study.baseline_comparison.experiments
+                    },
+                )
+                for key, study in measured.items()
+            },
+            shows={
+                f"{key}/{name}": chunks_of(
+                    study,
+                    name,
+                    [*study.experiments[name].methods, study.baseline_comparison.baseline],
+                    scale,
+                )
+                for key, study in measured.items()
+                for name in study.baseline_comparison.experiments
+            },
+        )
+
+    def run(self, given, made, threads):
+        """Measure the methods."""
+        from bezierplan.analysis import baseline_comparison
+        from bezierplan.running import inputs
+
+        rows = baseline_comparison.of_studies(self.measured, inputs.experiments(self.shows, given))
+        rows.to_csv(made[0], index=False, float_format="%.6g", lineterminator="\n")
+
+
+@dataclass(frozen=True)
+class Summary(Job):
+    """The numbers and claims of all studies."""
+
+    scale: str
+    summary: SummaryJob
+
+    @classmethod
+    def of(cls, studies, scale):
+        """All studies."""
+        tables = [(key, name) for key, own in studies.items() for name in own.with_published()]
+        return cls(scale, SummaryJob(tables, {key: own.title for key, own in studies.items()}))
+
+    def run(self, given, made, threads):
+        """Gather them."""
+        from bezierplan.analysis import summary
+
+        files = {
+            f"{study}/{table}": file
+            for (study, table), file in zip(self.summary.tables, given.comparisons, strict=True)
+        }
+        found = summary.gathered(
+            self.summary, files, list(given.claims), given.baseline_comparison, self.scale
+        )
+        for table, file in ((found.numbers, made.numbers), (found.claims, made.claims)):
+            table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
+        Path(made.summary).write_text(found.report, encoding="utf-8")

@@ -3,9 +3,8 @@ first job starts, and reported in one line (`checked.Fault`).
 """
 
 import json
-import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,7 +12,6 @@ from bezierplan.places import STUDIES
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import DEVICES, LONGEST_NAME, Model, parsed
-from bezierplan.study import stamps
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
@@ -27,20 +25,16 @@ Folders = dict[Path, dict[str, Any]]
 """Folders of studies, with the settings that take the place of a study's own."""
 
 
-def read_config(config: Mapping[str, Any], alone: bool = False) -> Folders:
-    """The studies that a configuration names: config/config.yaml in the working folder, updated
-    with the given values, or these alone.
+def check_config(file: str) -> None:
+    """Raise Fault unless a configuration, if there is one, is YAML as it is read here."""
+    if Path(file).is_file():
+        checked.read(Path(file))
 
-    Alone they count in a workflow that includes this one: config/config.yaml is its own there.
-    Raises Fault.
-    """
-    file = Path("config/config.yaml")
-    location = "config of the module" if alone else f"{file} or --config"
-    content = parsed(
-        ConfigFile,
-        (checked.read(file) if file.is_file() and not alone else {}) | dict(config),
-        location,
-    )
+
+def read_config(config: Mapping[str, Any]) -> Folders:
+    """The studies that a configuration names. Raises Fault."""
+    location = "config/config.yaml or --config"
+    content = parsed(ConfigFile, _with_values(dict(config)), location)
     folders: Folders = {}
     for name in content.studies:
         folder = STUDIES / name if "/" not in name else Path(name)
@@ -60,50 +54,34 @@ def read_config(config: Mapping[str, Any], alone: bool = False) -> Folders:
     return folders
 
 
-def asked_for(folder: Path, targets: Iterable[str], folders: Iterable[Path]) -> bool:
-    """Whether a target may need the study in a folder: one that is named after it, or after none of
-    the studies in `folders`; or there is no target, which asks for all.
+def _with_values(config: dict[str, Any]) -> dict[str, Any]:
+    """A configuration whose settings are numbers where they look like it: Snakemake reads those of
+    the command line as text.
     """
-    names = [each.resolve().name for each in folders]
-    concerned = [
-        [name for name in names if target.startswith(f"{name}_") or name in Path(target).parts]
-        for target in targets
-    ]
-    return not concerned or any(folder.resolve().name in own or not own for own in concerned)
+
+    def value(entry: Any) -> Any:
+        if isinstance(entry, dict):
+            return {key: value(each) for key, each in entry.items()}
+        return checked.parse(entry, "--config") if isinstance(entry, str) else entry
+
+    return {key: value(entry) if key == "settings" else entry for key, entry in config.items()}
 
 
-def load(
-    folders: Iterable[Path] | Folders,
-    at_changes: Callable[[], object] = lambda: None,
-    is_needed: Callable[[Path], bool] = lambda folder: True,
-) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked, unless that was done before. Raises Fault.
+def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
+    """The studies in folders, by name, read and checked. Raises Fault."""
+    from bezierplan.study.checks import check
 
-    at_changes: called before each check, which takes seconds. is_needed: whether a study is read
-    that has not been checked before; the others are left out.
-    """
     studies = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
         try:
-            stamp = stamps.stamp_of(folder, json.dumps(changed, sort_keys=True) if changed else "")
-            before = stamps.remembered(stamp, folder)
-            if not before and not is_needed(folder):
-                continue
-            study = before or read_study(folder, changed)
+            study = read_study(folder, changed)
             if study.key in studies:
                 raise Fault(
                     f"{relative(folder)}: a study of the name {study.key} is there already; "
                     "rename the folder"
                 )
-            if not before:
-                # What checks need takes long to import, and most starts find nothing that has
-                # changed.
-                at_changes()
-                from bezierplan.study.checks import check
-
-                check(study)
-                stamps.remember(stamp, study)
+            check(study)
         except Fault as fault:
             if not changed:
                 raise
@@ -192,7 +170,8 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
                 f"{location}: config/studies has a study {key} already, whose results this one "
                 "would overwrite; rename the folder"
             )
-        for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
+        items = ["beyond", *study.tables, *study.figures]
+        for target in [key, *(f"{key}_{item}" for item in items)]:
             if target in owners:
                 raise Fault(
                     f"{location}: {target}: {owners[target]} has a target of this name already; "
@@ -216,17 +195,3 @@ def check_name(key: str, location: str) -> None:
             f"{location}: not a name of a study; "
             f"expected {wanted}; choose another name for its folder"
         )
-
-
-def check_start(cores: int | None) -> None:
-    """Raise Fault unless there is a core to work on, if their number is given, and results can be
-    written below the working folder.
-    """
-    if cores is not None and cores < 1:
-        raise Fault(f"--cores: {cores}; expected a number of at least 1")
-    for location in (Path(), Path("results")):
-        if location.exists() and not (location.is_dir() and os.access(location, os.W_OK | os.X_OK)):
-            raise Fault(
-                f"{location.resolve()}: cannot be written; the workflow writes its results into "
-                "results/ of the working folder"
-            )

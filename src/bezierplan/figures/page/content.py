@@ -99,6 +99,7 @@ class Table(Record):
     title: str
     caption: str = Field(description="title, methods, their settings and repeats")
     csv: str = Field(description="its csv file, relative to the page")
+    latex: str = Field(description="its LaTeX, relative to the page")
     numbers: list[Number] = []
     columns: list[str] = []
     rows: list[list[Cell]] = []
@@ -312,7 +313,6 @@ class Study(Record):
     claims: list[Claim]
     tables: list[Table]
     figures: list[Figure]
-    latex: str = Field("", description="its tables as LaTeX, relative to the page")
     audit: list[Audited]
     assumptions: list[Assumption]
     gap: float | None = Field(

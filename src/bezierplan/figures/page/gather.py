@@ -16,7 +16,14 @@ from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other, why
 from bezierplan.figures.page.addresses import address, of_cells
-from bezierplan.figures.page.page_job import AssumptionShown, FigureShown, StudyShown, TableShown
+from bezierplan.figures.page.page_job import (
+    FILES,
+    AssumptionShown,
+    FigureShown,
+    StudyShown,
+    TableShown,
+)
+from bezierplan.running.inputs import tree
 
 # Columns of claims.csv that the page shows in places of their own, or that repeat the comparison
 # that decides.
@@ -107,7 +114,7 @@ def _study(
     measured: pd.DataFrame | None,
     outcome: dict[str, int],
 ) -> content.Study:
-    files = {name: read(file) for name, file in job.files.items()}
+    files = {name: read(folder / key / FILES[name]) for name in job.files}
     judged = files.get("claims", pd.DataFrame(columns=["study", "id", "primary", "verdict"]))
     choices = _choices(files.get("sensitivity"), judged)
     own = None if numbers is None else numbers[numbers["study"] == key]
@@ -129,7 +136,6 @@ def _study(
         claims=_claims(key, judged, files.get("checks"), choices, job),
         tables=tables,
         figures=[_figure(key, name, figure, folder) for name, figure in job.figures.items()],
-        latex=job.latex,
         audit=[_audited(row) for _, row in files["audit"].iterrows()] if "audit" in files else [],
         assumptions=[_assumption(key, each, choices) for each in job.assumptions],
         gap=median(gaps) if gaps else None,
@@ -140,7 +146,7 @@ def _study(
 
 
 def _figure(study: str, name: str, job: FigureShown, folder: Path) -> content.Figure:
-    stem = f"{study}/figures/{name}"
+    stem = f"{study}/{tree(name)}/{name}"
     told, _, seen = (folder / f"{stem}.txt").read_text(encoding="utf-8").strip().partition("\n")
     return content.Figure(
         address=address(study, name),
@@ -164,7 +170,7 @@ def _table(
 ) -> content.Table:
     table_address, spec = address(study, name), job.spec
     is_compared = isinstance(spec, Pivot) and spec.published
-    file = f"{study}/tables/{name}{'.comparison' if is_compared else ''}.csv"
+    file = f"{study}/{tree(name)}/{name}{'.comparison' if is_compared else ''}.csv"
     table = read(folder / file)
     shown: dict[str, Any] = (
         {"numbers": _numbers(table_address, table, spec, numbers, labels)}
@@ -175,7 +181,13 @@ def _table(
         }
     )
     return content.Table(
-        address=table_address, name=name, title=job.title, caption=job.caption, csv=file, **shown
+        address=table_address,
+        name=name,
+        title=job.title,
+        caption=job.caption,
+        csv=file,
+        latex=f"{study}/{tree(name)}/{name}.tex",
+        **shown,
     )
 
 

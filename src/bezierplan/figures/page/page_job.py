@@ -2,13 +2,10 @@
 plain values, and files.
 """
 
-from typing import Annotated, Any, NamedTuple
-
-from pydantic import PlainValidator
+from typing import Any, NamedTuple
 
 from bezierplan.analysis.claims.check import Check
-from bezierplan.analysis.claims.kinds import check_of
-from bezierplan.analysis.table_kinds import Table, table_of
+from bezierplan.analysis.table_kinds import Table
 
 
 class PaperCited(NamedTuple):
@@ -39,7 +36,7 @@ class TableShown(NamedTuple):
 
     title: str
     caption: str
-    spec: Annotated[Table, PlainValidator(table_of)]
+    spec: Table
 
 
 class AssumptionShown(NamedTuple):
@@ -78,7 +75,7 @@ class StudyShown(NamedTuple):
     labels: dict[str, str]
     """Name -> how it is printed."""
     methods: dict[str, MethodShown]
-    checks: dict[str, list[Annotated[Check, PlainValidator(check_of)]]]
+    checks: dict[str, list[Check]]
     """Those of each claim."""
     repeats: dict[str, list[int]]
     """Scale -> the least and the largest number of runs of a method under a condition; empty for a
@@ -87,13 +84,18 @@ class StudyShown(NamedTuple):
     tables: dict[str, TableShown]
     figures: dict[str, FigureShown]
     assumptions: list[AssumptionShown]
-    files: dict[str, str]
-    """Its claims, comparisons of claims, audit, alternatives and interpretations, as far as there
-    are any.
-    """
-    latex: str
-    """The file of its tables as LaTeX, if there is one."""
+    files: list[str]
+    """Which of `FILES` there are."""
     experiments: dict[str, ExperimentShown]
+
+
+FILES = {
+    "claims": "claims.csv",
+    "checks": "claim_checks.csv",
+    "audit": "audit.csv",
+    "sensitivity": "sensitivity.csv",
+}
+"""Tables of a study: claims, comparisons of claims, audit, alternatives."""
 
 
 class PageJob(NamedTuple):
