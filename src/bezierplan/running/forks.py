@@ -29,6 +29,7 @@ from bezierplan.running.watchdog import end_with_parent
 # and more time of all cores.
 FIRST = (
     "snakemake.iocontainers",
+    "bezierplan.study.jobs",
     "pyarrow.dataset",
     "bezierplan.running.problems",
     "bezierplan.running.execution",
@@ -39,7 +40,7 @@ LATER = (
     "bezierplan.running.worlds",
     "bezierplan.running.rides",
     "bezierplan.analysis.results",
-    "bezierplan.analysis.claims.job",
+    "bezierplan.analysis.claims.judge",
     "scipy.stats",
     "bezierplan.figures.sheet",
     "seaborn",
