@@ -101,14 +101,16 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
     table = content.Table(
         address="one/table1",
         name="table1",
-        csv="one/tables/table1.comparison.csv",
+        csv="one/paper/table1.comparison.csv",
+        latex="one/paper/table1.tex",
         numbers=numbers,
         **words,
     )
     listing = content.Table(
         address="one/listed",
         name="listed",
-        csv="one/tables/listed.csv",
+        csv="one/beyond/listed.csv",
+        latex="one/beyond/listed.tex",
         columns=["x", HOSTILE],
         rows=[[n, HOSTILE] for n in range(12)],
         **words,

@@ -31,7 +31,7 @@ PROFILES = {
     name: yaml.safe_load((ROOT / "profiles" / name / "profile.yaml").read_text())
     for name in ("default", "slurm", "cluster")
 }
-FIGURE = "results/smoke/song2016/figures/figure4.svg"
+FIGURE = "results/smoke/song2016/paper/figure4.svg"
 RUN = "results/smoke/song2016/runs/routes/smooth/0.parquet"
 
 

@@ -49,7 +49,7 @@ def own(tmp_path_factory):
 def test_module_makes_the_figure_with_the_settings_given(own):
     done = snakemake(own)
     assert done.returncode == 0, done.stderr
-    figure = own / "results/smoke/song2016/figures/figure4.svg"
+    figure = own / "results/smoke/song2016/paper/figure4.svg"
     assert (own / "mine.txt").read_text().split() == [
         str(figure.stat().st_size),
         str(figure.relative_to(own)),

@@ -92,7 +92,7 @@ def test_own_study_of_the_readme_was_run(tree):
     assert "Results: results/full/mystudy" in executed(
         tree, "snakemake mystudy --config studies=[./mystudy]"
     )
-    table = (tree / "results/full/mystudy/tables/lengths.csv").read_text()
+    table = (tree / "results/full/mystudy/beyond/lengths.csv").read_text()
     assert "mine" in table
     assert "genetic" in table
 

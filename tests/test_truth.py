@@ -179,7 +179,7 @@ tables:
   honest: {title: Honest, kind: pivot, experiment: plain, index: [method], columns: [value],
     values: *length}
 """
-TABLES = "results/smoke/liars/tables"
+TABLES = "results/smoke/liars/beyond"
 
 
 def written(home, planners):

@@ -99,10 +99,10 @@ def made(tmp_path):
     """A folder with all tables as docs/outcome has them, and the file of song2016's."""
     outcome = pd.read_csv(verify.OUTCOME)
     for (study, table), rows in outcome.groupby(["study", "table"]):
-        file = tmp_path / study / "tables" / f"{table}.comparison.csv"
+        file = tmp_path / study / "paper" / f"{table}.comparison.csv"
         file.parent.mkdir(parents=True, exist_ok=True)
         rows.drop(columns=["study", "table", "primary", "counted"]).to_csv(file, index=False)
-    return tmp_path / "song2016/tables/table1.comparison.csv"
+    return tmp_path / "song2016/paper/table1.comparison.csv"
 
 
 def test_docs_outcome_agrees_with_itself(made):

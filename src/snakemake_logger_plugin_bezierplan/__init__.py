@@ -64,6 +64,8 @@ class LogHandler(RichHandler):
         super().emit(record)
         if event == LogEvent.JOB_INFO:
             self.outputs.update(map(Path, record.output or []))
+            if self.common_settings.dryrun:
+                self.say(" ".join([record.rule_name, *(record.wildcards or {}).values()]))
         elif event == LogEvent.JOB_FINISHED and not self.console.is_terminal:
             self.show_progress()
         elif (

@@ -8,8 +8,7 @@ def files_in(scale, folder, study=None):
         file
         for own in STUDIES.values()
         if study in (None, own.key)
-        for name in (*own.tables, *own.figures)
-        if tree(name) == folder
+        for name in own.named(folder)
         for file in files_of(scale, own, name)
     ]
 

@@ -16,7 +16,7 @@ from bezierplan.study import reading
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
-PICTURES = ("song2016/figures/figure3.png", "song2016/figures/identified.png")
+PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
 # The run of the README's animation, and its file.
 DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
@@ -65,7 +65,7 @@ def write() -> None:
             shutil.copyfile(file, kept)
     shutil.copyfile(RESULTS / BASELINE_COMPARISON, KEPT / BASELINE_COMPARISON)
     for picture in PICTURES:
-        shutil.copyfile(FULL / picture, KEPT / picture.replace("/figures/", "_"))
+        shutil.copyfile(FULL / picture, KEPT / picture.replace("/paper/", "_").replace("/beyond/", "_"))
     replay.animate(replay.replay(DRIVE, studies), KEPT / ANIMATION)
     README.write_text(
         summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8"

@@ -10,6 +10,7 @@ import pandas as pd
 from bezierplan.analysis import verification
 from bezierplan.commands import cores
 from bezierplan.places import TREE
+from bezierplan.running.inputs import tree
 
 OUTCOME = TREE / "docs" / "outcome" / "numbers_papers_size.csv"
 SHOWN = 10
@@ -76,7 +77,7 @@ def against_outcome(folder: Path) -> tuple[list[str], bool]:
     outcome = pd.read_csv(OUTCOME)
     pairs = []
     for (study, table), rows in outcome.groupby(["study", "table"], sort=False):
-        file = folder / study / "tables" / f"{table}.comparison.csv"
+        file = folder / study / tree(table) / f"{table}.comparison.csv"
         if not file.is_file():
             raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
         pair = verification.compared(rows, pd.read_csv(file))

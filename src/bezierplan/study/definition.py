@@ -11,6 +11,7 @@ from typing import Any
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.planners import is_file, planner_module, planner_settings
+from bezierplan.running.inputs import PAPER, tree
 from bezierplan.study.artefacts import Figure
 from bezierplan.study.claims import Assumption
 from bezierplan.study.experiments import BaselineComparison, Experiment, Method, Policy, Problem
@@ -136,6 +137,14 @@ class Study:
         """Map files of workspaces relative to the working folder, each once."""
         named = (files.sources(self.workspaces[name].plain(), self.folder) for name in workspaces)
         return sorted({relative(file) for each in named for file in each})
+
+    def named(self, folder: str) -> list[str]:
+        """Names of the tables and figures of a tree: `paper`, those that the paper numbers; a study
+        without such has all of its own there. `beyond`: the others.
+        """
+        names = [*self.tables, *self.figures]
+        numbered = [name for name in names if tree(name) == PAPER] or names
+        return numbered if folder == PAPER else [name for name in names if name not in numbered]
 
     def compared(self) -> dict[str, Pivot]:
         """The tables of runs, which are compared with published numbers; the others have none."""

@@ -16,7 +16,7 @@ from bezierplan.figures.page.page_job import (
 )
 from bezierplan.places import STUDIES, TREE
 from bezierplan.running.digest import content_digest
-from bezierplan.running.inputs import PAPER, Shows, tree
+from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.schema import checked
 from bezierplan.study import jobs
 from bezierplan.study.artefacts import in_printed_order
@@ -30,15 +30,17 @@ def shown_of(study: Study, scale: str, root: str = "") -> list[str]:
 
     root: what stands before the paths of results, in a workflow of which this one is a module.
     """
-    folder = Path(f"{root}results/{scale}/{study.key}")
-    names = in_printed_order([*study.tables, *study.figures])
-    return [
-        name
-        for name in names
-        if tree(name) == PAPER
-        or scale == "extended"
-        or (folder / tree(name) / f"{name}.csv").is_file()
-    ]
+    folder = Path(f"{root}results/{scale}/{study.key}/{BEYOND}")
+    return in_printed_order(
+        [
+            *study.named(PAPER),
+            *(
+                name
+                for name in study.named(BEYOND)
+                if scale == "extended" or (folder / f"{name}.csv").is_file()
+            ),
+        ]
+    )
 
 
 def tried(study: Study, scale: str, root: str = "") -> bool:
