@@ -3,10 +3,8 @@
 import pytest
 from studies import studies
 
-from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.variants import in_variant, variants
-from bezierplan.schema.model import parsed
-from bezierplan.study import alternatives, jobs, targets
+from bezierplan.study import alternatives, jobs
 
 STUDIES = studies()
 ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in alternatives.tried(study)]
@@ -15,10 +13,9 @@ ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in altern
 @pytest.mark.parametrize(("key", "name"), ALTERNATIVES)
 def test_every_alternative_has_a_run_that_it_changes(key, name):
     study = STUDIES[key]
-    chunks = targets.alternative_params(STUDIES, "full", key, name)["chunks"]
     assert any(
-        job["settings"] != jobs.job(study, job["experiment"], job["method"], "full", 0).settings
-        for _, job in chunks
+        job.settings != jobs.job(study, job.experiment, job.method, "full", 0).settings
+        for _, job in jobs.Alternative.of(STUDIES, "full", key, name).chunks
     )
 
 
@@ -32,19 +29,15 @@ def test_an_alternative_judges_the_primary_variant_and_runs_only_what_it_judges(
     claim = next(claim for claim in alternatives.headline_claims(study, name) if claim.id == "C1")
     [check] = in_variant(claim.checks, *2 * variants(claim))
     assert check.where["workspace"] == "published_like"
-    judged = targets.alternative_params(STUDIES, "full", "elhoseny2017", name)["job"]
-    assert judged["primary_alone"]
-    assert [
-        parsed(Claim, each, "claims").in_primary_variant() for each in judged["claims"]
-    ] == alternatives.headline_claims(study, name)
-    chunks = targets.alternative_params(STUDIES, "full", "elhoseny2017", name)["chunks"]
+    judged = jobs.Alternative.of(STUDIES, "full", "elhoseny2017", name)
+    assert judged.claims == alternatives.headline_claims(study, name)
     job = next(
         job
-        for number, job in chunks
-        if (job["experiment"], job["method"], number) == ("fields100", "mga", 0)
+        for number, job in judged.chunks
+        if (job.experiment, job.method, number) == ("fields100", "mga", 0)
     )
-    assert {place["workspace"] for place in job["problems"].values()} == {"published_like"}
-    assert len(job["problems"]) == len(study.problems_of("fields100", "full")) / 2
+    assert {place["workspace"] for place in job.problems.values()} == {"published_like"}
+    assert len(job.problems) == len(study.problems_of("fields100", "full")) / 2
 
 
 def test_checks_of_several_experiments_need_the_methods_of_each():

@@ -15,7 +15,7 @@ from studies import studies
 from bezierplan.analysis import results
 from bezierplan.running import columns, log, problems, rows
 from bezierplan.running.inputs import Files
-from bezierplan.study import definition, jobs, page, targets
+from bezierplan.study import definition, jobs
 from bezierplan.study.experiments import Experiment
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -80,41 +80,6 @@ def test_a_caption_says_where_there_are_fewer_runs():
     told = ", 125 where method is smooth (cubic pieces) or smooth (single Bézier)."
     assert jobs.caption(own, "table1", "extended").endswith(f" on each problem{told}")
     assert jobs.caption(own, "table1", "full").endswith(" on each problem.")
-
-
-def behind(given, scale):
-    """The runs behind the tables and figures of a scale and those that it names, as (study,
-    experiment, method).
-    """
-    shown = (
-        jobs.smoke(given)[0]
-        if scale == "smoke"
-        else [(key, name) for key, own in given.items() for name in [*own.tables, *own.figures]]
-    )
-    files = targets.files_of_smoke(given) if scale == "smoke" else []
-    for key, name in shown:
-        files += [
-            chunk
-            for shown in targets.shown_by(given[key], scale, name).values()
-            for chunk in shown.chunks
-        ]
-    return {
-        (place[2], place[4], place[5])
-        for place in (Path(file).parts for file in files)
-        if place[3] == "runs"
-    }
-
-
-@pytest.mark.parametrize("scale", ["smoke", "full"])
-def test_each_planner_has_one_leader_among_the_runs_of_a_scale(scale):
-    given = studies()
-    leaders, made = jobs.leaders(given, scale), behind(given, scale)
-    planners = [given[key].planner(method) for key, _, method in leaders]
-    assert sorted(planners) == sorted({given[key].planner(method) for key, _, method in made})
-    assert leaders.keys() <= made
-    for key in given:
-        places = [place for (own, *_), place in leaders.items() if own == key]
-        assert places == list(range(len(places)))
 
 
 @pytest.mark.parametrize(
@@ -291,11 +256,3 @@ def test_what_is_no_csv_is_told(tmp_path, content):
         log.damaged([str(table)])
         == f"{table}: not a csv file; delete it and start again: the workflow reproduces it"
     )
-
-
-def test_a_page_that_was_cut_short_is_not_whole(tmp_path):
-    (tmp_path / "index.html").write_text("<!doctype html>\n<html>\n</html>\n")
-    assert page.is_whole(tmp_path / "index.html")
-    for cut in (2, 12, 31):
-        (tmp_path / "index.html").write_text("<!doctype html>\n<html>\n</html>\n"[:-cut])
-        assert not page.is_whole(tmp_path / "index.html")

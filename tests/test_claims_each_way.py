@@ -57,7 +57,7 @@ def published(key):
 
 @cache
 def artefacts(key):
-    return jobs.claims_job(study(key), study(key).claims, "full").artefacts
+    return jobs.Claims.of({key: study(key)}, "full", key).artefacts
 
 
 @cache

@@ -18,7 +18,7 @@ from bezierplan.analysis.results import Results
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Condition
 from bezierplan.schema import checked
-from bezierplan.study import reading, targets
+from bezierplan.study import jobs, reading
 from bezierplan.study.jobs import job, problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
@@ -364,5 +364,5 @@ def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
     ],
 )
 def test_numbers_to_which_a_map_was_fitted_are_not_compared_with_its_bound(key, fitted):
-    layouts = targets.audit_params(studies(), "smoke", key)["job"]["layouts"]
-    assert {name for name, layout in layouts.items() if layout["fitted"]} == fitted
+    layouts = jobs.Audit.of(studies(), "smoke", key).audit.layouts
+    assert {name for name, layout in layouts.items() if layout.fitted} == fitted

@@ -1,101 +1,256 @@
-"""What jobs do, called as functions: they know the files of an experiment by name, wherever these
-lie.
+"""Jobs of the workflow: what they are made of, what they do when called as functions, names of
+studies and targets, and what the small subset holds.
 """
 
 import contextlib
-import shutil
+import dataclasses
+import os
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
 import pandas as pd
 import pytest
+from docutils.core import publish_parts
+from snakemake.iocontainers import OutputFiles
+from studies import studies, study
 
-from bezierplan.analysis import audit, baseline_comparison
-from bezierplan.analysis.claims import job as claims_job
-from bezierplan.analysis.jobs import AuditJob, ClaimsJob, MeasuredJob
-from bezierplan.figures import job as figures_job
-from bezierplan.figures.figure_job import FigureJob
-from bezierplan.running import inputs
-from bezierplan.running.inputs import Files
-from bezierplan.schema import model
-from bezierplan.study import reading, targets
+from bezierplan.running import log
+from bezierplan.running.inputs import BEYOND, PAPER
+from bezierplan.schema.checked import Fault
+from bezierplan.study import design, jobs, page, reading
+
+SONG = study("song2016")
+STUDIES = {"song2016": SONG}
+RULES = ("runs", "table", "all", "default")
+
+
+def fault(given):
+    with pytest.raises(Fault) as caught:
+        reading.check_names(given, RULES)
+    return str(caught.value)
+
+
+def elsewhere(tmp_path, key):
+    folder = tmp_path / key
+    folder.mkdir()
+    return {key: dataclasses.replace(SONG, key=key, folder=folder)}
+
+
+def test_names_of_studies_of_the_project_and_fresh_ones_are_taken(tmp_path):
+    reading.check_names(STUDIES | elsewhere(tmp_path, "my-study_2"), RULES)
+
+
+@pytest.mark.parametrize(
+    ("key", "reason"),
+    [
+        *((key, f"{key}: not a name of a study") for key in ("x[1]", "{scale}", "a b", "2016")),
+        *((key, f"{key}: the workflow has a target of this name already") for key in RULES),
+        ("song2016_table1", "song2016_table1: study song2016 has a target of this name already"),
+        ("song2016_beyond", "song2016_beyond: study song2016 has a target of this name already"),
+        ("song2016", "has a study song2016 already, whose results this one would overwrite"),
+    ],
+)
+def test_a_name_that_would_clash_is_refused(tmp_path, key, reason):
+    assert reason in fault(STUDIES | elsewhere(tmp_path, key))
+
+
+HOSTILE = (
+    "a title\n\n.. include:: /etc/passwd\n\n <b>x</b> `code`_ *bold* |sub| http://a.b {{ 7 }} \\"
+)
+
+
+def test_caption_is_one_line_that_says_just_what_it_says():
+    html = publish_parts(jobs.escaped(HOSTILE), writer="html")["body"]
+    assert re.fullmatch("<p>[^<>]*</p>", html.strip())
+    plain = html.replace("&lt;", "<").replace("&gt;", ">").strip()
+    assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"
+
+
+# Files that jobs write
+
+
+def outputs(folder, *names):
+    return OutputFiles(fromdict={name: str(folder / f"{name}.csv") for name in names})
+
+
+def test_files_appear_when_all_are_written(tmp_path):
+    """What a killed job left goes, and nothing of another job."""
+    for name in ("one.csv", "another_one.csv"):
+        left = tmp_path / f".part-{name}-killed"
+        left.mkdir()
+        (left / name).write_text("half")
+    with log.whole_files(outputs(tmp_path, "one", "two")) as parts:
+        for part in (parts.one, parts[1]):
+            Path(part).write_text("x")
+            assert not list(tmp_path.glob("*.csv"))
+    assert sorted(os.listdir(tmp_path)) == [".part-another_one.csv-killed", "one.csv", "two.csv"]
+
+
+def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(log, "end_with_parent", lambda: None)
+    monkeypatch.setattr(log.watchdog, "supervise", lambda *_: None)
+    damaged = tmp_path / "cut.parquet"
+    damaged.write_bytes(b"PAR1")
+    reasons = {
+        str(damaged): f"{damaged}: not a whole Parquet file; delete it and start again: the",
+        "": "ValueError: no footer",
+    }
+    for file, reason in reasons.items():
+        output = outputs(tmp_path, "one")
+        given = SimpleNamespace(
+            log=[str(tmp_path / "log")], input=[file] * bool(file), output=output
+        )
+        with pytest.raises(SystemExit, match=r"^1$"), log.job(given):
+            raise ValueError("no footer")
+        assert capsys.readouterr().err.startswith(reason)
+        assert sorted(os.listdir(tmp_path)) == ["cut.parquet"]
+
+
+# What jobs are made of
+
+
+def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
+    repeats = SONG.experiments[SONG.tables["table1"].experiment].repeats
+    assert repeats["smoke"] != repeats["full"]
+    for scale in ("smoke", "full"):
+        assert jobs.TableOfRuns.of(STUDIES, scale, "song2016", "table1").repeats == repeats[scale]
+        assert f"{repeats[scale]} runs of each method" in jobs.caption(SONG, "table1", scale)
+
+
+def test_two_layouts_stand_for_all():
+    own, found = study("meledje"), set()
+    for experiment in own.experiments:
+        found |= {row["layout"] for row in design.Design(own).rows(experiment) if "layout" in row}
+    assert found == {0, 1}
+
+
+def test_the_papers_own_are_the_numbered_ones():
+    for own in studies().values():
+        names = own.named(PAPER)
+        assert all(re.fullmatch(r"(table|figure)\d+", name) for name in names)
+        assert sorted([*names, *own.named(BEYOND)]) == sorted([*own.tables, *own.figures])
+    counts = [len(own.named(PAPER)) for own in studies().values()]
+    assert counts == [6, 20, 28, 7, 11]
+
+
+# The scenarios of the papers, each by what tells its runs apart: study, keys of a problem, varied
+# settings, methods.
+SCENARIOS = {
+    "random fields of side 100": ("elhoseny2017", {"side": 100}, set(), {"mga", "ga", "prm"}),
+    "random fields of side 200": ("elhoseny2017", {"side": 200}, set(), {"mga", "abc_ep"}),
+    "six maps": (
+        "elhoseny2017",
+        {
+            "workspace": {
+                "back_and_forth",
+                "bugtrap1",
+                "complex2",
+                "gaps",
+                "hidden_u",
+                "square_spiral",
+            }
+        },
+        set(),
+        {"mga"},
+    ),
+    "populations": ("elhoseny2017", {}, {"population"}, {"mga"}),
+    "iterations": ("elhoseny2017", {}, {"iterations"}, {"mga"}),
+    "grids that change": (
+        "meledje",
+        {"workspace": {"env1_initial", "env1_modified", "env2_initial", "env2_modified"}},
+        set(),
+        {"proposed", "random"},
+    ),
+    "a smooth path over grid cells": ("song2016", {}, set(), {"smooth", "nonsmooth"}),
+    "two environments": (
+        "ma2020",
+        {"workspace": {"environment1", "environment2"}},
+        set(),
+        {"bca_q"},
+    ),
+    "chaotic maps": ("tharwat2018", {}, set(), {"cpso1_singer", "cpso2_sine", "cpso2_tent"}),
+    "control points": ("tharwat2018", {}, {"control_points"}, set()),
+    "obstacles": ("tharwat2018", {"obstacles": set(range(1, 11))}, set(), set()),
+    "particles": ("tharwat2018", {}, {"particles"}, set()),
+    "iterations of swarms": ("tharwat2018", {}, {"iterations"}, set()),
+}
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS)
+def test_the_small_subset_holds_every_scenario(scenario):
+    """In one experiment of the jobs of smoke."""
+    key, place, varied, methods = SCENARIOS[scenario]
+    own = study(key)
+    for name, made in page.shows(studies(), "smoke").items():
+        if not name.startswith(f"{key}/") or not methods <= made.keys():
+            continue
+        experiment = name.partition("/")[2]
+        chunk = jobs.job(own, experiment, next(iter(made)), "smoke", 0)
+        places = list(chunk.problems.values())
+        described = own.problems_of(experiment, "smoke").values()
+        if varied <= chunk.vary.keys() and all(
+            (values if isinstance(values, set) else {values})
+            <= {each.get(column) for each in (*places, *described)}
+            for column, values in place.items()
+        ):
+            return
+    raise AssertionError("no experiment of smoke has it")
+
+
+# Jobs as functions: they know the files of an experiment by their order, wherever these lie.
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A working folder with a study, `many`, of four runs of each method, and their results."""
+def gathering():
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(Path(__file__).parent / "benchmark"))
         import gathering
 
         patch.setattr(gathering, "MADE", 4)
-        folder = tmp_path_factory.mktemp("jobs")
-        with contextlib.chdir(folder):
-            gathering.write_runs(reading.read_study(gathering.write_study(folder / "many", 4, 2)))
-    return folder
+        yield gathering
 
 
-@pytest.fixture
-def study(folder, monkeypatch):
-    monkeypatch.chdir(folder)
-    return reading.read_study(folder / "many")
+@pytest.fixture(scope="module")
+def many(gathering, tmp_path_factory):
+    """A working folder with a study, `many`, of four runs of each method, and what its jobs
+    make.
+    """
+    folder = tmp_path_factory.mktemp("jobs")
+    with contextlib.chdir(folder):
+        own = reading.read_study(gathering.write_study(folder / "many", 4, 2))
+        gathering.write_runs(own)
+        for job, given, made in gathering.gathering({"many": own}):
+            for file in made.values():
+                Path(file).parent.mkdir(parents=True, exist_ok=True)
+            output = OutputFiles(fromdict=made)
+            job.run(SimpleNamespace(**given), output, 1)
+    return folder / "results/full"
 
 
-@pytest.fixture
-def moved(study, tmp_path):
-    """Files of the study's experiment under names that say nothing."""
-    (files,) = targets.shown_by(study, "full", "lengths").values()
-    copies = {}
-    for file in (*files.chunks, files.problems, files.bounds):
-        copies[file] = str(tmp_path / f"{len(copies)}.parquet")
-        shutil.copy(file, copies[file])
-        if (times := Path(file).with_suffix(".times.parquet")).is_file():
-            shutil.copy(times, Path(copies[file]).with_suffix(".times.parquet"))
-    runs = {method: [copies[chunk] for chunk in chunks] for method, chunks in files.runs.items()}
-    return Files(runs, copies[files.problems], copies[files.bounds])
-
-
-def test_methods_are_measured_against_the_baseline(study, moved):
-    params = targets.baseline_comparison_params({"many": study}, "full")["job"]
-    rows = baseline_comparison.of_studies(
-        {"many": MeasuredJob(**params["many"])}, {"many/all": moved}
-    )
-    assert list(rows.columns) == list(baseline_comparison.COLUMNS)
+def test_methods_are_measured_against_the_baseline(many):
+    rows = pd.read_csv(many / "baseline_comparison.csv")
     assert set(rows["method"]) == {"pso", "cpso1_singer", "cpso2_singer", "ferguson"}
-    assert set(rows["study"]) == {"many"}
     assert (rows["length"].dropna() >= 1 - 1e-9).all(), "none is shorter than the shortest path"
 
 
-def test_claims_are_judged(study, moved, tmp_path):
-    job = model.job(ClaimsJob, targets.claims_params({"many": study}, "full", "many")["job"])
-    published = inputs.part(targets.claims_inputs({"many": study}, "full", "many"), "published")
-    claims_job.run(
-        job, {"all": moved}, published, str(tmp_path / "claims.csv"), str(tmp_path / "checks.csv")
+def test_claims_are_judged_and_a_table_stands_beside_the_printed_one(many):
+    assert pd.read_csv(many / "many/claims.csv")["id"].tolist() == ["C1"]
+    assert set(pd.read_csv(many / "many/claim_checks.csv")["test"]) == {"lower"}
+    ours, printed = (
+        pd.read_csv(many / f"many/beyond/lengths{part}.csv") for part in ("", ".published")
     )
-    assert pd.read_csv(tmp_path / "claims.csv")["id"].tolist() == ["C1"]
-    assert set(pd.read_csv(tmp_path / "checks.csv")["test"]) == {"lower"}
-
-
-def test_the_papers_numbers_are_audited(study, moved):
-    job = model.job(AuditJob, targets.audit_params({"many": study}, "full", "many")["job"])
-    published = inputs.part(targets.audit_inputs({"many": study}, "full", "many"), "published")
-    table = audit.audited(job, {}, {"all": moved.bounds}, published)
-    assert list(table.columns) == audit.COLUMNS
+    assert set(printed["method"]) <= set(ours["method"])
 
 
 @pytest.mark.parametrize("name", ["spread", "paths"])
-def test_a_figure_is_drawn_wide_and_narrow(study, moved, tmp_path, name):
-    job = model.job(FigureJob, targets.figure_params({"many": study}, "full", "many", name)["job"])
-    output = SimpleNamespace(
-        **{
-            part: str(tmp_path / f"{part}.{name}")
-            for part in ("svg", "png", "pdf", "data", "caption")
-        }
-    )
-    figures_job.draw(job, {"all": moved}, {}, study.folder, output)
-    assert "runs" in Path(output.caption).read_text()
-    assert pd.read_csv(output.data)["panel"].nunique() == len(job.panels)
-    narrow = SimpleNamespace(svg=str(tmp_path / "narrow.svg"), pdf=str(tmp_path / "narrow.pdf"))
-    figures_job.draw_narrow(job, {"all": moved.problems}, output.data, study.folder, narrow)
-    assert Path(narrow.svg).stat().st_size > 1000
-    assert Path(narrow.pdf).stat().st_size > 1000
+def test_a_figure_is_drawn_from_its_data(many, name):
+    assert "runs" in (many / f"many/beyond/{name}.txt").read_text()
+    assert pd.read_csv(many / f"many/beyond/{name}.csv")["panel"].nunique() in (1, 2)
+    for ending in ("svg", "png", "pdf"):
+        assert (many / f"many/beyond/{name}.{ending}").stat().st_size > 1000
+
+
+def test_the_page_shows_what_there_is(many):
+    text = (many / "index.html").read_text()
+    assert "many/beyond/lengths.comparison.csv" in text

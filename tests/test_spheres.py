@@ -224,7 +224,7 @@ def test_the_swarm_comes_close_to_the_exact_way_around_a_sphere():
 
 
 def job():
-    return jobs.figure_job(study("tharwat2018"), "spheres", "smoke")
+    return jobs.Figure.of({"tharwat2018": study("tharwat2018")}, "smoke", "tharwat2018", "spheres")
 
 
 def test_the_figure_shows_what_its_runs_are():
@@ -322,7 +322,7 @@ def folder(tmp_path):
 
 def test_a_reader_declares_spheres_in_a_few_lines(folder):
     (own,) = reading.load([folder]).values()
-    (options,) = jobs.figure_job(own, "ball", "full").panels
+    (options,) = jobs.Figure.of({own.key: own}, "full", own.key, "ball").panels
     assert options.settings == own.resolved("swarm")
     frame = panel.data((files.load(own.workspaces["ball"].plain(), folder), own.key), options)
     assert list(frame["run"].dropna().unique()) == ["mine/ball/swarm/0"]

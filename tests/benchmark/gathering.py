@@ -21,11 +21,13 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import yaml
 
+from bezierplan.places import TREE
 from bezierplan.running import execution, problems
-from bezierplan.study import jobs, page, reading, targets
+from bezierplan.running.inputs import experiments
+from bezierplan.study import jobs, page, reading
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
-from bezierplan.study.targets import SCRIPTS, Studies
+from bezierplan.study.jobs import Job, Studies
 
 METHODS = ("pso", "cpso1_singer", "cpso2_singer", "ferguson")
 PLACES = ("equal", "public")
@@ -121,7 +123,7 @@ def write_runs(study: Study) -> None:
     """
     described = jobs.problems_job(study, "all", SCALE)
     made = problems.build_all(described, study.folder)
-    (files,) = targets.shown_by(study, SCALE, "lengths").values()
+    files = files_of(study)
     for file in (files.problems, *files.chunks):
         Path(file).parent.mkdir(parents=True, exist_ok=True)
     problems.write(made, described.homes, files.problems)
@@ -138,77 +140,100 @@ def write_runs(study: Study) -> None:
             )
 
 
-class Job(NamedTuple):
-    """A job of the workflow: its script, and what the script gets."""
+def given_to(job: Job, key: str, **more: Any) -> dict[str, Any]:
+    """The input files of a job by their names in its rule: results in the working folder. key: the
+    study of experiments that are named alone.
+    """
+    places = {name: name.split("/") if "/" in name else (key, name) for name in job.shows}
+    folders = {name: f"results/{SCALE}/{study}" for name, (study, _) in places.items()}
+    return {
+        "problems": [
+            f"{folders[name]}/problems/{own}.parquet" for name, (_, own) in places.items()
+        ],
+        "bounds": [
+            f"{folders[name]}/problems/{own}.bounds.parquet" for name, (_, own) in places.items()
+        ],
+        "runs": [
+            f"{folders[name]}/runs/{own}/{method}/{chunk}.parquet"
+            for name, (_, own) in places.items()
+            for method, number in job.shows[name].items()
+            for chunk in range(number)
+        ],
+    } | more
 
-    script: str
+
+def files_of(study: Study) -> Any:
+    """Files of all runs of a study, its problems and bounds, in the working folder."""
+    job = jobs.TableOfRuns.of({study.key: study}, SCALE, study.key, "lengths")
+    return experiments(job.shows, SimpleNamespace(**given_to(job, study.key)))["all"]
+
+
+class Made(NamedTuple):
+    """A job, and its files."""
+
+    job: Job
     input: dict[str, Any]
     output: dict[str, str]
-    params: dict[str, Any]
 
 
-def gathering(given: Studies) -> Iterator[Job]:
+def gathering(given: Studies) -> Iterator[Made]:
     """The jobs that gather the runs of studies, in an order in which they can be made."""
     for key in given:
         yield from _gathering_one(given, key)
-    yield Job(
-        "baseline_comparison",
-        targets.baseline_comparison_inputs(given, SCALE),
-        {"baseline_comparison": f"results/{SCALE}/baseline_comparison.csv"},
-        targets.baseline_comparison_params(given, SCALE),
+    folder = f"results/{SCALE}"
+    compared, summary, shown = (
+        kind.of(given, SCALE) for kind in (jobs.BaselineComparison, jobs.Summary, page.Page)
     )
-    output = {
-        name: f"results/{SCALE}/{name}.{ending}"
-        for name, ending in (("numbers", "csv"), ("claims", "csv"), ("summary", "md"))
+    baseline = f"{folder}/baseline_comparison.csv"
+    yield Made(compared, given_to(compared, ""), {"made": baseline})
+    output = {"numbers": "numbers.csv", "claims": "claims.csv", "summary": "summary.md"}
+    output = {name: f"{folder}/{file}" for name, file in output.items()}
+    files = {
+        "comparisons": [f"{folder}/{key}/beyond/lengths.comparison.csv" for key in given],
+        "claims": [f"{folder}/{key}/claims.csv" for key in given],
+        "baseline_comparison": baseline,
     }
-    yield Job(
-        "summary",
-        targets.summary_inputs(given, SCALE),
-        output,
-        targets.summary_params(given, SCALE),
+    yield Made(summary, files, output)
+    verified = page.Verified.of(given, SCALE)
+    yield Made(verified, given_to(verified, ""), {"made": f"{folder}/verified.json"})
+    files = given_to(
+        shown,
+        "",
+        summary=[output["numbers"], output["claims"], baseline],
+        verified=f"{folder}/verified.json",
     )
-    yield Job(
-        "page", page.inputs(given, SCALE), {"page": page.file(SCALE)}, page.params(given, SCALE)
-    )
+    yield Made(shown, files, {"page": f"{folder}/index.html"})
 
 
-def _gathering_one(given: Studies, key: str) -> Iterator[Job]:
+def _gathering_one(given: Studies, key: str) -> Iterator[Made]:
     """Tables, figures, claims and audit of a study."""
-    folder, of = f"results/{SCALE}/{key}", {"studies": given, "scale": SCALE, "study": key}
-    for name in given[key].tables:
+    study, folder = given[key], f"results/{SCALE}/{key}"
+    published = study.published_files()
+    for name in study.tables:
+        job = jobs.TableOfRuns.of(given, SCALE, key, name)
         output = {
-            "table": f"{folder}/tables/{name}.csv",
-            "comparison": f"{folder}/tables/{name}.comparison.csv",
+            part: f"{folder}/beyond/{name}.{ending}"
+            for part, ending in (
+                ("table", "csv"),
+                ("comparison", "comparison.csv"),
+                ("published", "published.csv"),
+            )
         }
-        yield Job(
-            "table",
-            targets.table_inputs(**of, table=name),
-            output,
-            targets.table_params(**of, table=name),
-        )
-    for name in given[key].figures:
-        output = {
-            part: f"{folder}/figures/{name}.{ending}" for part, ending in FIGURE_FILES.items()
-        }
-        yield Job(
-            "figure",
-            targets.figure_inputs(**of, figure=name),
-            output,
-            targets.figure_params(**of, figure=name),
-        )
+        yield Made(job, given_to(job, key, published=published), output)
+    for name in study.figures:
+        job = jobs.Figure.of(given, SCALE, key, name)
+        output = {part: f"{folder}/beyond/{name}.{ending}" for part, ending in FIGURE_FILES.items()}
+        drawn = study.published_drawn(name)
+        yield Made(job, given_to(job, key, published=drawn), output)
+    claims, audit = jobs.Claims.of(given, SCALE, key), jobs.Audit.of(given, SCALE, key)
     output = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"}
-    yield Job("claims", targets.claims_inputs(**of), output, targets.claims_params(**of))
-    yield Job(
-        "audit",
-        targets.audit_inputs(**of),
-        {"audit": f"{folder}/audit.csv"},
-        targets.audit_params(**of),
-    )
+    yield Made(claims, given_to(claims, key, published=published), output)
+    yield Made(audit, given_to(audit, key, published=published), {"made": f"{folder}/audit.csv"})
 
 
 def peaks(repeats: int, chunk: int) -> dict[str, float]:
     """Peak resident memory, in bytes, of the jobs that gather a study of ten times as many runs as
-    repeats: of each script the largest.
+    repeats: of each kind the largest.
     """
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         given = reading.load([write_study(Path(folder, "many"), repeats, chunk)])
@@ -219,13 +244,12 @@ def peaks(repeats: int, chunk: int) -> dict[str, float]:
         found: dict[str, float] = {}
         for job in gathering(given):
             with ProcessPoolExecutor(1, context) as pool:
-                found[job.script] = max(
-                    found.get(job.script, 0.0), pool.submit(_peak, job, folder).result()
-                )
+                name = type(job.job).__name__
+                found[name] = max(found.get(name, 0.0), pool.submit(_peak, job, folder).result())
     return found
 
 
-def _peak(job: Job, folder: str) -> float:
+def _peak(job: Made, folder: str) -> float:
     """Run a job in this process, and return the most memory that it ever had, in bytes, with that
     of each process that it starts.
     """
@@ -237,12 +261,11 @@ def _peak(job: Job, folder: str) -> float:
         given = SimpleNamespace(
             input=InputFiles(fromdict=job.input),
             output=OutputFiles(fromdict=job.output),
-            params=Params(fromdict=job.params),
-            wildcards=SimpleNamespace(scale=SCALE),
+            params=Params(fromdict={"job": job.job}),
             log=["job.log"],
             threads=THREADS,
         )
-        runpy.run_path(str(SCRIPTS / f"{job.script}.py"), {"snakemake": given})
+        runpy.run_path(str(TREE / "workflow/scripts/job.py"), {"snakemake": given})
     own, largest = (
         resource.getrusage(whose).ru_maxrss
         for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)

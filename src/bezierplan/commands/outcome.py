@@ -65,7 +65,9 @@ def write() -> None:
             shutil.copyfile(file, kept)
     shutil.copyfile(RESULTS / BASELINE_COMPARISON, KEPT / BASELINE_COMPARISON)
     for picture in PICTURES:
-        shutil.copyfile(FULL / picture, KEPT / picture.replace("/paper/", "_").replace("/beyond/", "_"))
+        shutil.copyfile(
+            FULL / picture, KEPT / picture.replace("/paper/", "_").replace("/beyond/", "_")
+        )
     replay.animate(replay.replay(DRIVE, studies), KEPT / ANIMATION)
     README.write_text(
         summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8"

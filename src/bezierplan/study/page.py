@@ -52,9 +52,9 @@ def tried(study: Study, scale: str, root: str = "") -> bool:
     )
 
 
-def _shows(studies: Studies, scale: str, root: str) -> Shows:
+def shows(studies: Studies, scale: str, root: str = "") -> Shows:
     """The results behind all tables, figures and claims that the page shows."""
-    shows: Shows = {}
+    behind: Shows = {}
     for key, study in studies.items():
         parts = [jobs.shown_by(study, name, scale) for name in shown_of(study, scale, root)]
         if study.claims:
@@ -62,8 +62,8 @@ def _shows(studies: Studies, scale: str, root: str) -> Shows:
         for part in parts:
             for name, methods in part.items():
                 place = f"{key}/{name}"
-                shows[place] = shows.get(place, {}) | methods
-    return shows
+                behind[place] = behind.get(place, {}) | methods
+    return behind
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Verified(Job):
     @classmethod
     def of(cls, studies, scale, root=""):
         """What the page shows."""
-        return cls(shows=_shows(studies, scale, root))
+        return cls(shows=shows(studies, scale, root))
 
     def run(self, given, made, threads):
         """Judge all again."""
@@ -103,13 +103,13 @@ class Page(Job):
     @classmethod
     def of(cls, studies, scale, root=""):
         """What the page shows."""
-        shows, outcome = _shows(studies, scale, root), _outcome(studies, scale)
+        behind, outcome = shows(studies, scale, root), _outcome(studies, scale)
         shown = {key: _study(own, scale, root) for key, own in studies.items()}
         return cls(
             PageJob(scale, shown, outcome=bool(outcome)),
-            [place for place in shows if studies[place.split("/")[0]].moves(place.split("/")[1])],
+            [place for place in behind if studies[place.split("/")[0]].moves(place.split("/")[1])],
             content_digest(*page.files(), *outcome),
-            shows=shows,
+            shows=behind,
         )
 
     def run(self, given, made, threads):
