@@ -35,7 +35,7 @@ def test_what_can_be_called_is_a_method(method):
         (print, "method: print: function plan: expected plan"),
         (dict, "method: dict: no function plan; expected plan"),
         (lambda problem: None, "method: <lambda>: function plan: expected plan"),
-        (3, "method: is a int; expected a name"),
+        (3, "method: 3: no function plan"),
     ],
 )
 def test_what_is_no_method_is_told(method, told):
@@ -66,10 +66,10 @@ def test_way_points_of_any_sequence(via):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        ({"via": (5.0, 5.0)}, "via: 5.0; expected x and y, two numbers"),
+        ({"via": (5.0, 5.0)}, r"via: \(5.0, 5.0\); expected places"),
         ({"via": "5,5"}, "via: '5,5'; expected places"),
         ({"via": None}, "via: None; expected places"),
-        ({"via": [(1.0, 1.0, 0.0)]}, r"via: \(1.0, 1.0, 0.0\); expected x and y"),
+        ({"via": [(1.0, 1.0, 0.0)]}, r"via: .*; expected places"),
         ({"robot_radius": "0.1"}, "robot_radius: '0.1'; expected a number"),
         ({"robot_radius": True}, "robot_radius: True; expected a number"),
         ({"robot_radius": None}, "robot_radius: None; expected a number"),
@@ -99,7 +99,7 @@ def test_places_of_any_sequence(place):
 
 
 def test_a_map_is_a_map():
-    with pytest.raises(TypeError, match=r"^problem: workspace: is a str; expected a map"):
+    with pytest.raises(TypeError, match=r"^problem: .*; expected a Problem on a map"):
         bp.plan(PROBLEM._replace(workspace="room.txt"))
 
 

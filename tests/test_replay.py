@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 from studies import study
 
+from bezierplan.__main__ import main
 from bezierplan.commands import replay
 from bezierplan.running import execution, problems
 from bezierplan.schema.checked import Fault
@@ -32,11 +33,15 @@ def test_run_made_again_differs_from_another(tmp_path):
     assert not replay.equal(one, other.to_dict())
 
 
-def test_picture_shows_the_first_collision(tmp_path):
-    made = replay.replay("song2016/routes/0_15/straight_line/0", STUDIES)
-    replay.draw(made, STUDIES["song2016"], tmp_path / "deep" / "run.svg")
-    assert "first collision" in (tmp_path / "deep" / "run.svg").read_text()
-    assert "collision" in (tmp_path / "deep" / "run.csv").read_text()
+def test_a_run_is_described_and_drawn_with_its_first_collision(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    main(["replay", "song2016/routes/0_15/rounded/0", "--studies", "song2016"])
+    assert re.search(r"^feasible +yes$", capsys.readouterr().out, re.MULTILINE)
+    main(["replay", "song2016/routes/0_15/straight_line/0", "--studies", "song2016"])
+    printed = capsys.readouterr().out
+    assert re.search(r"^feasible +no: enters an obstacle at [\d.]+,[\d.]+, at most ", printed, re.M)
+    picture = tmp_path / "results/replay/song2016/routes/0_15/straight_line/0.svg"
+    assert "collision" in picture.read_text()
 
 
 @pytest.mark.parametrize(
@@ -68,17 +73,3 @@ def test_a_run_of_equal_length_but_another_verdict_or_path_is_not_equal(column, 
     }
     assert replay.equal(pd.Series(stored), stored)
     assert not replay.equal(pd.Series(stored), stored | {column: other})
-
-
-def described(name):
-    row = replay.replay(name, STUDIES).runs.iloc[0]
-    return replay.described(row, "units")
-
-
-def test_a_run_is_described_in_words_with_units_and_four_digits():
-    feasible = described("song2016/routes/0_15/rounded/0")
-    assert re.fullmatch(r"[0-9.]{4,6} units", feasible["length"])
-    assert (feasible["feasible"], feasible["claimed_feasible"]) == ("yes", "yes")
-    colliding = described("song2016/routes/0_15/straight_line/0")
-    assert re.fullmatch(r"at [0-9.]+,[0-9.]+, [0-9.]+ units deep", colliding["first collision"])
-    assert colliding["feasible"] == "no"

@@ -222,6 +222,10 @@ class Answer(Judged):
     cpu_s: float = math.nan
 
 
+# Fields that are the planner's own.
+_PLAIN = {"claimed_feasible": bool, "objective": float, "evaluations": int, "stop": str}
+
+
 @dataclass(frozen=True)
 class Shortest:
     """The exact shortest path: its length, in the map's unit (infinite without a free path), and
@@ -370,8 +374,7 @@ def verdict(
 ) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
-    shortest: the exact shortest path. regions: the blocked regions of maps. Raises ValueError if
-    the path is feasible and yet closer to the map's own obstacles than the robot's radius.
+    shortest: the exact shortest path. regions: the blocked regions of maps.
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
 
@@ -388,12 +391,8 @@ def verdict(
     verdict = checker.check(pieces, regions(problem.workspace))
     at_home = checker.check(pieces, regions(grown.original)) if grown else verdict
     length, jump = curves.length(path), curves.curvature_jump(path)
-    close = at_home.clearance < fields["robot_radius"] - robot.TOLERANCE
-    if verdict.feasible and close:
-        raise ValueError(
-            f"its path is feasible, but {at_home.clearance:.12g} from an obstacle, less than the "
-            "robot's radius: the checker is wrong"
-        )
+    if verdict.feasible:
+        assert at_home.clearance >= fields["robot_radius"] - robot.TOLERANCE
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
     if not verdict.feasible:
         fields["collision"] = tuple(curves.point_at(path, verdict.collision_at).tolist())
@@ -470,16 +469,14 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
+    if not _are_numbers(seed) or seed < 0 or int(seed) != seed:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
     if not _are_numbers(robot_radius):
         raise ValueError(f"robot_radius: {robot_radius!r}; expected a number of at least 0")
-    if isinstance(via, str) or not isinstance(via, Sequence | np.ndarray):
+    if not np.shape(via) == (0,) and not _are_numbers(via, len(np.atleast_1d(via)), 2):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
-    for point in via:
-        _check_place(point, "via")
-    places = tuple(tuple(map(float, point)) for point in via)
+    places = tuple(map(tuple, np.array(via, dtype=float).tolist()))
     name, planner, module, preset = _planner(method, problem.workspace)
     wishes = {"via": (places, planning.CHAINED), "strict": (strict, (planning.ROUNDED,))}
     for wish, (value, allowed) in wishes.items():
@@ -508,36 +505,27 @@ def plan(
             f"shorter than {shortest.length:.12g}: the checker or the bound is wrong"
         )
     radius = answer.extra["least_radius"] if planner == planning.ROUNDED else math.nan
-    if strict and not planning.keeps_radius(settings["turning_radius"], radius):
+    if strict and answer.path and not planning.keeps_radius(settings["turning_radius"], radius):
         unit = placed.workspace.unit
-        kept = "no path was found" if answer.path is None else f"{radius:.6g} {unit} kept"
         raise planning.TightTurn(
-            f"settings: turning_radius: {settings['turning_radius']:g} {unit} asked, {kept}; "
-            "expected one that can be kept, or not strict"
+            f"settings: turning_radius: {settings['turning_radius']:g} {unit} asked, {radius:.6g} "
+            f"{unit} kept; expected one that can be kept, or not strict"
         )
     return Answer(
         **judged,
+        **{field: getattr(answer, field) for field in (*_PLAIN, "history")},
         via=places,
         turning_radius=radius,
         method=name,
         settings=settings,
-        claimed_feasible=answer.claimed_feasible,
-        objective=answer.objective,
-        evaluations=answer.evaluations,
-        history=answer.history,
-        stop=answer.stop,
         cpu_s=cpu_s,
     )
 
 
 def _check_problem(problem: Problem) -> None:
     """Raise TypeError for what is no problem, and ValueError for places that are none."""
-    if not isinstance(problem, Problem):
-        raise TypeError(f"problem: is a {type(problem).__name__}; expected a Problem")
-    if not isinstance(problem.workspace, Workspace):
-        raise TypeError(
-            f"problem: workspace: is a {type(problem.workspace).__name__}; expected a map"
-        )
+    if not isinstance(problem, Problem) or not isinstance(problem.workspace, Workspace):
+        raise TypeError(f"problem: {problem!r:.80}; expected a Problem on a map")
     _check_place(problem.start, "start")
     _check_place(problem.target, "target")
 
@@ -562,13 +550,7 @@ def _planner(method: Method | None, workspace: Workspace) -> tuple[str, str, Any
     if isinstance(method, str):
         planner, preset = named(method)
         return method, planner, interface.loaded(planner, f"method: {method}"), preset
-    if not isinstance(method, ModuleType) and not callable(method):
-        raise TypeError(
-            f"method: is a {type(method).__name__}; "
-            "expected a name, a planner's module, or its function plan"
-        )
-    name = getattr(method, "__name__", "a function")
-    module = method
+    name, module = getattr(method, "__name__", repr(method)), method
     if not isinstance(method, ModuleType):
         module = ModuleType("planner_of_a_program")
         module.plan = method
@@ -586,20 +568,18 @@ def named(method: str) -> tuple[str, dict[str, Any]]:
     """
     if is_file(method):
         return method, {}
-    key, _, name = method.rpartition("/")
-    if key in _keys() or (key and (File(key) / "experiments.yaml").is_file()):
-        study = _study(key)
-        if name in study.methods:
-            return study.planner(name), study.resolved(name)
-    if method not in known_planners():
-        raise ValueError(
-            f"method: {method}: unknown{closest(method, [*methods(), *known_planners()])}"
-        )
-    for study in map(_study, _keys()):
-        for name in study.methods:
-            if study.planner(name) == method:
-                return method, study.resolved(name)
-    return method, {}
+    if method in known_planners():
+        uses = [use for use, planner in methods().items() if planner == method]
+        if not uses:
+            return method, {}
+        key, name = uses[0].split("/")
+    else:
+        key, _, name = method.rpartition("/")
+    is_study = key in _keys() or (key and (File(key) / "experiments.yaml").is_file())
+    if not is_study or name not in _study(key).methods:
+        known = [*methods(), *known_planners()]
+        raise ValueError(f"method: {method}: unknown{closest(method, known)}")
+    return _study(key).planner(name), _study(key).resolved(name)
 
 
 @cache
@@ -670,17 +650,13 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     from bezierplan.running.chunk import chunk_files
     from bezierplan.running.inputs import Files
 
-    runs_folder = File(folder) / "runs"
-    known = [each.name for each in runs_folder.iterdir()] if runs_folder.is_dir() else []
     runs: dict[str, list[str]] = {}
-    if experiment in known:
-        for chunk in chunk_files(runs_folder / experiment, "*/*.parquet"):
+    if experiment in [each.name for each in File(folder).glob("runs/*")]:
+        for chunk in chunk_files(File(folder) / "runs" / experiment, "*/*.parquet"):
             runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
-        raise ValueError(
-            f"experiment: {experiment}: no runs of it in {runs_folder}{closest(experiment, known)}"
-        )
-    problems = f"{File(folder) / 'problems' / experiment}"
+        raise ValueError(f"experiment: {experiment}: no runs of it in {folder}/runs")
+    problems = f"{folder}/problems/{experiment}"
     files = Files(runs, f"{problems}.parquet", f"{problems}.bounds.parquet")
     return stored.read(files, 10**9, experiment).runs
 
@@ -703,24 +679,24 @@ def replay(run: str) -> Answer:
         States the unknown part of the name; a drive through a moving world has no single path and
         is replayed at the command line.
     """
-    from bezierplan.analysis.results import path_of
     from bezierplan.study import replays
 
-    made = replays.replay(run, {key: _study(key) for key in _keys()})
-    if made.worlds:
-        raise ValueError(
-            f"run: {run}: is a drive; "
-            "expected a run in a world that stands still, or `bezierplan replay`"
-        )
-    row, parts = made.runs.iloc[0], run.split("/")
+    reproduced = replays.replay(run, {key: _study(key) for key in _keys()})
+    if reproduced.worlds:
+        raise ValueError(f"run: {run}: is a drive; expected another, or `bezierplan replay`")
+    return answer_of(reproduced, run)
+
+
+def answer_of(reproduced: Any, run: str) -> Answer:
+    """The answer in the results of one run, by its name."""
+    from bezierplan.analysis.results import path_of
+
+    row, parts = reproduced.runs.iloc[0], run.split("/")
     return Answer(
-        **verdict(*_bound(made.problems[row["problem"]]), path_of(row)),
+        **verdict(*_bound(reproduced.problems[row["problem"]]), path_of(row)),
         turning_radius=float(row.get("least_radius", math.nan)),
         method=f"{parts[0]}/{parts[3]}",
         settings={name: row[name] for name in planner_settings(planner_module(row["planner"]))},
-        claimed_feasible=bool(row["claimed_feasible"]),
-        objective=float(row["objective"]),
-        evaluations=int(row["evaluations"]),
         history=np.array(row["history"], dtype=float),
-        stop=str(row["stop"]),
+        **{field: kind(row[field]) for field, kind in _PLAIN.items()},
     )

@@ -41,8 +41,6 @@ class LogHandler(RichHandler):
         self.started = self.last_line = time.monotonic()
         self.outputs: set[Path] = set()
         self.reasons: list[str] = []
-        # Snakemake's account of a failed job, until it is clear whether the job's own is better.
-        self.account: LogRecord | None = None
 
     def emit(self, record: LogRecord) -> None:
         event, message = getattr(record, "event", None), record.getMessage()
@@ -50,16 +48,13 @@ class LogHandler(RichHandler):
         reason = LOCKED.format(Path.cwd()) if fault == "LockException" else ""
         if fault == "MissingRuleException":
             reason = unknown_target(message)
-        elif event == LogEvent.JOB_ERROR and (reason := self.reason_of(record.jobid)):
-            self.account = None
+        elif event == LogEvent.JOB_ERROR:
+            reason = self.reason_of(record.jobid)
         if reason:
             self.reasons.append(reason)
             return
-        self.show_account()
-        if fault == "RuleException":
-            self.account = record
-            return
-        if event is None and message.startswith("Elapsed time: "):
+        # A job's own log says why it failed, and where the rest of its account stands.
+        if fault == "RuleException" or (event is None and message.startswith("Elapsed time: ")):
             return
         super().emit(record)
         if event == LogEvent.JOB_INFO:
@@ -86,14 +81,8 @@ class LogHandler(RichHandler):
                 return lines[-1].split(REASON, 1)[1]
         return ""
 
-    def show_account(self) -> None:
-        account, self.account = self.account, None
-        if account:
-            super().emit(account)
-
     def close(self) -> None:
         """End, and repeat last what matters most: why jobs failed."""
-        self.show_account()
         super().close()
         self.say(*self.reasons)
         self.reasons.clear()

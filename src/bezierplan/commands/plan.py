@@ -11,7 +11,6 @@ from bezierplan.commands.arguments import Place
 from bezierplan.geometry import checker
 from bezierplan.running import planning
 from bezierplan.schema.checked import Fault
-from bezierplan.workspaces.grid import Grid
 
 PASSES_ON = (api.read_map, api.plan)
 WRITERS = {
@@ -122,17 +121,13 @@ def _check_out(out: Path, map: Path) -> None:
 
 def described(answer: api.Answer) -> dict[str, str]:
     """What to print of an answer, by name."""
-    home, settings = answer.problem.workspace, answer.settings
-    unit = home.unit
+    unit, settings = answer.problem.workspace.unit, answer.settings
     lines = {
         "planner": answer.method,
         "settings": ", ".join(f"{name} {value}" for name, value in settings.items()) or "none",
     }
     if answer.robot_radius:
-        cells = isinstance(home, Grid) and not home.drawn
-        lines["robot radius"] = f"{answer.robot_radius:g} {unit}" + (
-            f", by whole cells of {home.cell:g} {unit}" if cells else ""
-        )
+        lines["robot radius"] = f"{answer.robot_radius:g} {unit}"
     lines["shortest path"] = f"{answer.shortest:.6g} {unit}"
     if answer.path is None:
         return lines | {"path": f"none ({answer.stop})", "CPU time": f"{answer.cpu_s:.3g} s"}
@@ -153,16 +148,15 @@ def described(answer: api.Answer) -> dict[str, str]:
             else f", {radius:.6g} {unit} kept: no room for more"
         )
     lines["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
-    if answer.feasible:
-        lines["feasible"] = "yes"
-    else:
+    lines["feasible"] = "yes"
+    if not answer.feasible:
         x, y = answer.collision
-        near = answer.clearance > 0
-        what = (
-            "comes closer to an obstacle than the robot's radius" if near else "enters an obstacle"
-        )
-        lines["feasible"] = f"no: {what} at {x:.6g},{y:.6g}, at most {answer.depth:.6g} {unit} deep"
-    return lines | {"CPU time": f"{answer.cpu_s:.3g} s"}
+        what = "comes too close to" if answer.clearance > 0 else "enters"
+        deep = f"at most {answer.depth:.6g} {unit} deep"
+        lines["feasible"] = f"no: {what} an obstacle at {x:.6g},{y:.6g}, {deep}"
+    if not math.isnan(answer.cpu_s):
+        lines["CPU time"] = f"{answer.cpu_s:.3g} s"
+    return lines
 
 
 def _digits(value: float, digits: int) -> str:

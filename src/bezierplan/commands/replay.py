@@ -4,27 +4,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
+from bezierplan import api
 from bezierplan.analysis import results
+from bezierplan.commands import plan
 from bezierplan.commands.digest import read_rows, row_text
-from bezierplan.figures import animation, sheet
-from bezierplan.figures.panels import Sources, panel_of
-from bezierplan.geometry import curves
+from bezierplan.figures import animation
 from bezierplan.running import rides
 from bezierplan.running.chunk import chunk_files
-from bezierplan.schema.words import amount
-from bezierplan.study import jobs, reading
-from bezierplan.study.definition import Study
+from bezierplan.study import reading
 from bezierplan.study.replays import replay
-
-LENGTHS = ("length", "bound", "clearance", "collision_depth")
 
 
 def main(run: str, *, studies: Sequence[str] = ()) -> None:
     """Rerun it, print the outcome and whether it equals the stored run, and save its picture below
-    results/replay. Raises Fault.
+    results/replay; of a drive an animation. Raises Fault.
 
     Parameters
     ----------
@@ -41,37 +36,20 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     loaded = reading.load(reading.read_config({"studies": list(studies)} if studies else {}))
     reproduced = replay(run, loaded)
     row = reproduced.runs.iloc[0]
-    study = loaded[row["study"]]
-    unit = reproduced.problems[row["problem"]].workspace.unit
-    for name, text in described(row, unit).items():
-        print(f"{name:18}{text}")
     for file, stored in stored_runs(run, Path("results")).items():
-        print(f"{'stored in':18}{file}: {'equal' if equal(row, stored) else 'NOT EQUAL'}")
+        print(f"{'stored in':16}{file}: {'equal' if equal(row, stored) else 'NOT EQUAL'}")
     picture = Path("results/replay") / f"{run}.svg"
-    draw(reproduced, study, picture)
-    print(f"{'picture':18}{picture}")
+    picture.parent.mkdir(parents=True, exist_ok=True)
     if reproduced.worlds:
-        animate(reproduced, picture.with_suffix(".gif"))
-        print(f"{'animation':18}{picture.with_suffix('.gif')}")
-
-
-def described(run: pd.Series, unit: str) -> dict[str, str]:
-    """What to print of a run, by name: numbers with four digits, and lengths in units; what it does
-    not have is left out.
-    """
-    lines = {
-        name: amount(f"{run[name]:.4g}", unit) if name in LENGTHS else f"{run[name]:.4g}"
-        for name in ("objective", *LENGTHS)
-        if np.isfinite(run[name])
-    }
-    if not run["feasible"] and np.isfinite(run["collision_at"]):
-        where = f"step {run['collision_at']:.4g}"
-        if "steps" not in run:  # not of a drive
-            x, y = curves.point_at(results.path_of(run), run["collision_at"])
-            where = f"{x:.4g},{y:.4g}"
-        lines["first collision"] = f"at {where}, {lines.pop('collision_depth')} deep"
-    lines |= {name: "yes" if run[name] else "no" for name in ("feasible", "claimed_feasible")}
-    return lines | {"evaluations": f"{run['evaluations']:,}; stopped by: {run['stop']}"}
+        lines = {name: str(row[name]) for name in ("feasible", "length", "arrival", "stop")}
+        picture = picture.with_suffix(".gif")
+        animate(reproduced, picture)
+    else:
+        answer = api.answer_of(reproduced, run)
+        lines = plan.described(answer)
+        answer.to_picture(picture)
+    for name, text in {**lines, "picture": picture}.items():
+        print(f"{name:16}{text}")
 
 
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
@@ -86,30 +64,9 @@ def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
     return row_text(run[list(stored)].to_dict()) == row_text(stored)
 
 
-def draw(made: results.Results, study: Study, file: Path) -> None:
-    """Save the picture of a reproduced run: its path, control points, first collision, if any, and
-    the shortest path; of a drive, its end with the plans; svg, png and csv.
-    """
-    run = made.runs.iloc[0]
-    kind = {"kind": "snapshot", "at": 1} if made.worlds else {"kind": "paths"}
-    pick = {"repeat": int(run["repeat"])}
-    panels = [panel_of({"experiment": run["experiment"], "pick": pick} | kind)]
-    unit = made.problems[run["problem"]].workspace.unit
-    scene = sheet.Scene(
-        {run["experiment"]: made.problems}, {}, study.labels, unit, jobs.looks(study)
-    )
-    file.parent.mkdir(parents=True, exist_ok=True)
-    frame = sheet.data(panels, Sources({run["experiment"]: made}))
-    sheet.write_data(frame, str(file.with_suffix(".csv")))
-    figure = sheet.draw(panels, sheet.read_data(str(file.with_suffix(".csv"))), scene, 1)
-    sheet.save(figure, str(file.with_suffix(".svg")), str(file.with_suffix(".png")))
-
-
-def animate(made: results.Results, file: Path) -> None:
+def animate(reproduced: results.Results, file: Path) -> None:
     """Save a reproduced drive as an animated gif."""
-    run = made.runs.iloc[0]
-    name = run["problem"]
-    ride, verdict = rides.rerun(
-        made.jobs[run["method"]], run, made.problems[name], made.worlds[name]
-    )
-    animation.save(made.worlds[name], made.problems[name], ride, verdict, file)
+    row = reproduced.runs.iloc[0]
+    problem, world = (part[row["problem"]] for part in (reproduced.problems, reproduced.worlds))
+    ride, verdict = rides.rerun(reproduced.jobs[row["method"]], row, problem, world)
+    animation.save(world, problem, ride, verdict, file)
