@@ -303,8 +303,8 @@ EDITS = {
     # audit reads what a metric can be.
     "a metric": (
         "src/bezierplan/analysis/measures.py",
-        "FINE_SAMPLES = 4001",
-        "FINE_SAMPLES = 4002",
+        "CLASS_SAMPLES = 2001",
+        "CLASS_SAMPLES = 2002",
         ARTEFACTS_OF_RUNS | {"audit": 1},
     ),
     "a kind of figure": (

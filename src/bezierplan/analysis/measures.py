@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 # Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic
 # pieces of song2016.
 CURVATURE_SAMPLES = 601
-# Finer than any planner's own test.
-FINE_SAMPLES = 4001
 # Samples of a path that determine its way round the circles.
 CLASS_SAMPLES = 2001
 # Samples of a curved piece between which headings are compared (ma2020: 2,000 chords).
@@ -124,16 +122,6 @@ def first_generation_improved_by(
     return (held <= held[:, :1] - share * (held[:, :1] - held[:, -1:])).argmax(axis=1)
 
 
-def improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Share (n,) of the improvement from generation 0 to the last that is achieved by the given
-    generation.
-    """
-    held = held_history(runs)
-    total = held[:, 0] - held[:, -1]
-    made = held[:, 0] - held[:, min(generation, held.shape[1] - 1)]
-    return np.divide(made, total, out=np.full(len(held), np.nan), where=total > 0)
-
-
 def deviation(column: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Absolute relative deviation (n,) of a column from the median of its method and condition."""
     median = runs.groupby(["experiment", "condition", "method"])[column].transform("median")
@@ -145,24 +133,21 @@ def over(column: str, bound: str, runs: pd.DataFrame, problems: dict[str, Proble
     return runs[column] / runs[bound] - 1
 
 
-def finished_by_all(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) all methods among the runs have a feasible run in a run's condition and
-    repeat.
+@metric(
+    "-",
+    "arrival / lower bound on the arrival - 1, where all methods of the table arrive",
+    among_rows=True,
+    least=0.0,
+    needs=("arrival",),
+)
+def paired_gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """The gap of the arrival (n,) of the runs in whose condition and repeat all methods among the
+    runs have a feasible one; NaN of others.
     """
     arrived = runs["method"].where(runs["feasible"].astype(bool))
-    return (
-        arrived.groupby([runs["condition"], runs["repeat"]]).transform("nunique")
-        == runs["method"].nunique()
-    )
-
-
-def paired(
-    measure: Callable[..., pd.Series], runs: pd.DataFrame, problems: dict[str, Problem]
-) -> pd.Series:
-    """A measure (n,) of the runs in whose condition and repeat all methods among the runs have a
-    feasible one; NaN of others.
-    """
-    return measure(runs, problems).where(finished_by_all(runs, problems))
+    together = arrived.groupby([runs["condition"], runs["repeat"]]).transform("nunique")
+    gap = over("arrival", "least_arrival", runs, problems)
+    return gap.where(together == runs["method"].nunique())
 
 
 @metric(
@@ -267,16 +252,6 @@ def signed_curvature(path: Path) -> float:
     are positive), in 1/unit; it counts as 0 where the speed is zero.
     """
     return float(np.nan_to_num(_curvature(path)).max())
-
-
-@of_path(
-    "-",
-    f"samples of {CURVATURE_SAMPLES} where the curve stands still and curvature is not defined",
-    step=1.0,
-)
-def zero_speed_points(path: Path) -> int:
-    """Number of `CURVATURE_SAMPLES` samples at which the speed is zero."""
-    return int(np.isnan(_curvature(path)).sum())
 
 
 @of_path("1/u", "largest jump of curvature over the joints, infinite at a corner")
@@ -428,15 +403,6 @@ def _inside(*made_from: Any) -> Geometry:
     return inner
 
 
-@of_path("-", "length / length of the control polygon")
-def length_over_polygon(path: Path) -> float:
-    """Length of a path over that of its control polygon; 1 if the polygon has no length."""
-    from bezierplan.geometry import curves
-
-    polygon = polygon_length(path)
-    return curves.length(path) / polygon if polygon else 1.0
-
-
 @metric(
     "u",
     "least distance to the occupied cells of a grid, its border not counted",
@@ -506,38 +472,18 @@ def length_at_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.n
     return runs["length"].where(keeps_distance(runs, problems) == 1).to_numpy()
 
 
-def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
-    """Number of the points (n, 2), in units, in occupied cells; a point on a grid line belongs to
-    the cell above or to the right.
+@on_map("-", "control points in occupied cells of a grid", "grid", step=1.0)
+def occupied_points(path: Path, grid: Grid) -> int:
+    """Number of control points in occupied cells; a point on a grid line belongs to the cell above
+    or to the right.
 
     song2016's planner may use surplus cells outside a grid whose width is not a power of two
     (`grid.embed`); they count as occupied.
     """
     occupied = embed(grid.occupied)
-    columns, rows = np.floor(grid.in_cells(points) + ON_LINE).astype(int).T
-    return int(
-        occupied[
-            np.minimum(rows, occupied.shape[0] - 1), np.minimum(columns, occupied.shape[1] - 1)
-        ].sum()
-    )
-
-
-@on_map("-", "control points in occupied cells of a grid", "grid", step=1.0)
-def occupied_points(path: Path, grid: Grid) -> int:
-    """Number of control points in occupied cells."""
-    return _in_occupied_cells(path.points, grid)
-
-
-@on_map(
-    "-",
-    f"samples of {FINE_SAMPLES} in occupied cells of a grid",
-    "grid",
-    feasible_only=False,
-    step=1.0,
-)
-def fine_bad(path: Path, grid: Grid) -> int:
-    """Number of `FINE_SAMPLES` samples in occupied cells."""
-    return _in_occupied_cells(_samples(path, FINE_SAMPLES), grid)
+    columns, rows = np.floor(grid.in_cells(path.points) + ON_LINE).astype(int).T
+    last = np.array(occupied.shape) - 1
+    return int(occupied[np.minimum(rows, last[0]), np.minimum(columns, last[1])].sum())
 
 
 def _free_cells(path: Path, grid: Grid) -> int | None:

@@ -106,7 +106,6 @@ def _generation(meaning: str, compute: Callable[..., np.ndarray]) -> Metric:
 _CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
 _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 
-_GAP_LEAST_ARRIVAL = partial(measures.over, "arrival", "least_arrival")
 
 METRICS |= {
     "objective": Metric("u", "final value of the planner's objective"),
@@ -148,11 +147,6 @@ METRICS |= {
         "first generation within 5 % of the run's final objective",
         partial(measures.first_generation_within, 0.05),
     ),
-    "improvement_30": Metric(
-        "-",
-        "share of the improvement of the objective made by generation 30",
-        partial(measures.improvement_by, 30),
-    ),
     "generation_90pct_improved": _generation(
         "first generation by which nine tenths of the run's improvement of the objective are made",
         partial(measures.first_generation_improved_by, 0.9),
@@ -179,13 +173,6 @@ METRICS |= {
         "-",
         "length / length of the best known path of the same kind - 1",
         lambda runs, _: runs["length"] / measures.reference(runs) - 1,
-        feasible_only=True,
-        needs=("reference",),
-    ),
-    "excess_reference": Metric(
-        "u",
-        "length - length of the best known path of the same kind",
-        lambda runs, _: runs["length"] - measures.reference(runs),
         feasible_only=True,
         needs=("reference",),
     ),
@@ -277,7 +264,6 @@ METRICS |= {
     "arrival": Metric("steps", "when the robot arrives", feasible_only=True, least=0.0),
     "steps": Metric("steps", "how long the robot drives and waits", least=0.0),
     "travelled": Metric("u", "distance travelled, whether or not it is free", least=0.0),
-    "first_plan": Metric("u", "length of the first plan", least=0.0),
     "last_plan": Metric("u", "length of the last plan", least=0.0),
     "last_optimum": Metric(
         "u",
@@ -293,22 +279,6 @@ METRICS |= {
     ),
     "hit_waiting": _count("whether the robot waits when it first collides"),
     "clearance_least": Metric("u", "least distance to an obstacle, negative inside a circle"),
-    "gap_least_arrival": Metric(
-        "-",
-        "arrival / lower bound on the arrival - 1",
-        _GAP_LEAST_ARRIVAL,
-        feasible_only=True,
-        least=0.0,
-        needs=("arrival",),
-    ),
-    "paired_gap_least_arrival": Metric(
-        "-",
-        "gap_least_arrival where all methods of the table arrive",
-        partial(measures.paired, _GAP_LEAST_ARRIVAL),
-        among_rows=True,
-        least=0.0,
-        needs=("arrival",),
-    ),
     "least_arrival": Metric(
         "steps", "lower bound on the arrival: time for the shortest path among what is always there"
     ),

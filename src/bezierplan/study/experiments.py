@@ -96,8 +96,7 @@ class Problem(Model):
     reference: Positive = Field(
         None,
         description="the length of the best known path of the methods' own kind, a number above "
-        "0; metrics `gap_reference`, "
-        "`excess_reference`",
+        "0; metric `gap_reference`",
     )
     layouts: Scales = Field(
         None,
