@@ -19,7 +19,7 @@ from collections.abc import Iterator, Mapping
 import pandas as pd
 
 from bezierplan.analysis import identified, possible
-from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked
+from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked, place
 from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.metrics import METRICS, Metric
 from bezierplan.analysis.results import groups, published_table
@@ -70,17 +70,17 @@ def below_bound(
             )
             if math.isnan(bound):
                 continue
-            place = _place(row, keys, "metric", "statistic")
-            fits = row["value"] + _half_a_digit(row["printed"]) >= bound
-            rows.append(checked(name, place, rule, row["value"], bound, fits))
+            where = place(row, [*keys, "metric", "statistic"])
+            fits = possible.printed(row["printed"]).high >= bound
+            rows.append(checked(name, where, rule, row["value"], bound, fits))
     return rows
 
 
-def _problem(place: dict, bounds: pd.DataFrame) -> str | None:
+def _problem(row: dict, bounds: pd.DataFrame) -> str | None:
     """The problem of a published number, from the columns that describe it; None if it is
     ambiguous.
     """
-    named = place.get("problem", place.get("workspace"))
+    named = row.get("problem", row.get("workspace"))
     return (
         named
         if named in bounds.index
@@ -93,15 +93,6 @@ def _problem(place: dict, bounds: pd.DataFrame) -> str | None:
 def _keys(table: pd.DataFrame) -> list[str]:
     """The columns of a table of published numbers that tell its rows apart."""
     return [column for column in table if column not in NOT_KEYS]
-
-
-def _place(row: pd.Series, keys: list[str], *more: str) -> str:
-    return ", ".join(f"{key}={row[key]}" for key in [*keys, *more])
-
-
-def _half_a_digit(printed: str) -> float:
-    """Half a unit of the last printed digit of a number."""
-    return 0.5 * 10.0 ** -len(printed.partition(".")[2])
 
 
 # Rules that hold for any paper
@@ -127,7 +118,7 @@ def of_cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[di
     """What the statistics of one metric in one place can be beside each other."""
     keys = _keys(table)
     for rows in groups(table, [*keys, "metric"]):
-        place, metric = _place(rows.iloc[0], keys, "metric"), METRICS[rows["metric"].iloc[0]]
+        where, metric = place(rows.iloc[0], [*keys, "metric"]), METRICS[rows["metric"].iloc[0]]
         texts = dict(zip(rows["statistic"], rows["printed"]))
         sizes = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(sizes.min()) if len(sizes) else 0
@@ -138,7 +129,7 @@ def of_cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[di
             and sizes.nunique() == 1
         )
         for name, rule, limit, fits, told in _of_cell(texts, n, metric, whole):
-            of_number = f"{place}, statistic={name}"
+            of_number = f"{where}, statistic={name}"
             yield checked(item, of_number, rule, float(texts[name]), limit, fits, told)
 
 
@@ -211,14 +202,14 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
         numbers = [possible.printed(text) for text in texts]
         added, total = float(sum(each.value for each in numbers)), possible.rank_sum(count)
         told = f"{' + '.join(texts)} = {added:.10g}; {count} x {count + 1} / 2 = {total}"
-        location = _place(group.iloc[0], within, "metric") + ", all rows"
+        location = place(group.iloc[0], [*within, "metric"]) + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
         yield checked(item, location, rule, added, total, possible.are_ranks(numbers), told)
         rule = f"a mean rank of {count} rows lies between 1 and {count}"
         for (_, row), number in zip(group.iterrows(), numbers):
             limit, fits = 1 if number.high < 1 else count, number.high >= 1 and number.low <= count
             told = f"1 <= {row['printed']} <= {count}"
-            of_row = _place(row, keys, "metric")
+            of_row = place(row, [*keys, "metric"])
             yield checked(item, of_row, rule, row["value"], limit, fits, told)
 
 
@@ -234,9 +225,9 @@ def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
         for before, row in itertools.pairwise(ordered):
             pair = [possible.printed(each["printed"]) for each in (before, row)]
             fits = possible.in_order(*(pair if rule.direction == "up" else pair[::-1]))
-            place = _place(row, keys, "metric", "statistic")
+            where = place(row, [*keys, "metric", "statistic"])
             told = f"{before['printed']} {sign} {row['printed']}"
-            yield checked(item, place, words, row["value"], before["value"], fits, told)
+            yield checked(item, where, words, row["value"], before["value"], fits, told)
 
 
 def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
@@ -257,8 +248,8 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         digit
         for _, rows in every.groupby("metric", sort=False)
         for text in rows["printed"]
-        for place, digit in enumerate(text.partition(".")[2], 1)
-        if rows["value"].std() >= _LEAST_SPREAD * 10.0**-place
+        for position, digit in enumerate(text.partition(".")[2], 1)
+        if rows["value"].std() >= _LEAST_SPREAD * 10.0**-position
     )
     if len(digits) < LEAST_DIGITS:
         return
@@ -270,9 +261,9 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
         f"{chance.statistic:.3g}, p = {chance.pvalue:.2g}, inconsistent below {DIGITS_LEVEL:g}"
     )
     items = ", ".join(every["item"].unique())
-    place = f"{len(digits)} decimals of {len(every)} numbers"
+    where = f"{len(digits)} decimals of {len(every)} numbers"
     fits = bool(chance.pvalue >= DIGITS_LEVEL)
-    yield checked(items, place, rule, max(counts), len(digits) / 10, fits, told)
+    yield checked(items, where, rule, max(counts), len(digits) / 10, fits, told)
 
 
 def audited(

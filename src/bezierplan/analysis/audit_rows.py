@@ -1,6 +1,7 @@
 """Rows of an audit: a number that a paper prints, and a rule that it should obey."""
 
 import operator
+from collections.abc import Iterable, Mapping
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
 
@@ -14,6 +15,11 @@ _RELATIONS = {
     ">=": operator.ge,
     ">": operator.gt,
 }
+
+
+def place(row: Mapping, keys: Iterable[str]) -> str:
+    """Which cell a row of published numbers is, in words."""
+    return ", ".join(f"{key}={row[key]}" for key in keys)
 
 
 def checked(

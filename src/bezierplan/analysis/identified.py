@@ -19,7 +19,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import possible
-from bezierplan.analysis.audit_rows import NOT_KEYS, checked
+from bezierplan.analysis.audit_rows import NOT_KEYS, checked, place
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.grid import Grid
@@ -162,7 +162,7 @@ def of_table(
             if path is None:
                 continue
             tried.append(path)
-            location = ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"])
+            location = place(row, [*keys, "metric"])
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
             yield checked(item, location, rule, row["value"], limit, fits, in_words(path))
         if tried:

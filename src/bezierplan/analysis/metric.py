@@ -96,29 +96,19 @@ def metric(
     return declared
 
 
-def of_path(unit: str, meaning: str, feasible_only: bool = True, **facts: Any) -> Callable[[F], F]:
-    """Likewise of a measure of a path."""
-    return metric(
-        unit,
-        meaning,
-        lambda measure: lambda runs, _: of_paths([measure] * len(runs), runs),
-        feasible_only=feasible_only,
-        **facts,
-    )
+def of_path(unit: str, meaning: str, **facts: Any) -> Callable[[F], F]:
+    """Likewise of a measure of a path; of feasible runs unless said otherwise."""
+
+    def adapted(measure: Callable[[Path], float]) -> Compute:
+        return lambda runs, _: of_paths([measure] * len(runs), runs)
+
+    return metric(unit, meaning, adapted, **{"feasible_only": True} | facts)
 
 
-def on_map(
-    unit: str, meaning: str, *kinds: str, feasible_only: bool = True, **facts: Any
-) -> Callable[[F], F]:
-    """Likewise of a measure of a path and its workspace, of one of some kinds."""
-    return metric(
-        unit,
-        meaning,
-        lambda measure: partial(on_maps, measure),
-        feasible_only=feasible_only,
-        on=kinds,
-        **facts,
-    )
+def on_map(unit: str, meaning: str, *kinds: str, **facts: Any) -> Callable[[F], F]:
+    """Likewise of a measure of a path and its workspace, of one of some kinds, of feasible runs."""
+    facts |= {"feasible_only": True, "on": kinds}
+    return metric(unit, meaning, lambda measure: partial(on_maps, measure), **facts)
 
 
 def of_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:

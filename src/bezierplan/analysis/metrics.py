@@ -299,7 +299,7 @@ for _within in running_time.TARGETS:
     METRICS[f"within_{_percent}pct"] = _count(
         f"whether the path is certified and at most {_percent} % longer than the exact shortest "
         "one",
-        partial(running_time.solved, _within),
+        lambda runs, _, within=_within: running_time.solves(runs, within),
     )
     for _cost, _unit in (("evaluations", "-"), ("cpu_s", "s")):
         METRICS[f"{_cost}_to_{_percent}pct"] = Metric(

@@ -43,11 +43,6 @@ def solves(runs: pd.DataFrame, within: float) -> np.ndarray:
     ).to_numpy()
 
 
-def solved(within: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """`solves` as a measure."""
-    return solves(runs, within)
-
-
 def work_to(
     cost: str, within: float, runs: pd.DataFrame, problems: dict[str, Problem]
 ) -> np.ndarray:
