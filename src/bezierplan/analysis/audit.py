@@ -200,7 +200,7 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
         if count < 2:
             continue
         numbers = [possible.printed(text) for text in texts]
-        added, total = float(sum(each.value for each in numbers)), possible.rank_sum(count)
+        added, total = float(sum(each.value for each in numbers)), count * (count + 1) // 2
         told = f"{' + '.join(texts)} = {added:.10g}; {count} x {count + 1} / 2 = {total}"
         location = place(group.iloc[0], [*within, "metric"]) + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"

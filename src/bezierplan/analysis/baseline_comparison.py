@@ -59,10 +59,21 @@ def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
     pairs["curvature_baseline"] = pairs["curvature_baseline"].where(bent)
     for name in ("length", "curvature", "cpu"):
         pairs[name] /= pairs[f"{name}_baseline"]
-    return pd.DataFrame(
-        [_row(method, pair, baseline) for method, pair in pairs.groupby("method", sort=False)],
-        columns=COLUMNS[1:],
+    methods = pairs.groupby("method", sort=False)
+    sums, counts = methods.sum(numeric_only=True), methods.count()
+    rows = (
+        methods[["length", "curvature", "cpu"]]
+        .median()
+        .assign(
+            baseline=baseline,
+            conditions=methods.size(),
+            feasible=sums["free"] / sums["runs"],
+            feasible_baseline=sums["free_baseline"] / sums["runs_baseline"],
+            compared=counts["length"],
+            bent=counts["curvature"],
+        )
     )
+    return rows.reset_index().reindex(columns=COLUMNS[1:])
 
 
 def of_studies(job: Mapping[str, MeasuredJob], files: Mapping[str, Files]) -> pd.DataFrame:
@@ -100,21 +111,6 @@ def _medians(results: Results) -> pd.DataFrame:
         .join(groups["free"].agg(free="sum", runs="count"))
         .reset_index()
     )
-
-
-def _row(method: str, pair: pd.DataFrame, baseline: str) -> dict:
-    return {
-        "method": method,
-        "baseline": baseline,
-        "conditions": len(pair),
-        "feasible": pair["free"].sum() / pair["runs"].sum(),
-        "feasible_baseline": pair["free_baseline"].sum() / pair["runs_baseline"].sum(),
-        "compared": pair["length"].count(),
-        "length": pair["length"].median(),
-        "bent": pair["curvature"].count(),
-        "curvature": pair["curvature"].median(),
-        "cpu": pair["cpu"].median(),
-    }
 
 
 def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:

@@ -91,17 +91,9 @@ def std_of_mean(mean: Printed, n: int, low: Fraction, high: Fraction | None) -> 
     return math.sqrt(float((high - middle) * (middle - low)) * n / (n - 1))
 
 
-def rank_sum(count: int) -> int:
-    """What the mean ranks of so many rows add to."""
-    return count * (count + 1) // 2
-
-
 def are_ranks(numbers: Sequence[Printed]) -> bool:
-    """Whether printed numbers can be the mean ranks of as many rows: they add to `rank_sum`, up to
-    rounding.
+    """Whether printed numbers can be the mean ranks of as many rows: up to rounding
+    they add to k (k + 1) / 2.
     """
-    return (
-        sum(each.low for each in numbers)
-        <= rank_sum(len(numbers))
-        <= sum(each.high for each in numbers)
-    )
+    total = len(numbers) * (len(numbers) + 1) // 2
+    return sum(each.low for each in numbers) <= total <= sum(each.high for each in numbers)

@@ -26,11 +26,9 @@ from bezierplan.schema.model import (
     Quantity,
     Statistic,
     Where,
-    at_most,
     listed,
     matching,
     one_or_list,
-    plain,
     wrong,
 )
 
@@ -87,10 +85,6 @@ class TableValue(Model):
         return one_or_list(self.statistic)
 
 
-MOST_VALUES = 100
-"""Entries of a table's `values`, and of its `monotone`."""
-
-
 class Monotone(Model):
     """An entry of a table's `monotone`."""
 
@@ -137,7 +131,7 @@ class Pivot(Table):
         description="a list of columns of the runs table, `value` or `statistic`: what the rows are"
     )
     columns: Columns = Field([], description="likewise: what the columns are")
-    values: Annotated[list[TableValue], at_most(MOST_VALUES)] = Field(
+    values: list[TableValue] = Field(
         description="a list of {metric, statistic, label, decimals}, and perhaps `where`",
         min_length=1,
     )
@@ -156,7 +150,7 @@ class Pivot(Table):
         description="the column of which all runs behind a published number share one value, such "
         "as layout: predictions are then for experiments within one of ours; left out: none",
     )
-    monotone: Annotated[list[Monotone], at_most(MOST_VALUES)] = Field(
+    monotone: list[Monotone] = Field(
         [],
         description="orders that the published numbers must keep, which the audit checks: "
         "{metric, statistic, along, direction, because}",
@@ -268,12 +262,10 @@ class Layout(Model):
     @classmethod
     def of(cls, table: Pivot) -> Self:
         """That of a table of runs."""
-        return cls.model_validate(
-            {
-                "columns": table.across,
-                "selected": sorted({entry.metric for entry in table.values if entry.where}),
-                "monotone": plain(table.monotone),
-                "fitted": table.fitted,
-                "identify": plain(table.identify),
-            }
+        return cls(
+            columns=table.across,
+            selected=sorted({entry.metric for entry in table.values if entry.where}),
+            monotone=table.monotone,
+            fitted=table.fitted,
+            identify=table.identify,
         )
