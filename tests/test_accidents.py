@@ -22,11 +22,8 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture
 def job(tmp_path, monkeypatch):
-    """A job of this process, which nobody watches and which need not end with its parent, and its
-    output.
-    """
+    """A job of this process, which need not end with its parent, and its output."""
     monkeypatch.setattr(log, "end_with_parent", lambda: None)
-    monkeypatch.setattr(log.watchdog, "supervise", lambda *_: None)
     folder = tmp_path / "results"
     folder.mkdir()
     output = OutputFiles(fromdict={"one": str(folder / "one.csv")})

@@ -2,7 +2,7 @@
 column takes another's place.
 """
 
-from fractions import Fraction
+import json
 
 import numpy as np
 import pytest
@@ -13,8 +13,6 @@ from bezierplan.running import answer, execution, problems
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import from_lines
-from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem
 
 PROBLEM = Problem(
@@ -40,13 +38,6 @@ CHUNK = Chunk(
 CONDITION = Condition("disc", {"profile": "a"})
 
 
-class Liar(np.ndarray):
-    """Shows the checker other numbers than the table."""
-
-    def ravel(self, order="C"):
-        return np.zeros(self.size)
-
-
 def path(points, curve="polyline"):
     return PLAN._replace(path=Path(curve, points))
 
@@ -66,7 +57,6 @@ LIES = {
     "points flat": (path(LINE.ravel()), "path: points: expected an array of floats, (n, 2)"),
     "points in space": (path(np.ones((3, 3))), "path: points: expected an array of floats, (n, 2)"),
     "points as a list": (path(LINE.tolist()), "path: points: expected an array of floats, (n, 2)"),
-    "points of text": (path(LINE.astype(str)), "path: points: expected an array of floats, (n, 2)"),
     "no points": (
         path(np.empty((0, 2))),
         "path: a curve of kind polyline needs at least 2 control points, not 0",
@@ -79,29 +69,15 @@ LIES = {
         path(LINE[[0, 0, 1, 1, 1]], "ferguson"),
         "path: a curve of kind ferguson needs an even number",
     ),
-    "unknown curve": (path(LINE, "nurbs"), "path: unknown curve 'nurbs'"),
-    "curve no text": (path(LINE, ["polyline"]), "path: curve: is a list"),
+    "unknown curve": (path(LINE, "nurbs"), "path: curve: 'nurbs'; expected one of "),
+    "curve no text": (path(LINE, ["polyline"]), "path: curve: ['polyline']; expected one of"),
     "degree too high": (
         path(np.vstack([LINE[:1]] * 99 + [LINE[1:]]), "bezier"),
         "path: points: 100; expected at most 61 of a bezier",
     ),
-    "too many points": (
-        path(np.vstack([LINE[:1]] * 2000), "bezier"),
-        "path: points: 2000; expected at most 61 of a bezier",
-    ),
     "too long a chain": (
         path(np.vstack([LINE[:1]] * 10_001)),
         "path: points: 10001; expected at most 10000 of a polyline",
-    ),
-    "points that lie": (path(LINE.view(Liar)), "path: points: expected an array of floats, (n, 2)"),
-    "a path that lies": (
-        PLAN._replace(path=type("Path", (Path,), {})("polyline", LINE)),
-        "path: expected None or a Path",
-    ),
-    "a plan that lies": (type("Plan", (Plan,), {})(*PLAN), "is a Plan; expected a Plan"),
-    "a curve that lies": (
-        path(LINE, type("Text", (str,), {})("polyline")),
-        "path: curve: is a Text",
     ),
     "too far out": (
         path(np.vstack([LINE[:1], [[1e9, 0]], LINE[1:]])),
@@ -115,7 +91,6 @@ LIES = {
     ),
     "objective text": (PLAN._replace(objective="8"), "objective: expected a number"),
     "objective nan": (PLAN._replace(objective=np.nan), "objective: expected a number, and not nan"),
-    "objective None": (PLAN._replace(objective=None), "objective: expected a number"),
     "objective an array": (
         PLAN._replace(objective=np.array([8.0])),
         "objective: expected a number",
@@ -125,44 +100,14 @@ LIES = {
         PLAN._replace(evaluations=-1),
         "evaluations: expected a whole number, at least 0",
     ),
-    "evaluations a truth": (
-        PLAN._replace(evaluations=True),
-        "evaluations: expected a whole number",
-    ),
     "evaluations huge": (PLAN._replace(evaluations=2**70), "evaluations: expected a whole number"),
-    "objective huge": (
-        PLAN._replace(objective=10**400),
-        "objective: expected a number that a float can hold",
-    ),
-    "objective a fraction": (
-        PLAN._replace(objective=Fraction(1, 3)),
-        "objective: expected a number",
-    ),
-    "objective that lies": (
-        PLAN._replace(objective=type("Number", (float,), {})(8.0)),
-        "objective: expected a number",
-    ),
     "history empty": (PLAN._replace(history=np.array([])), "history: expected an array"),
-    "history None": (PLAN._replace(history=None), "history: expected an array"),
     "history a table": (PLAN._replace(history=np.ones((2, 2))), "history: expected an array"),
     "history with a gap": (
         PLAN._replace(history=np.array([np.nan, 8.0])),
         "history: expected an array of numbers without nan",
     ),
-    "history too long": (
-        PLAN._replace(history=np.ones(1_000_001)),
-        "history: expected an array of numbers",
-    ),
-    "history beyond floats": (
-        PLAN._replace(history=np.array([2**64 - 1], dtype=np.uint64)),
-        "history: expected whole numbers between",
-    ),
-    "stop too long": (
-        PLAN._replace(stop="x" * 10**6),
-        "stop: expected a word, of at most 100 printable characters",
-    ),
     "stop of two lines": (PLAN._replace(stop="a\nb"), "stop: expected a word"),
-    "stop with a sign of control": (PLAN._replace(stop="a\x1b[31mb"), "stop: expected a word"),
     "stop None": (PLAN._replace(stop=None), "stop: expected a word"),
     "extra None": (PLAN._replace(extra=None), "extra: expected names with numbers or truths"),
     "extra a list": (
@@ -173,36 +118,15 @@ LIES = {
         PLAN._replace(extra={"tries": 2**70}),
         "extra: tries: expected a number within 64 bits, or a truth",
     ),
-    "extra a fraction": (
-        PLAN._replace(extra={"tries": Fraction(1, 3)}),
-        "extra: tries: expected a number within 64 bits, or a truth",
-    ),
-    "extra too many": (
-        PLAN._replace(extra={f"tries_{n}": n for n in range(1000)}),
-        "extra: 1000 columns; expected at most 64",
-    ),
-    "extra that lies": (
-        PLAN._replace(extra=type("Columns", (dict,), {})(tries=1)),
-        "extra: expected names",
-    ),
     "extra of a wide name": (
         PLAN._replace(extra={"\uff46easible": 1}),
         "extra: '\\uff46easible': expected a name",
     ),
-    "extra of a look-alike": (
-        PLAN._replace(extra={"f\u0435asible": 1}),
-        "extra: 'f\\u0435asible': expected a name",
-    ),
-    "extra of a long name": (
-        PLAN._replace(extra={"a" * 10**5: 1}),
-        "extra: 'aaaaaaaaaaaaaaaaaaaa': expected a name",
-    ),
-    "extra a keyword": (PLAN._replace(extra={"lambda": 1}), "extra: 'lambda': expected a name"),
     "extra a drive's": (
         PLAN._replace(extra={"arrival": 1.0}),
         "extra: arrival: a column or setting has this name already",
     ),
-    "extra numbered": (PLAN._replace(extra={1: 1}), "extra: expected names with numbers or truths"),
+    "extra numbered": (PLAN._replace(extra={1: 1}), "extra: 1: expected a name"),
     "extra no name": (PLAN._replace(extra={"a b\n": 1}), "extra: 'a b\\n': expected a name"),
     "extra a setting": (
         PLAN._replace(extra={"inertia": 1}),
@@ -246,9 +170,6 @@ def test_names_that_are_taken_are_those_that_are_joined():
 
 
 def test_honest_answers_pass():
-    kept = answer.accepted(PLAN, PROBLEM, TAKEN)
-    assert kept.path.points is not PLAN.path.points
-    assert kept.history is not PLAN.history
     found = row(PLAN)
     assert found["feasible"]
     assert found["tries"] == 1
@@ -273,76 +194,15 @@ def test_the_row_holds_what_was_judged():
     assert kept.history.tolist() == [8.0]
 
 
-# Planners that change the world they plan in: what each does, and what it is told. The straight way
-# leads through the first obstacle.
-WALL = np.array([[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]])
-WORLDS = {
-    "circles": Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([2.0]), "m"),
-    "grid": from_lines([".........."] * 4 + ["....##...."] * 2 + [".........."] * 4, 1.0, "m"),
-    "polygons": Polygons((0.0, 10.0, 0.0, 10.0), ((WALL,),), "m"),
-}
-READ_ONLY, ANOTHER = (
-    "read-only|WRITEABLE",
-    "planner .*: problem: .*: workspace: {}: is another after the run",
-)
-CHANGES = {
-    "moves circles": ("circles", "world.centres[:, 1] -= 3", READ_ONLY),
-    "shrinks circles": ("circles", "world.radii *= 0.5", READ_ONLY),
-    "empties cells": ("grid", "world.occupied[:] = False", READ_ONLY),
-    "moves polygons": ("polygons", "world.obstacles[0][0][:] += 4", READ_ONLY),
-    "sets a flag": ("circles", "world.radii.setflags(write=True)", READ_ONLY),
-    "puts another array": (
-        "circles",
-        'object.__setattr__(world, "radii", world.radii * 0)',
-        ANOTHER.format("radii"),
-    ),
-    "puts other bounds": ("grid", 'object.__setattr__(world, "cell", 9.0)', ANOTHER.format("cell")),
-    "writes into memory": (
-        "circles",
-        "ctypes.memset(world.radii.ctypes.data, 0, 8)",
-        ANOTHER.format("content"),
-    ),
-}
-CHANGER = """
-import ctypes
-
-import numpy as np
-from bezierplan.planners import Path, Plan
-
-
-def plan(problem, rng):
-    world = problem.workspace
-    {change}
-    path = Path("polyline", np.array([problem.start, problem.target]))
-    return Plan(path, 8.0, True, 1, np.array([8.0]), "one", {{}})
-"""
-
-
-def chunk(folder, change, workspace):
-    file = folder / "changer.py"
-    file.write_text(CHANGER.format(change=change))
-    changed = CHUNK._replace(planner=str(file), settings={}, vary={}, presets={})
-    problem = Problem("disc", workspace, (1.0, 5.0), (9.0, 5.0))
-    return execution.run_chunk({"disc": problem}, changed)[0]
-
-
-@pytest.mark.parametrize("change", CHANGES)
-def test_planner_that_changes_its_world_gets_no_row(change, tmp_path):
-    kind, code, told = CHANGES[change]
-    with pytest.raises(RuntimeError, match=told) as caught:
-        chunk(tmp_path, code, WORLDS[kind])
-    message = str(caught.value)
-    assert message.startswith("run s/e/")
-    assert "\n" not in message
-
-
-@pytest.mark.parametrize("kind", WORLDS)
-def test_the_judge_has_a_world_of_its_own(kind, tmp_path):
-    assert chunk(tmp_path, "pass", WORLDS[kind])["feasible"].to_pylist() == [False]
+@pytest.mark.parametrize("plan", [PLAN, PLAN._replace(path=None, claimed_feasible=False)])
+def test_text_holds_all_bits_of_a_plan(plan):
+    plain = answer.plain(plan._replace(objective=0.1 + 0.2, history=np.array([np.inf, -0.0])))
+    again = answer.unpacked(json.loads(json.dumps(answer.packed(plain))))
+    assert repr(again) == repr(plain)
 
 
 def test_a_region_shares_no_memory_with_its_workspace():
-    circles = WORLDS["circles"]
+    circles = PROBLEM.workspace
     made = region(circles)
     assert not np.shares_memory(made.centres, circles.centres)
     assert not np.shares_memory(made.radii, circles.radii)

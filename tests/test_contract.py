@@ -2,9 +2,8 @@
 input ends in one line.
 """
 
-import random
 import re
-from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,11 +12,9 @@ from studies import studies
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import known_planners
-from bezierplan.running import contract, execution, interface
+from bezierplan.running import contract, execution, interface, watchdog
 from bezierplan.schema.checked import Fault
 from bezierplan.study.jobs import job
-
-ROOT = Path(__file__).parents[1]
 
 
 def settings_in_force() -> dict[str, dict]:
@@ -57,108 +54,77 @@ def plan(problem, rng, *, evaluations: Annotated[int, Range(1)]):
     return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history,
                 stop="evaluations", extra={"tries": 1})
 """
-DRAWN = "rng.uniform(0, 1, (evaluations, 2)) + start"
-RETURN = "    return Plan("
-RESET = "rng.bit_generator.state = np.random.default_rng(0).bit_generator.state"
-LEAVES = "import subprocess; subprocess.Popen(['sleep', '600'], start_new_session=True)"
-
-# A fault of a planner: what stands in WALK, what stands there instead, and the fact that fails.
+# Planners with several faults, each on another problem: what stands in WALK, and what stands there
+# instead.
 BAD = {
-    "draws from numpy": (
-        DRAWN,
-        "np.random.uniform(0, 1, (evaluations, 2)) + start",
-        "global generators",
-    ),
-    "draws from random": (DRAWN, f"{DRAWN} + random.random()", "global generators"),
-    "seeds numpy": (
-        "    start, target",
-        "    np.random.seed(5)\n    start, target",
-        "global generators",
-    ),
-    "draws from numba's generator": (
-        DRAWN,
-        f"{DRAWN} + njit(lambda: np.random.random())()",
-        "global generators",
-    ),
-    "draws from a generator of its own": (DRAWN, f"{DRAWN} + KEPT.random()", "same bits"),
-    "puts its generator back to the first state": (
-        "    start, target",
-        f"    {RESET}\n    start, target",
-        "generators",
-    ),
-    "is not deterministic as it says": ("KEPT =", "deterministic = True\nKEPT =", "generators"),
-    "exits": (RETURN, f"    raise SystemExit\n{RETURN}", "plan"),
-    "leaves a process behind": (RETURN, f"    {LEAVES}\n{RETURN}", "plan"),
-    "replaces a function of a library": (
-        RETURN,
-        f"    np.isfinite = math.isfinite\n{RETURN}",
-        "plan",
-    ),
-    "draws from entropy": ("rng.uniform", "np.random.default_rng().uniform", "same bits"),
-    "changes an array of the problem": (
-        "    start, target",
-        "    problem.workspace.radii[:] *= 0.5\n    start, target",
-        "plan",
-    ),
-    "puts another array into the problem": (
-        "    start, target",
-        '    object.__setattr__(problem.workspace, "radii", problem.workspace.radii * 0.5)\n    '
-        "start, target",
-        "problem unchanged",
-    ),
-    "starts elsewhere": ("np.array([start,", "np.array([np.add(start, 1e-9),", "path"),
-    "ends elsewhere": ("target])", "np.add(target, 1e-9)])", "path"),
-    "its history rises": ("np.minimum.accumulate(lengths)", "np.sort(lengths)", "history"),
-    "its history has a gap": (RETURN, f"    history[0] = np.nan\n{RETURN}", "plan"),
-    "its history ends with something else": ("history[-1],", "history[-1] + 1,", "history"),
-    "claims wrongly and to be exact": ("KEPT =", "exact = True\nKEPT =", "claims"),
-    "uses too many evaluations": (
-        "evaluations=evaluations",
-        "evaluations=evaluations + 1",
-        "budget",
-    ),
-    "counts fewer evaluations than its history": (
-        "evaluations=evaluations",
-        "evaluations=evaluations - 1",
-        "budget",
-    ),
-    "an extra column has a taken name": ('"tries"', '"length"', "extra columns"),
-    "an extra column has the name of a setting": ('"tries"', '"evaluations"', "extra columns"),
-    "an extra column is there at times": (
-        '{"tries": 1}',
-        '{"tries": 1} if start == target else {}',
-        "extra columns",
-    ),
-    "raises": ("rng.uniform", "rng.unifrom", "plan"),
-    "claims without a path": ("Plan(path,", "Plan(None,", "plan"),
-    "its objective is not a number": ("history[-1],", "math.nan,", "plan"),
-    "its objective is text": ("history[-1],", "str(history[-1]),", "plan"),
-    "its claim is a word": ("claimed_feasible=True", 'claimed_feasible="yes"', "plan"),
-    "its evaluations are no whole number": (
-        "evaluations=evaluations",
-        "evaluations=1.0 * evaluations",
-        "plan",
-    ),
-    "its history is a list": ("history=history", "history=history.tolist()", "plan"),
-    "its history is empty": ("history=history", "history=history[:0]", "plan"),
-    "its extra is text": ('{"tries": 1}', '{"tries": "one"}', "plan"),
-    "its curve is unknown": ('"polyline"', '"polylines"', "plan"),
-    "its path is no Path": ('Path("polyline", ', '("polyline", ', "plan"),
-    "its points are not finite": ("target])", "target]) * math.inf", "plan"),
-    "its points are flat": ("target])", "target]).ravel()", "plan"),
-    "returns a path": (RETURN, f"    return path\n{RETURN}", "plan"),
-    "check changes the settings": (
-        "def plan(",
-        'def check(settings):\n    settings["evaluations"] = 1\n\n\ndef plan(',
-        "settings unchanged",
-    ),
+    "answers": [
+        (
+            "    return Plan(",
+            """    title = problem.name.partition(": ")[2]
+    if title == "open":
+        path = Path("polyline", np.array([np.add(start, 1e-9), target]))
+    if title == "obstacle in the way":
+        raise RuntimeError("no\\nway")
+    if title == "start is target":
+        history = np.sort(lengths)[::1]
+    if title == "target beside start":
+        evaluations += 1
+    if title == "narrow":
+        history = history.tolist()
+    if title == "no obstacles":
+        history[-1] -= 1
+    return Plan(""",
+        ),
+        ("history[-1], claimed", "lengths.min(), claimed"),
+        ("KEPT =", "exact = True\nKEPT ="),
+    ],
+    "randomness": [
+        (
+            "    return Plan(",
+            """    title = problem.name.partition(": ")[2]
+    if title == "open":
+        path.points[1] += np.random.random()
+    if title == "obstacle in the way":
+        path.points[1] += random.random()
+    if title == "start is target":
+        path.points[1] += KEPT.random()
+    if title == "target beside start":
+        path.points[1] += njit(lambda: np.random.random())()
+    if title == "narrow":
+        path.points[1] += sum(n * int(word) for n, word in enumerate({*map(str, range(64))}))
+    if title == "no obstacles":
+        object.__setattr__(problem.workspace, "bounds", (0.0, 9.0, 0.0, 9.0))
+    return Plan(""",
+        ),
+    ],
+    "columns": [('{"tries": 1}', '{"length": 1} if start == target else {"tries": 1}')],
+    "generators": [
+        ("    start, target", "    rng = np.random.default_rng(5)\n    start, target"),
+    ],
 }
-
-
-def changed(old, new):
-    """WALK with another text in one place."""
-    assert old in WALK
-    return WALK.replace(old, new, 1)
+EXACT = "4 paths claimed feasible, 0 by the checker"
+GLOBAL = "path: another value from the same generator; all random numbers come from rng, and"
+TOLD = {
+    "answers": [
+        ("open", "plan", "path: start: "),
+        ("obstacle in the way", "plan", "raises RuntimeError: no way"),
+        ("start is target", "history", "rises; expected the best objective so far"),
+        ("target beside start", "budget", "21 evaluations; expected at most 20"),
+        ("narrow", "plan", "history: expected an array"),
+        ("no obstacles", "history", "ends with "),
+        ("sealed target", "claims", EXACT),
+    ],
+    "randomness": [
+        *(
+            (title, "random numbers", GLOBAL)
+            for title in ("open", "obstacle in the way", "start is target", "target beside start")
+        ),
+        ("narrow", "random numbers", "another plan in another process; hash()"),
+        ("no obstacles", "problem unchanged", "the problem is another after the run"),
+    ],
+    "columns": [("start is target", "plan", "extra: length: a column or setting has this name")],
+    "generators": [("all problems", "random numbers", "the same plans from every generator; draw")],
+}
 
 
 def written(folder, source, workspaces=("circles",)):
@@ -167,8 +133,8 @@ def written(folder, source, workspaces=("circles",)):
     return str(file)
 
 
-def failed(planner, settings):
-    findings = list(contract.check_planner(planner, settings))
+def failed(planner, settings, elsewhere=True):
+    findings = list(contract.check_planner(planner, settings, elsewhere))
     assert not any("\n" in str(finding) for finding in findings)
     return [finding for finding in findings if not finding.passed]
 
@@ -179,81 +145,55 @@ def test_every_other_planner_of_the_package_is_run_by_a_study():
 
 @pytest.mark.parametrize("planner", known_planners())
 def test_planners_of_the_package_pass(planner):
-    assert not failed(planner, SETTINGS[planner])
+    assert not failed(planner, SETTINGS[planner], elsewhere=False)
 
 
 def test_a_planner_in_a_file_passes_on_every_kind_of_workspace(tmp_path):
     file = written(tmp_path, WALK, ("grid", "circles", "polygons"))
     findings = list(contract.check_planner(file, {"evaluations": 20}))
     assert all(finding.passed for finding in findings)
-    assert {finding.problem.split(":")[0] for finding in findings} == {
-        "grid",
-        "circles",
-        "polygons",
-        "all problems",
-    }
-    assert contract.Finding("circles: open", "budget", True, "20 evaluations") in findings
+    kinds = {finding.problem.split(":")[0] for finding in findings}
+    assert kinds == {*interface.KINDS.values(), "all problems"}
+    assert contract.Finding("grid: open", "budget", True, "20 evaluations") in findings
 
 
 @pytest.mark.parametrize("fault", BAD, ids=str)
-def test_bad_planner_fails_for_its_fault_alone(fault, tmp_path):
-    old, new, fact = BAD[fault]
-    assert {
-        finding.fact
-        for finding in failed(written(tmp_path, changed(old, new)), {"evaluations": 20})
-    } == {fact}
+def test_bad_planner_fails_for_its_faults(fault, tmp_path):
+    source = WALK
+    for old, new in BAD[fault]:
+        assert old in source
+        source = source.replace(old, new, 1)
+    found = failed(written(tmp_path, source), {"evaluations": 20})
+    for title, fact, told in TOLD[fault]:
+        named = [each for each in found if each.problem.endswith(title) and each.fact == fact]
+        assert [each.detail.startswith(told) for each in named] == [True], (title, found)
+    assert {each.fact for each in found} <= {fact for _, fact, _ in TOLD[fault]}
 
 
-def test_planner_that_raises_without_a_way_fails_there_alone(tmp_path):
-    source = changed(
-        "    start, target",
-        "    if math.isinf(shortest_paths.shortest_path(problem).length):\n        raise "
-        'RuntimeError("no\\nway")\n    start, target',
+def test_planner_that_keeps_processes_is_told(tmp_path):
+    source = WALK.replace(
+        "    return Plan(",
+        "    import subprocess; subprocess.Popen(['sleep', '60'])\n    return Plan(",
     )
-    assert failed(written(tmp_path, source), {"evaluations": 20}) == [
-        contract.Finding("circles: sealed target", "plan", False, "raises RuntimeError: no way")
-    ]
-
-
-def test_feasible_path_to_a_sealed_target_fails(tmp_path):
-    """Such a path ends elsewhere, which is reported as well."""
-    source = changed("middles[lengths.argmin()], target]", "start]")
-    assert ("circles: sealed target", "no way") in [
-        finding[:2] for finding in failed(written(tmp_path, source), {"evaluations": 20})
-    ]
+    (found,) = failed(written(tmp_path, source), {"evaluations": 20})
+    assert found.detail.endswith(watchdog.LEFT)
+    assert "circles: open" in found.detail
 
 
 def test_wrong_claims_of_a_planner_that_is_not_exact_are_counted():
-    findings = {finding[:2]: finding for finding in contract.check_planner("straight_line", {})}
-    assert findings["grid: obstacle in the way", "claims"].passed
-    assert (
-        findings["grid: obstacle in the way", "claims"].detail
-        == "3 paths claimed feasible, 0 by the checker"
-    )
-    assert findings["grid: open", "claims"].detail == "3 paths claimed feasible, 3 by the checker"
+    found = {each[:2]: each for each in contract.check_planner("straight_line", {}, False)}
+    assert found["circles: obstacle in the way", "claims"].detail == EXACT
+    assert found["grid: open", "claims"].detail == "4 paths claimed feasible, 4 by the checker"
 
 
-def test_global_generators_get_their_state_back(tmp_path):
-    old, new, _ = BAD["draws from numpy"]
-    random.seed(1)
-    np.random.seed(1)  # noqa: NPY002
-    before = random.getstate(), np.random.get_state()[1].tolist()  # noqa: NPY002
-    failed(written(tmp_path, changed(old, new)), {"evaluations": 20})
-    assert (random.getstate(), np.random.get_state()[1].tolist()) == before  # noqa: NPY002
-
-
-def test_there_are_problems_of_every_kind_of_workspace():
-    assert [*contract.PROBLEMS] == [*interface.KINDS.values()]
-
-
-@pytest.mark.parametrize("kind", contract.PROBLEMS)
+@pytest.mark.parametrize("kind", interface.KINDS.values())
 def test_problems_are_legal_and_only_the_sealed_one_has_no_way(kind):
-    for problem in contract.PROBLEMS[kind]():
+    for problem in contract.problems(SimpleNamespace(workspaces=(kind,))):
         blocked = region(problem.workspace)
         for point in (problem.start, problem.target):
             assert checker.check(np.array([[point, point]]), blocked).feasible
         assert np.isinf(shortest_paths.shortest_path(problem).length) == problem.name.endswith(
-            "sealed target"
+            contract.SEALED
         )
 
 
@@ -341,7 +281,7 @@ FAULTS = {
 @pytest.mark.parametrize("fault", FAULTS, ids=str)
 def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
     old, new, settings, told = FAULTS[fault]
-    file = written(tmp_path, changed(old, new))
+    file = written(tmp_path, WALK.replace(old, new, 1))
     with pytest.raises(Fault) as caught:
         contract.check_planner(file, settings)
     message = str(caught.value)
@@ -364,38 +304,3 @@ def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
 def test_planner_that_is_not_there_is_told(planner, told):
     with pytest.raises(Fault, match=re.escape(told)):
         contract.check_planner(planner, {})
-
-
-@pytest.mark.parametrize(
-    ("does", "told"),
-    [
-        ("np.isfinite = math.isfinite", "replaces numpy.isfinite; a planner leaves other modules"),
-        (LEAVES, "leaves a process behind, which is ended; end or join what it starts"),
-        ("raise SystemExit", "raises sys.exit"),
-    ],
-)
-def test_what_is_wrong_with_a_run_is_told(does, told, tmp_path):
-    file = written(tmp_path, changed(RETURN, f"    {does}\n{RETURN}"))
-    findings = [each for each in failed(file, {"evaluations": 8}) if each.fact == "plan"]
-    assert findings
-    assert all(each.detail.startswith(told) for each in findings)
-
-
-def test_order_that_is_another_in_each_process_is_found(tmp_path):
-    """The order of a set of 64 words: two processes agree almost never."""
-    words = {f"w{n}": n for n in range(64)}
-    file = written(
-        tmp_path,
-        changed(
-            "    lengths =",
-            f"    numbers, words = {words}, set({words})\n"
-            "    middles[0, 1] += 1e-6 * sum(n * numbers[word] for n, word in enumerate(words))\n"
-            "    lengths =",
-        ),
-    )
-    assert not failed(file, {"evaluations": 8})
-    found = list(contract.check_elsewhere(file, {"evaluations": 8}))
-    assert {each.fact for each in found if not each.passed} == {"another process"}
-    (tmp_path / "sound").mkdir()
-    file = written(tmp_path / "sound", WALK)
-    assert all(each.passed for each in contract.check_elsewhere(file, {"evaluations": 8}))

@@ -120,12 +120,32 @@ def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks,
         ("import sys; sys.exit('song.yaml: wrong')", "song.yaml: wrong\n"),
         ("raise ValueError('wrong')", "ValueError: wrong\n"),
         ("def broken(", "SyntaxError"),
-        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", ""),
-        ("import os; os._exit(0)", ""),
     ):
         assert not forks.succeeds("bad.py", source, None), source
         assert told in capfd.readouterr().err
         assert forks.succeeds("good.py", "pass", None)
+
+
+UNDER_WAY = "from bezierplan.running import watchdog; watchdog.begin({}, 'run a: planner b'); {}"
+ENDS = {
+    "import os; os._exit(7)": "its process ended itself with exit status 7, before it was done",
+    "import ctypes; ctypes.string_at(0)": "its process was ended by signal SIGSEGV",
+    # The sum holds Python's lock for minutes.
+    "sum(range(10**11))": "not done within the time limit of 1 s; it is ended",
+}
+
+
+@pytest.mark.parametrize("work", ENDS)
+def test_an_end_that_a_script_cannot_report_is_told_with_what_was_under_way(
+    work, started, tmp_path, capfd
+):
+    job = SimpleNamespace(log=[str(tmp_path / "log")], output=["out"])
+    pause = "watchdog.begin(None, ''); import time; time.sleep(1.2)"
+    assert started.succeeds("pause.py", UNDER_WAY.format(1, pause), job)
+    assert not started.succeeds("ends.py", UNDER_WAY.format(1, work), job)
+    line = f"run a: planner b: {ENDS[work]} (log: {tmp_path / 'log'})\n"
+    assert capfd.readouterr().err == line
+    assert (tmp_path / "log").read_text() == f"CRITICAL {line}"
 
 
 def test_many_scripts_at_once(started, tmp_path):

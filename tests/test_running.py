@@ -1,16 +1,14 @@
 """A chunk of runs: rows in the order of conditions and repeats whatever order they were made in,
-stable times, and the limit of a run.
+and stable times.
 """
 
-import subprocess
-import sys
-from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 
 from bezierplan.commands.digest import row_text
-from bezierplan.running import execution, kernel_cache, watchdog
+from bezierplan.running import execution, interface, worker
 from bezierplan.running.chunk import Chunk
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
@@ -35,13 +33,12 @@ def plan(problem, rng, *, bend: float):
 """
 
 
-def chunk(folder, **changed):
-    (folder / "bend.py").write_text(PLANNER)
+def chunk(**changed):
     return Chunk(
         study="study",
         experiment="bends",
         method="bend",
-        planner=str(folder / "bend.py"),
+        planner="bend",
         settings={},
         problems={"disc": {"workspace": "field"}},
         vary={"bend": [0.0, 1.0, 2.0]},
@@ -51,8 +48,24 @@ def chunk(folder, **changed):
     )._replace(**changed)
 
 
-def test_rows_stand_in_order_and_do_not_depend_on_it(tmp_path, monkeypatch):
-    given = chunk(tmp_path)
+@pytest.fixture
+def planner(monkeypatch):
+    """A function that puts a planner into the package, with another text in one place and one at
+    the beginning, and gives a chunk of its runs.
+    """
+
+    def put(text="    made.append", before=""):
+        module = ModuleType("bend")
+        exec(before + PLANNER.replace("    made.append", text), vars(module))
+        for user in (worker, interface):
+            monkeypatch.setattr(user, "planner_module", lambda name: module)
+        return chunk()
+
+    return put
+
+
+def test_rows_stand_in_order_and_do_not_depend_on_it(planner, monkeypatch):
+    given = planner()
     runs, times = execution.run_chunk({"disc": PROBLEM}, given)
     assert runs["id"].to_pylist() == [
         f"study/bends/disc,bend={bend}/bend/{repeat}"
@@ -69,49 +82,24 @@ def test_rows_stand_in_order_and_do_not_depend_on_it(tmp_path, monkeypatch):
     assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
 
 
-def test_a_job_that_waits_for_a_kernel_checks_a_free_path_and_one_that_collides(
-    tmp_path, monkeypatch
-):
-    """In each type of region, so that the kernels of the check are there for its own paths."""
-    blocked = PROBLEM._replace(
-        workspace=Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
-    )
-    checks = []
-
-    def run(*_):
-        checks.extend(each()[1].feasible for each in kernel_cache.meanwhile)
-        raise RuntimeError("that is enough")
-
-    monkeypatch.setattr(execution, "run", run)
-    monkeypatch.setattr(kernel_cache, "meanwhile", [])
-    given = chunk(
-        tmp_path,
-        planner="straight_line",
-        problems={"disc": {"workspace": "field"}, "other": {"workspace": "w"}},
-    )
-    with pytest.raises(watchdog.PlannerFailure, match="that is enough"):
-        execution.run_chunk({"disc": blocked, "other": blocked}, given)
-    assert checks == [False, True]
-
-
-def test_conditions_take_turns(tmp_path):
-    order = execution._order(chunk(tmp_path), 3, range(4, 10))
+def test_conditions_take_turns():
+    order = execution._order(chunk(), 3, range(4, 10))
     assert sorted(order) == [(k, repeat) for k in range(3) for repeat in range(4, 10)]
-    assert order == execution._order(chunk(tmp_path), 3, range(4, 10))
-    assert order != execution._order(chunk(tmp_path, method="other"), 3, range(4, 10))
+    assert order == execution._order(chunk(), 3, range(4, 10))
+    assert order != execution._order(chunk(method="other"), 3, range(4, 10))
     assert len({k for k, _ in order[:6]}) > 1
     # No condition is always first.
-    assert {
-        execution._order(chunk(tmp_path, method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)
-    } == {0, 1, 2}
+    assert {execution._order(chunk(method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)} == {
+        0,
+        1,
+        2,
+    }
 
 
-def test_deterministic_planner_is_run_once_a_condition(tmp_path):
-    given = chunk(tmp_path)
-    (tmp_path / "bend.py").write_text(
-        PLANNER.replace("made = []", "deterministic = True\nmade = []").replace(
-            "rng.random()", "1.0"
-        )
+def test_deterministic_planner_is_run_once_a_condition(planner):
+    given = planner(
+        "    rng = SimpleNamespace(random=lambda: 1.0)\n    made.append",
+        "from types import SimpleNamespace\ndeterministic = True\n",
     )
     runs, times = execution.run_chunk({"disc": PROBLEM}, given)
     assert runs["repeat"].to_pylist() == [*range(4, 10)] * 3
@@ -129,9 +117,9 @@ def warm_up(seconds):
 
     def once():
         taken.append(seconds[min(len(taken), len(seconds) - 1)])
-        return None, taken[-1], taken[-1]
+        return worker.Made(-1, None, taken[-1], taken[-1])
 
-    execution._warm_up(once)
+    worker.warm_up(once)
     return len(taken)
 
 
@@ -149,140 +137,6 @@ def test_runs_are_thrown_away_until_times_are_stable(seconds, runs):
     assert warm_up(seconds) == runs
 
 
-WATCHED = """
-import ctypes, os, signal, subprocess, sys, threading, time
-from bezierplan.running.chunk import Chunk
-from bezierplan.running import log, watchdog
-watchdog._ENDING = 0.5
-watchdog.supervise("job", lambda line: log.report("log", line))
-with watchdog.watching({limit}) as watch:
-    for name in ("first", "second"):
-        watch("run " + name)
-        if name == "second":
-            {work}
-        watch("")
-        time.sleep({pause})
-print("end")
-watchdog.settle({status})
-"""
-
-
-def watched(folder, work, limit=2.0, pause=0.0, status=0):
-    source = WATCHED.format(limit=limit, work=work, pause=pause, status=status)
-    return subprocess.run(
-        [sys.executable, "-c", source],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60,
-    )
-
-
-@pytest.mark.parametrize(
-    ("work", "told"),
-    [
-        # The sum holds Python's lock for minutes: neither a thread nor a signal handler of the
-        # process would come to its turn.
-        ("sum(range(10**11))", "not done within the time limit of 2 s; it is ended"),
-        ("os._exit(0)", "its process ended itself with exit status 0, before it was done"),
-        ("os._exit(7)", "its process ended itself with exit status 7, before it was done"),
-        (
-            "os.kill(os.getpid(), signal.SIGKILL)",
-            "its process was ended by signal SIGKILL, "
-            "by itself, by another program, or for want of memory",
-        ),
-        ("ctypes.string_at(0)", "its process was ended by signal SIGSEGV"),
-        ("os.abort()", "its process was ended by signal SIGABRT"),
-        # A child holds whatever a fork inherits.
-        (
-            "os.fork() and os._exit(3) or time.sleep(600)",
-            "its process ended itself with exit status 3, before it was done",
-        ),
-        (
-            "os.closerange(3, 99); time.sleep(600)",
-            "not done within the time limit of 2 s; it is ended",
-        ),
-    ],
-)
-def test_whatever_ends_a_run_is_told_in_one_line_that_names_it(work, told, tmp_path):
-    done = watched(tmp_path, work)
-    assert (done.returncode, done.stdout, done.stderr) == (
-        1,
-        "",
-        f"run second: {told} (log: log)\n",
-    )
-    assert (tmp_path / "log").read_text() == f"CRITICAL run second: {told} (log: log)\n"
-
-
-def test_pauses_between_runs_and_short_runs_are_not_ended(tmp_path):
-    done = watched(tmp_path, "time.sleep(0.1)", limit=1.0, pause=1.3)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "end\n", "")
-
-
-@pytest.mark.parametrize(
-    "work",
-    [
-        "import atexit; atexit.register(os._exit, 0)",
-        "threading.Thread(target=time.sleep, args=(600,)).start()",
-    ],
-)
-def test_what_a_planner_leaves_does_not_change_the_exit_status(work, tmp_path):
-    assert watched(tmp_path, work, status=1).returncode == 1
-
-
-@pytest.mark.skipif(
-    sys.platform != "linux", reason="only Linux gives a process the children of its children"
-)
-@pytest.mark.parametrize(
-    "work",
-    [
-        "subprocess.Popen(['sleep', '600'], start_new_session=True)",
-        # A daemon: its parent has ended, so nobody knows whose child it was.
-        "subprocess.run([sys.executable, '-c', 'import subprocess; subprocess.Popen([\"sleep\", "
-        '"600"], start_new_session=True)\'])',
-    ],
-)
-def test_processes_left_behind_end_with_the_job(work, tmp_path):
-    done = watched(tmp_path, f"{work}; print(*watchdog.children(), flush=True)")
-    (left,) = done.stdout.splitlines()[0].split()
-    assert not Path(f"/proc/{left}").exists()
-
-
-def test_without_supervision_nothing_is_told():
-    with watchdog.watching(None) as watch:
-        watch("run")
-    watchdog.settle()
-
-
-FAULTS = {
-    "import sys; sys.exit('bye')": "sys.exit: bye",
-    "raise KeyboardInterrupt": "KeyboardInterrupt",
-    "raise type('Own', (BaseException,), {})('no')": "Own: no",
-    "raise ValueError('a\\x1b[31m\\r\\0b' + 'c' * 10**6)": r"ValueError: a\x1b[31m\r\x00bccc",
-    "import subprocess; subprocess.Popen(['sleep', '600'], start_new_session=True)": watchdog.LEFT,
-    "import os, time; os.fork() or time.sleep(600)": watchdog.LEFT,
-    "import multiprocessing as m, time; m.get_context('fork').Process(target=time.sleep, "
-    "args=(600,)).start()": watchdog.LEFT,
-}
-
-
-@pytest.mark.parametrize("fault", FAULTS)
-def test_run_that_goes_wrong_is_named_in_one_short_line(fault, tmp_path):
-    given = chunk(tmp_path)
-    file = tmp_path / "bend.py"
-    file.write_text(PLANNER.replace("    made.append", f"    {fault}\n    made.append"))
-    assert fault in file.read_text()
-    before = watchdog.children()
-    with pytest.raises(RuntimeError, match=r"^run ") as told:
-        execution.run_chunk({"disc": PROBLEM}, given)
-    line = str(told.value)
-    assert f": planner {file}: {FAULTS[fault]}" in line
-    assert line.isprintable()
-    assert len(line) < 1000
-    assert not watchdog.children() - before
-
-
 UNREPEATABLE = {
     "an own generator": "rng = np.random.default_rng()",
     "the global generator": "bend = bend + np.random.random()",
@@ -293,23 +147,16 @@ UNREPEATABLE = {
 
 
 @pytest.mark.parametrize("fault", UNREPEATABLE)
-def test_run_that_cannot_be_repeated_is_refused(fault, tmp_path):
-    given = chunk(tmp_path)
-    file = tmp_path / "bend.py"
-    file.write_text(
-        PLANNER.replace("    made.append", f"    {UNREPEATABLE[fault]}\n    made.append")
-    )
+def test_run_that_cannot_be_repeated_is_refused(fault, planner):
+    given = planner(f"    {UNREPEATABLE[fault]}\n    made.append")
     with pytest.raises(
         RuntimeError, match=r"with the same generator its run has another (objective|length)"
     ):
         execution.run_chunk({"disc": PROBLEM}, given)
 
 
-def test_planner_that_is_not_deterministic_as_it_says_is_refused(tmp_path):
-    given = chunk(tmp_path)
-    (tmp_path / "bend.py").write_text(
-        PLANNER.replace("made = []", "deterministic = True\nmade = []")
-    )
+def test_planner_that_is_not_deterministic_as_it_says_is_refused(planner):
+    given = planner("    made.append", "deterministic = True\n")
     with pytest.raises(
         RuntimeError,
         match="deterministic = True, but with another generator its run has another objective",

@@ -8,14 +8,12 @@ import os
 import re
 import signal
 import sys
-from functools import partial
 from pathlib import Path
 
 import bezierplan
 from bezierplan.commands import arguments
 from bezierplan.places import EXTRA, PACKAGE
 from bezierplan.running import watchdog
-from bezierplan.schema import words
 from bezierplan.schema.checked import Fault, closest
 
 PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m bezierplan"
@@ -82,26 +80,12 @@ INTERRUPTED = 128 + signal.SIGINT
 
 
 def start() -> None:
-    """Do what the words of this process say, in a child: a command may execute planners, which can
-    end a process in silence.
-    """
-    watchdog.supervise(
-        words.plain(f"{PROGRAM} {' '.join(sys.argv[1:])}", words.LONGEST),
-        partial(print, file=sys.stderr, flush=True),
-    )
-    status = 1
+    """Do what the words of this process say."""
     try:
         main(sys.argv[1:])
-        status = 0
-    except SystemExit as end:
-        status = end.code if isinstance(end.code, int) else int(end.code is not None)
-        raise
-    except watchdog.Interrupted:
-        status = INTERRUPTED
+    except KeyboardInterrupt:
         print(f"{PROGRAM}: interrupted", file=sys.stderr, flush=True)
-        sys.exit(status)
-    finally:
-        watchdog.settle(status)
+        sys.exit(INTERRUPTED)
 
 
 if __name__ == "__main__":

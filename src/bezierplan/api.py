@@ -492,7 +492,7 @@ def plan(
     shortest, label = planning.shortest(parts, regions(placed.workspace)), f"method: {name}"
     try:
         answer, cpu_s = planning.planned(
-            label, module.plan, parts, settings, seed, is_file(planner)
+            label, module.plan, parts, settings, seed, planner if is_file(planner) else ""
         )
         judged = verdict(placed, shortest, regions, answer.path)
     except PlannerFailure as failure:

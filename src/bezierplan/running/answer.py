@@ -1,14 +1,14 @@
 """The one door for planners' answers: what comes in is copied once into plain values, and only the
 copy is judged and stored.
 
-It serves runs, drives, the contract tests and `python -m bezierplan plan` alike. Types are exact: a
-subclass could show one value to the judge and another to the table.
+It serves runs, drives, the contract tests and `python -m bezierplan plan` alike, whether an answer
+comes from this process or, as text, from another one.
 """
 
-import keyword
 import math
 import re
 from collections.abc import Collection
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -19,28 +19,14 @@ from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
 from bezierplan.workspaces.problem import Path, Problem
 
-MOST_POINTS = 10_000
-"""Most control points of a chain of pieces that share no matrix; the checker judges them within
-seconds.
-"""
+MOST_POINTS = {"bezier": LARGEST_DEGREE + 1, "polyline": 10_000, "cubic_chain": 10_000}
+"""Most control points of a curve: the checker judges chains of so many within seconds."""
 MOST_BLENDED = 1_000
-"""Most control points of other curves, whose matrix grows with the square of their number. Beziers
-end at the checker's largest degree.
-"""
-MOST_HISTORY = 1_000_000
-MOST_STOP = 100
-"""Most characters of the word for why a planner stopped."""
-MOST_EXTRA = 64
-MOST_NAME = 64
+"""Likewise of other curves, whose matrix grows with the square of their number."""
 
-_CHAINS = ("polyline", "cubic_chain")
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 _LARGEST_WHOLE = 2**63 - 1
 _TRUTHS = (bool, np.bool_)
-_WHOLES = (int, *(np.dtype(code).type for code in "bhilqBHILQ"))
-_FLOATS = (float, np.float16, np.float32, np.float64)
-# Whole numbers up to this size are floats.
-_LARGEST_EXACT = 2**53
 
 NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
 
@@ -54,13 +40,12 @@ def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
     arrays of float64.
 
     taken: names not allowed for extra columns. Raises Unfit for the first field with another type,
-    form, size or range.
+    form or range.
     """
-    if type(answer) is not Plan:
+    if not isinstance(answer, Plan):
         raise Unfit(f"is a {type(answer).__name__}; expected a Plan")
-    path = None if answer.path is None else path_of(answer.path)
     plan = Plan(
-        path=path,
+        path=None if answer.path is None else path_of(answer.path),
         objective=_objective(answer.objective),
         claimed_feasible=_claim(answer.claimed_feasible),
         evaluations=_evaluations(answer.evaluations),
@@ -68,7 +53,7 @@ def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
         stop=_stop(answer.stop),
         extra=_extra(answer.extra, taken),
     )
-    if path is None and plan.claimed_feasible:
+    if plan.path is None and plan.claimed_feasible:
         raise Unfit("claimed_feasible: true without a path")
     return plan
 
@@ -106,6 +91,17 @@ def restored(curve: str, points: Any) -> Path | None:
     return Path(curve, np.array(points, dtype=float).reshape(-1, 2)) if curve else None
 
 
+def packed(plan: Plan) -> dict[str, Any]:
+    """A plain plan as text can hold it, with all bits of its numbers."""
+    return plan._asdict() | {"history": plan.history.tolist(), "path": stored(plan.path)}
+
+
+def unpacked(fields: dict[str, Any]) -> Plan:
+    """The plan that `packed` wrote."""
+    arrays = {"history": np.array(fields["history"], float), "path": restored(*fields["path"])}
+    return Plan(**fields | arrays)
+
+
 def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
     """Length and verdict of a path; without one, not a number and `NO_PATH`."""
     if path is None:
@@ -121,59 +117,41 @@ def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
 
 def path_of(path: Any) -> Path:
     """A path as plain values. Raises Unfit."""
-    if type(path) is not Path:
+    if not isinstance(path, Path):
         raise Unfit("path: expected None or a Path")
-    if type(path.curve) is not str:
-        raise Unfit(
-            f"path: curve: is a {type(path.curve).__name__}; expected one of "
-            f"{', '.join(curves.CURVES)}"
-        )
+    if path.curve not in curves.CURVES:
+        raise Unfit(f"path: curve: {path.curve!r}; expected one of {', '.join(curves.CURVES)}")
     if not _is_array(path.points, 2, "f") or path.points.shape[1] != 2:
         raise Unfit("path: points: expected an array of floats, (n, 2)")
-    if path.curve in curves.CURVES and len(path.points) > _most_points(path.curve):
-        raise Unfit(
-            f"path: points: {len(path.points)}; "
-            f"expected at most {_most_points(path.curve)} of a {path.curve}"
-        )
-    points = np.array(path.points, dtype=float, order="C")
-    if not np.isfinite(points).all():
+    most = MOST_POINTS.get(path.curve, MOST_BLENDED)
+    if len(path.points) > most:
+        raise Unfit(f"path: points: {len(path.points)}; expected at most {most} of a {path.curve}")
+    copy = Path(path.curve, np.array(path.points, dtype=float, order="C"))
+    if not np.isfinite(copy.points).all():
         raise Unfit("path: points: expected finite numbers")
-    copy = Path(path.curve, points)
     try:
         # A path that the checker rejects would abort a study: a coordinate too large, a degree too
         # high.
         checker.refuse_unfit(curves.bezier_pieces(copy))
     except ValueError as error:
-        raise Unfit(f"path: {_one_line(error)}") from None
+        raise Unfit(f"path: {' '.join(str(error).split())}") from None
     return copy
 
 
-def _most_points(curve: str) -> int:
-    if curve == "bezier":
-        return LARGEST_DEGREE + 1
-    return MOST_POINTS if curve in _CHAINS else MOST_BLENDED
-
-
 def _objective(value: Any) -> float:
-    if type(value) not in (*_FLOATS, *_WHOLES):
+    if not _is_a(Real, value) or math.isnan(value):
         raise Unfit("objective: expected a number, and not nan")
-    try:
-        objective = float(value)
-    except OverflowError:
-        raise Unfit("objective: expected a number that a float can hold") from None
-    if math.isnan(objective):
-        raise Unfit("objective: expected a number, and not nan")
-    return objective
+    return float(value)
 
 
 def _claim(value: Any) -> bool:
-    if type(value) not in _TRUTHS:
+    if not isinstance(value, _TRUTHS):
         raise Unfit("claimed_feasible: expected true or false")
     return bool(value)
 
 
 def _evaluations(value: Any) -> int:
-    if type(value) not in _WHOLES or not 0 <= value <= _LARGEST_WHOLE:
+    if not _is_a(Integral, value) or not 0 <= value <= _LARGEST_WHOLE:
         raise Unfit(
             f"evaluations: expected a whole number, at least 0 and at most {_LARGEST_WHOLE}"
         )
@@ -181,42 +159,25 @@ def _evaluations(value: Any) -> int:
 
 
 def _history(values: Any) -> np.ndarray:
-    if not _is_array(values, 1, "fiu") or not 0 < len(values) <= MOST_HISTORY:
-        raise Unfit(
-            "history: expected an array of numbers without nan, (generations + 1,), of at most "
-            f"{MOST_HISTORY} values"
-        )
-    if (
-        values.dtype.kind != "f"
-        and not -_LARGEST_EXACT <= int(values.min()) <= int(values.max()) <= _LARGEST_EXACT
-    ):
-        raise Unfit(
-            "history: expected whole numbers between "
-            f"-{_LARGEST_EXACT} and {_LARGEST_EXACT}, or floats"
-        )
-    history = np.array(values, dtype=float)
-    if np.isnan(history).any():
+    if not _is_array(values, 1, "fiu") or not len(values) or np.isnan(values).any():
         raise Unfit("history: expected an array of numbers without nan, (generations + 1,)")
-    return history
+    return np.array(values, dtype=float)
 
 
 def _stop(value: Any) -> str:
-    if type(value) is not str or len(value) > MOST_STOP or not value.isprintable():
-        raise Unfit(f"stop: expected a word, of at most {MOST_STOP} printable characters")
+    if not isinstance(value, str) or not value.isprintable():
+        raise Unfit("stop: expected a word")
     return value
 
 
 def _extra(columns: Any, taken: Collection[str]) -> dict[str, float | bool]:
-    if type(columns) is not dict or not all(type(name) is str for name in columns):
+    if not isinstance(columns, dict):
         raise Unfit("extra: expected names with numbers or truths")
-    if len(columns) > MOST_EXTRA:
-        raise Unfit(f"extra: {len(columns)} columns; expected at most {MOST_EXTRA}")
     for name in columns:
-        if not _NAME.fullmatch(name) or len(name) > MOST_NAME or keyword.iskeyword(name):
-            shown = ascii(name[:20])
+        if not isinstance(name, str) or not _NAME.fullmatch(name):
             raise Unfit(
-                f"extra: {shown}: expected a name of at most {MOST_NAME} small letters, digits "
-                "and underscores, and no keyword"
+                f"extra: {name!a}: expected a name of at most 64 small letters, digits and "
+                "underscores"
             )
         if name in taken:
             raise Unfit(f"extra: {name}: a column or setting has this name already")
@@ -224,21 +185,20 @@ def _extra(columns: Any, taken: Collection[str]) -> dict[str, float | bool]:
 
 
 def _column(name: str, value: Any) -> float | bool:
-    if type(value) in _TRUTHS:
+    if isinstance(value, _TRUTHS):
         return bool(value)
-    if type(value) in _FLOATS:
-        return float(value)
-    if type(value) not in _WHOLES or not -_LARGEST_WHOLE - 1 <= value <= _LARGEST_WHOLE:
+    if not _is_a(Real, value) or (isinstance(value, Integral) and abs(value) > _LARGEST_WHOLE):
         raise Unfit(f"extra: {name}: expected a number within 64 bits, or a truth")
-    return int(value)
+    return int(value) if isinstance(value, Integral) else float(value)
+
+
+def _is_a(kind: type, value: Any) -> bool:
+    """Whether a value is a number of a kind, and no truth."""
+    return isinstance(value, kind) and not isinstance(value, _TRUTHS)
 
 
 def _is_array(value: Any, dimensions: int, kinds: str) -> bool:
-    """Whether a value is an array, and no subclass, with a number of dimensions and a dtype kind
-    among the given numpy letters.
+    """Whether a value is an array with a number of dimensions and a dtype kind among the given
+    numpy letters.
     """
-    return type(value) is np.ndarray and value.ndim == dimensions and value.dtype.kind in kinds
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())
+    return isinstance(value, np.ndarray) and value.ndim == dimensions and value.dtype.kind in kinds

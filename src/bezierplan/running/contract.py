@@ -1,46 +1,57 @@
-"""Contract tests for a planner, from this package or your own: the requirements of `planners`, on
-small and degenerate problems.
+"""Contract tests for a planner, from this package or your own: the requirements of `planners`, as
+six facts on eight small and degenerate problems.
 
 Every setting of a planner needs a value. The planner counts its own budget: the tests check its
 count, not its actual work.
 """
 
-import hashlib
-import itertools
-import json
 import math
-import os
 import random
-import subprocess
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import cycle
+from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry import checker, curves
-from bezierplan.geometry.region import Region, region
+from bezierplan.geometry.region import region
 from bezierplan.kernels import allocation_free
-from bezierplan.planners import Plan, is_file, known_planners
-from bezierplan.running import answer, interface, watchdog
+from bezierplan.planners import Plan, is_file, known_planners, planner_module
+from bezierplan.running import answer, guard, interface, worker
 from bezierplan.running.columns import TAKEN
-from bezierplan.running.loans import lend
-from bezierplan.running.tampering import left_alone
+from bezierplan.running.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.words import told
-from bezierplan.workspaces import grid
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 
 LIMIT = 600.0
 """Seconds that one plan may take, compilation included."""
 
-# Number of generators, with one plan for each.
-_GENERATORS = 3
+SEEDS = (0, 0, 1, 2)
+"""Of the generators of a problem's runs. Before each, the global generators get another state."""
 
-_UNIT = "unit"
+SEALED = "sealed target"
+
+# Rows from the top; S start, T target, B both, each in the middle of its cell.
+_PICTURES = {
+    "open": ("......", ".S..T.", "..#...", "......"),
+    "obstacle in the way": ("......", ".S#.T.", "..#...", "......"),
+    "start is target": ("......", "..B#..", "......"),
+    "target beside start": ("......", ".ST#..", "......"),
+    SEALED: ("...###", ".S.#T#", "...###"),
+    "no obstacles": ("......", ".S..T.", "......"),
+    "narrow": ("..#..", "S.#.T", "....."),
+    "far from the origin": ("......", "..#...", ".S#.T.", "......"),
+}
+_CELLS = {"far from the origin": 1_500.0}
+# Half the side of a square, and the radius of a disc, in place of an occupied cell of side 1: next
+# to each other they overlap.
+_HALF = 0.55
 
 
 class Finding(NamedTuple):
@@ -58,507 +69,244 @@ class Finding(NamedTuple):
         return f"{verdict:8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
 
 
-def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
+def check_planner(
+    planner: str, settings: dict[str, Any], elsewhere: bool = True
+) -> Iterator[Finding]:
     """Findings on a planner, given as a name or the path of a file, with these settings; computed
-    lazily.
+    lazily. elsewhere: whether it is run in another process as well, where `hash`, the order of sets
+    and the addresses of objects differ.
 
     Raises Fault, in one line, before the first finding: for a file that is not a planner, and for
     missing or invalid settings.
     """
-    module = _loaded(planner)
-    first = _check_settings(module, settings, planner)
-    return itertools.chain(first, _findings(module, settings))
-
-
-def check_elsewhere(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
-    """Findings, one a problem, on whether a planner that passes `check_planner` gives the same bits
-    in another process, where `hash`, the order of sets and the addresses of objects differ.
-    """
-    hashing = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"
-    command = [sys.executable, "-m", __name__, planner, json.dumps(settings)]
-    there = subprocess.run(
-        command,
-        env=os.environ | {"PYTHONHASHSEED": hashing},
-        stdout=subprocess.PIPE,
-        text=True,
-        check=False,
-    )
-    elsewhere = dict(line.split("\t", 1) for line in there.stdout.splitlines() if "\t" in line)
-    for problem, bits in first_answers(planner, settings):
-        same = elsewhere.get(problem) == bits
-        yield Finding(
-            problem,
-            "another process",
-            same,
-            "" if same else "another plan there; hash(), id() and the order of a set differ",
-        )
-
-
-def first_answers(planner: str, settings: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """Each problem with a digest of a planner's plan from the first generator; of its exception, if
-    it raises one.
-    """
-    module = interface.loaded(planner, planner)
-    for problem in _problems(module):
-        try:
-            with (
-                watchdog.watching(LIMIT) as watch,
-                watchdog.executing(f"{planner}: {problem.name}", watch),
-            ):
-                found = repr(_bits(module.plan(problem, np.random.default_rng(0), **settings)))
-        except watchdog.PlannerFailure as failure:
-            found = type(failure.__cause__).__name__
-        yield problem.name, hashlib.sha256(found.encode()).hexdigest()
-
-
-# --------------------------------------------------------------------------------------------------
-# Before a planner is run: its module and its settings
-
-
-def _loaded(planner: str) -> ModuleType:
     if not is_file(planner) and planner not in known_planners():
         raise Fault(
             f"{planner}: unknown planner, and not the path of a file that ends in "
             f".py{closest(planner, known_planners())}"
         )
-    return interface.loaded(planner, planner)
-
-
-def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) -> list[Finding]:
-    """Findings from the check of settings: whether the planner's own check, if any, leaves them
-    unchanged. Raises Fault.
-    """
+    module = interface.loaded(planner, planner)
     interface.refuse_unknown(module, settings, f"{planner}: settings")
     interface.check_settings(module, settings, f"{planner}: settings")
-    if not hasattr(module, "check"):
-        return []
-    handed = dict(settings)
-    module.check(handed)
-    return [
-        Finding(
-            "any problem",
-            "settings unchanged",
-            handed == settings,
-            "" if handed == settings else "check(settings) changes them",
-        )
-    ]
+    return _findings(planner, module, settings, elsewhere)
 
 
 # --------------------------------------------------------------------------------------------------
 # The problems
 
-_IN_THE_WAY = "obstacle in the way"
-_SAME = "start is target"
-_BESIDE = "target beside start"
-_SEALED = "sealed target"
-_ON_BOUNDARY = "start on a boundary"
-_FAR = "far from the origin"
 
-# Rows from the top; S start, T target, B both. Start and target are cell centres, the only places
-# that grid planners support; so no start lies on a boundary.
-_GRIDS = {
-    "open": ("......", ".S..T.", "..#...", "......"),
-    _IN_THE_WAY: ("......", ".S#.T.", "..#...", "......"),
-    _SAME: ("......", "..B#..", "......"),
-    _BESIDE: ("......", ".ST#..", "......"),
-    _SEALED: ("...###", ".S.#T#", "...###"),
-    "no obstacles": ("......", ".S..T.", "......"),
-    "3 x 5": ("..#..", "S.#.T", "....."),
-    _FAR: ("......", "..#...", ".S#.T.", "......"),
-}
-# The grid of a map file begins at the origin; only large cells can extend far from it.
-_LARGE_CELL = 15_000.0
-
-# The other workspaces are this field, shifted for the problem far from the origin.
-_FIELD = (0.0, 10.0, 0.0, 10.0)
-_MOVED = (90_000.0, -70_000.0)
-
-_ENDS = {
-    "open": ((1.0, 5.0), (9.0, 5.0)),
-    _IN_THE_WAY: ((1.0, 5.0), (9.0, 5.0)),
-    _SAME: ((1.0, 5.0), (1.0, 5.0)),
-    _BESIDE: ((1.0, 5.0), (1.001, 5.0)),
-    _SEALED: ((1.0, 5.0), (7.0, 5.0)),
-    _ON_BOUNDARY: ((3.0, 5.0), (9.0, 5.0)),
-    "no obstacles": ((1.0, 5.0), (9.0, 5.0)),
-    _FAR: ((1.0, 5.0), (9.0, 5.0)),
-}
-
-_EIGHTHS = np.arange(8) * math.tau / 8
-_DISC = np.array([[5.0, 5.0, 2.0]])
-_RING = np.column_stack([7 + 2 * np.cos(_EIGHTHS), 5 + 2 * np.sin(_EIGHTHS), np.ones(8)])
-_CIRCLES = {"open": np.array([[5.0, 8.0, 1.0]]), _SEALED: _RING, "no obstacles": np.empty((0, 3))}
+def problems(module: ModuleType) -> Iterator[Problem]:
+    """The problems of a planner, on the kinds of workspace that it serves in turn."""
+    kinds = cycle(getattr(module, "workspaces", interface.KINDS.values()))
+    for (title, rows), kind in zip(_PICTURES.items(), kinds):
+        yield drawn_problem(kind, title, rows)
 
 
-def _box(middle: tuple[float, float], half: float) -> np.ndarray:
-    return np.array(middle) + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-
-
-_BLOCK = ((_box((5, 5), 2),),)
-_POLYGONS = {
-    "open": ((_box((5, 8), 1),),),
-    _SEALED: ((_box((7, 5), 2), _box((7, 5), 1)),),
-    "no obstacles": (),
-}
-
-
-def _grid_problems() -> Iterator[Problem]:
-    for title, rows in _GRIDS.items():
-        text = "".join(reversed(rows))
-        start, target = (
-            next(cell for cell, mark in enumerate(text) if mark in end) for end in ("SB", "TB")
-        )
-        lines = ["".join("#" if mark == "#" else "." for mark in row) for row in rows]
-        workspace = grid.from_lines(lines, _LARGE_CELL if title == _FAR else 1.0, _UNIT)
-        yield Problem(
-            f"grid: {title}", workspace, workspace.centre(start), workspace.centre(target)
-        )
-
-
-def _circle_problems() -> Iterator[Problem]:
-    for title in _ENDS:
-        circles = _CIRCLES.get(title, _DISC)
-        move = _move(title)
-        yield _moved(
-            f"circles: {title}",
-            title,
-            Circles(_bounds(move), circles[:, :2] + move, circles[:, 2].copy(), _UNIT),
-        )
-
-
-def _polygon_problems() -> Iterator[Problem]:
-    for title in _ENDS:
-        move = _move(title)
-        obstacles = tuple(
-            tuple(ring + move for ring in rings) for rings in _POLYGONS.get(title, _BLOCK)
-        )
-        yield _moved(f"polygons: {title}", title, Polygons(_bounds(move), obstacles, _UNIT))
-
-
-def _move(title: str) -> np.ndarray:
-    return np.array(_MOVED if title == _FAR else (0.0, 0.0))
-
-
-def _bounds(move: np.ndarray) -> tuple[float, float, float, float]:
-    x_low, x_high, y_low, y_high = (np.array(_FIELD) + np.repeat(move, 2)).tolist()
-    return x_low, x_high, y_low, y_high
-
-
-def _moved(name: str, title: str, workspace: Workspace) -> Problem:
-    start, target = (tuple((np.array(end) + _move(title)).tolist()) for end in _ENDS[title])
-    return Problem(name, workspace, start, target)
-
-
-PROBLEMS = {"grid": _grid_problems, "circles": _circle_problems, "polygons": _polygon_problems}
-"""The problems of a kind of workspace, small ones, as an iterator that makes them anew."""
+def drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
+    """A picture as a problem on a kind of workspace."""
+    cell = _CELLS.get(title, 1.0)
+    lines = ["".join("#" if mark == "#" else "." for mark in row) for row in rows]
+    home = from_lines(lines, cell, "unit")
+    text = "".join(reversed(rows))
+    start, target = (
+        home.centre(next(n for n, mark in enumerate(text) if mark in end)) for end in ("SB", "TB")
+    )
+    middles = np.array([home.centre(n) for n, mark in enumerate(text) if mark == "#"])
+    middles, half = middles.reshape(-1, 2), _HALF * cell
+    around = half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    made: dict[str, Workspace] = {
+        "grid": home,
+        "circles": Circles(home.bounds, middles, np.full(len(middles), half), "unit"),
+        "polygons": Polygons(home.bounds, tuple((at + around,) for at in middles), "unit"),
+    }
+    return Problem(f"{kind}: {title}", made[kind], start, target)
 
 
 # --------------------------------------------------------------------------------------------------
-# Runs. Only numpy's legacy functions, which ruff (NPY002) warns about, give access to the state of
-# its global generator.
+# Runs
 
 
-class _Run(NamedTuple):
-    """plan: the answer. used: global generators whose state changed. changed: whether the planner
-    altered the problem. rng: the state of its own generator afterwards; None if nothing was drawn.
+def answered(
+    begin: Callable[[str], None], planner: str, settings: dict[str, Any], seeds: list[int]
+) -> Iterator[list[Any]]:
+    """For each problem: its runs, or what is wrong with one of them, and whether the problem is
+    another afterwards. A run is a plan as plain values, and the state of its generator if that was
+    drawn from or split.
     """
-
-    plan: Any
-    used: list[str]
-    changed: bool
-    rng: str | None
-
-
-class _Case(NamedTuple):
-    """A planner's plans for one problem, all of them valid.
-
-    blocked: the region of the problem. plans: one per generator. again: the first of them
-    reproduced. reseeded: likewise, with the global generators in another state. runs: all of these.
-    columns: names of extra columns on the first problem. exact, keeps_best: what the planner
-    declares.
-    """
-
-    problem: Problem
-    blocked: Region
-    settings: dict[str, Any]
-    plans: list[Plan]
-    again: Plan
-    reseeded: Plan
-    runs: list[_Run]
-    columns: set[str]
-    exact: bool
-    keeps_best: bool
-
-
-def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]:
-    columns = None
-    differ, drawn, sound = [], False, True
-    for problem in _problems(module):
-        blocked = region(problem.workspace)
-        runs, fault = _runs(module, problem, settings)
-        yield Finding(problem.name, "plan", not fault, fault)
-        if fault == watchdog.LEFT:
-            return  # later runs may wait for what has been ended
-        if fault:
-            continue
-        plan, again, reseeded, *others = (run.plan for run in runs)
-        columns = set(plan.extra) if columns is None else columns
-        declared = getattr(module, "exact", False), getattr(module, "keeps_best", True)
-        case = _Case(
-            problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, *declared
-        )
-        for name, fact in _FACTS.items():
-            finding = Finding(problem.name, name, *fact(case))
-            sound = sound and finding.passed
-            yield finding
-        if problem.name.endswith(_SEALED):
-            yield Finding(problem.name, "no way", *_finds_no_way(case))
-        differ.append(next((field for other in others if (field := _difference(plan, other))), ""))
-        left = [run.rng for run in (runs[0], *runs[3:])]
-        drawn = drawn or (None not in left and len({*left}) == len(left))
-    # One that has another fault, such as to draw from a global generator, is not blamed twice.
-    if differ and sound:
-        yield Finding(
-            "all problems",
-            "generators",
-            *_heeds_generators(differ, drawn, getattr(module, "deterministic", False)),
-        )
-
-
-def _problems(module: ModuleType) -> Iterator[Problem]:
-    for kind in getattr(module, "workspaces", PROBLEMS):
-        yield from PROBLEMS[kind]()
-
-
-def _heeds_generators(differ: list[str], drawn: bool, deterministic: bool) -> tuple[bool, str]:
-    """differ: for each problem the first field in which plans of different generators differ; empty
-    if none does. drawn: whether on some problem all generators were drawn from and left in
-    different states: then the plans may be the same because the problems are easy.
-    """
-    field = next(filter(None, differ), "")
-    if deterministic:
-        return (
-            not field,
-            f"{field}: another value from another generator, but deterministic = True"
-            if field
-            else "",
-        )
-    return (
-        drawn or bool(field),
-        ""
-        if drawn or field
-        else "the same plans from every generator; draw from rng as it comes, or say "
-        "deterministic = True",
-    )
-
-
-def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tuple[list[_Run], str]:
-    """Runs in the order that `_findings` expects, or the fault that left none to inspect."""
-    runs = []
-    for seed, surroundings in [
-        (0, 0),
-        (0, 0),
-        (0, 1),
-        *((seed, 0) for seed in range(1, _GENERATORS)),
-    ]:
-        name = f"planner {module.__spec__.origin}: {problem.name}"
-        try:
-            with (
-                watchdog.watching(LIMIT) as watch,
-                watchdog.executing(name, watch),
-                left_alone(name),
-            ):
-                runs.append(_run(module, problem, settings, seed, surroundings))
-        except watchdog.PlannerFailure as failure:
-            cause = failure.__cause__
-            return [], f"raises {told(cause)}" if cause else str(failure).removeprefix(f"{name}: ")
-        try:
-            runs[-1] = runs[-1]._replace(plan=answer.plain(runs[-1].plan))
-        except answer.Unfit as fault:
-            return [], str(fault)
-    return runs, ""
-
-
-def _run(
-    module: ModuleType, problem: Problem, settings: dict[str, Any], seed: int, surroundings: int
-) -> _Run:
-    """One run on a copy of a problem, as the workflow makes it. surroundings: seed of the global
-    generators, whose state is restored afterwards.
-    """
-    loan = lend({problem.name: problem})[problem.name]
-    kept = np.random.get_state(), random.getstate()  # noqa: NPY002
-    try:
-        np.random.seed(surroundings)  # noqa: NPY002
-        random.seed(surroundings)
-        _seed_compiled(surroundings)
-        before = _global_states()
-        rng = np.random.default_rng(seed)
-        fresh = _state(rng)
-        plan = module.plan(loan.problem, rng, **settings)
-        used = [name for name, state in _global_states().items() if state != before[name]]
-    finally:
-        np.random.set_state(kept[0])  # noqa: NPY002
-        random.setstate(kept[1])
-    left = _state(rng)
-    return _Run(plan, used, bool(loan.thorough_fault()), None if left == fresh else left)
+    module = planner_module(planner)
+    for problem in problems(module):
+        before, runs = worker.packed_problems({"": problem}), []
+        for surroundings, seed in enumerate(seeds):
+            begin(f"planner {planner}: {problem.name}")
+            _seed(surroundings)
+            rng = np.random.default_rng(seed)
+            fresh = _state(rng)
+            try:
+                plan = answer.plain(module.plan(problem, rng, **settings))
+            except answer.Unfit as fault:
+                runs = str(fault)
+                break
+            except Exception as error:
+                runs = f"raises {told(error)}"
+                break
+            state = _state(rng)
+            runs.append([answer.packed(plan), None if state == fresh else state])
+        yield [runs, worker.packed_problems({"": problem}) != before]
 
 
 def _state(rng: np.random.Generator) -> str:
-    """What tells whether a generator was drawn from or split."""
     return f"{rng.bit_generator.state} {rng.bit_generator.seed_seq.n_children_spawned}"
 
 
-def _global_states() -> dict[str, tuple]:
-    name, keys, *rest = np.random.get_state()  # noqa: NPY002
-    return {"numpy.random": (name, keys.tobytes(), *rest), "random": random.getstate()}
+def _seed(seed: int) -> None:
+    """Seed the global generators, those of compiled code too, which numba keeps apart."""
+    np.random.seed(seed)  # noqa: NPY002
+    random.seed(seed)
+    _seed_compiled(seed)
 
 
 @allocation_free
 def _seed_compiled(seed: int) -> None:
-    """Seed the global generators of compiled code, which numba keeps apart from Python's. Their
-    state cannot be read.
-    """
     np.random.seed(seed)  # noqa: NPY002
     random.seed(seed)
 
 
+def _elsewhere(
+    planner: str, settings: dict[str, Any], seeds: tuple[int, ...], hashing: int
+) -> list[list[Any]]:
+    """`answered` in a process of its own. Raises PlannerFailure."""
+    file = str(Path(planner).resolve()) if is_file(planner) else planner
+    given = {"planner": file, "settings": settings, "seeds": seeds}
+    return guard.answers("contract.answered", given, f"planner {planner}", LIMIT, hashing)
+
+
 # --------------------------------------------------------------------------------------------------
-# Facts: each returns whether it holds for a case, and a detail
+# Facts
 
 
-def _has_its_ends(case: _Case) -> tuple[bool, str]:
-    for plan in case.plans:
+def _findings(
+    planner: str, module: ModuleType, settings: dict[str, Any], elsewhere: bool
+) -> Iterator[Finding]:
+    try:
+        cases = (
+            _elsewhere(planner, settings, SEEDS, 0)
+            if is_file(planner)
+            else answered(lambda name: None, planner, settings, list(SEEDS))
+        )
+        again = _elsewhere(planner, settings, SEEDS[:1], 1) if elsewhere else []
+    except PlannerFailure as failure:
+        yield Finding("all problems", "plan", False, str(failure))
+        return
+    columns, differ, drawn = None, False, False
+    for number, (problem, (runs, changed)) in enumerate(zip(problems(module), cases)):
+        yield Finding(
+            problem.name,
+            "problem unchanged",
+            not changed,
+            "the problem is another after the run; copy what is to be changed" if changed else "",
+        )
+        if isinstance(runs, str):
+            yield Finding(problem.name, "plan", False, runs)
+            continue
+        plans = [answer.unpacked(plan) for plan, _ in runs]
+        columns = plans[0].extra.keys() if columns is None else columns
+        for fact, detail, fault in (
+            ("plan", *_is_valid(plans, problem, {*TAKEN, *settings}, columns)),
+            ("history", "", _history_fault(plans, getattr(module, "keeps_best", True))),
+            ("budget", *_budget(plans, settings.get("evaluations", math.inf))),
+            ("claims", *_claims(plans, problem, getattr(module, "exact", False))),
+            ("random numbers", "", _repeats(runs, again[number : number + 1])),
+        ):
+            yield Finding(problem.name, fact, not fault, fault or detail)
+        bits, states = [repr(plan) for plan, _ in runs[1:]], [state for _, state in runs[1:]]
+        differ = differ or len({*bits}) > 1
+        # If all are left in different states, the plans may be the same because all are easy.
+        drawn = drawn or (None not in states and len({*states}) == len(states))
+    if columns is not None:
+        fault = (
+            ""
+            if differ or drawn
+            else "the same plans from every generator; draw from rng as it "
+            "comes, or say deterministic = True"
+        )
+        if getattr(module, "deterministic", False):
+            fault = "other plans from other generators, but deterministic = True" if differ else ""
+        yield Finding("all problems", "random numbers", not fault, fault)
+
+
+def _is_valid(
+    plans: list[Plan], problem: Problem, taken: set[str], columns: Any
+) -> tuple[str, str]:
+    for plan in plans:
         try:
-            answer.check_ends(plan, case.problem)
+            answer.accepted(plan, problem, taken)
         except answer.Unfit as fault:
-            return False, str(fault)
-    found = sum(plan.path is not None for plan in case.plans)
-    return True, f"{found} paths of {len(case.plans)} plans"
+            return "", str(fault)
+        if plan.extra.keys() != columns:
+            return "", (
+                f"extra: {min(plan.extra.keys() ^ columns)}: not in every plan; a table needs the "
+                "same columns in each row"
+            )
+    return f"{sum(plan.path is not None for plan in plans)} paths of {len(plans)} plans", ""
 
 
-def _history_falls(case: _Case) -> tuple[bool, str]:
-    for plan in case.plans:
-        # Written so that NaN fails as well.
-        if not (plan.history[1:] <= plan.history[:-1]).all():
-            return False, "rises; expected the best objective so far"
+def _history_fault(plans: list[Plan], keeps_best: bool) -> str:
+    for plan in plans:
+        if (plan.history[1:] > plan.history[:-1]).any():
+            return "rises; expected the best objective so far"
+        last = plan.history[-1]
         if (
             plan.path is not None
-            and plan.history[-1] != plan.objective
-            and (case.keeps_best or plan.history[-1] > plan.objective)
+            and last != plan.objective
+            and (keeps_best or last > plan.objective)
         ):
-            return False, f"ends with {plan.history[-1]}; expected the objective, {plan.objective}"
-    return True, ""
+            return f"ends with {last}; expected the objective, {plan.objective}"
+    return ""
 
 
-def _extra_is_free(case: _Case) -> tuple[bool, str]:
-    for plan in case.plans:
-        try:
-            answer.plain(plan, {*TAKEN, *case.settings})
-        except answer.Unfit as fault:
-            return False, str(fault)
-        if plan.extra.keys() != case.columns:
-            return (
-                False,
-                f"{min(plan.extra.keys() ^ case.columns)}: not in every plan; a table needs the "
-                "same columns in each row",
-            )
-    return True, ""
-
-
-def _repeats(case: _Case) -> tuple[bool, str]:
-    different = _difference(case.plans[0], case.again)
-    return not different, f"{different}: another value from the same generator" if different else ""
-
-
-def _draws_from_its_own(case: _Case) -> tuple[bool, str]:
-    """A result that no rerun would reproduce is not blamed on the global generators."""
-    used = next((run.used for run in case.runs if run.used), [])
-    if used:
-        return False, f"uses {' and '.join(used)}; expected rng alone"
-    different = _difference(case.plans[0], case.reseeded)
-    if different and not _difference(case.plans[0], case.again):
-        return False, f"{different}: depends on a global generator; expected rng alone"
-    return True, ""
-
-
-def _leaves_problem(case: _Case) -> tuple[bool, str]:
-    changed = any(run.changed for run in case.runs)
-    return (
-        not changed,
-        "the problem is another after the run; copy what is to be changed" if changed else "",
-    )
-
-
-def _keeps_budget(case: _Case) -> tuple[bool, str]:
+def _budget(plans: list[Plan], budget: float) -> tuple[str, str]:
     """The number of evaluations may differ from generator to generator: a search may end early."""
-    used = sorted(int(plan.evaluations) for plan in case.plans)
-    budget = case.settings.get("evaluations", math.inf)
+    used = sorted({plan.evaluations for plan in plans})
     if used[-1] > budget:
-        return False, f"{used[-1]} evaluations; expected at most {budget}"
-    for plan in case.plans:
+        return "", f"{used[-1]} evaluations; expected at most {budget}"
+    for plan in plans:
         if len(plan.history) > plan.evaluations:
-            return (
-                False,
-                f"a history of {len(plan.history)} values from {plan.evaluations} evaluations",
+            return "", (
+                f"a history of {len(plan.history)} values from {plan.evaluations} evaluations"
             )
-    return True, f"{used[0]} evaluations" if used[0] == used[
-        -1
-    ] else f"{used[0]} to {used[-1]} evaluations"
+    return " to ".join(map(str, dict.fromkeys((used[0], used[-1])))) + " evaluations", ""
 
 
-def _claims_hold(case: _Case) -> tuple[bool, str]:
-    """Only a planner that declares itself exact can fail."""
-    claims = [plan for plan in case.plans if plan.claimed_feasible]
-    agreed = _feasible(claims, case.blocked)
-    return agreed == len(
-        claims
-    ) or not case.exact, f"{len(claims)} paths claimed feasible, {agreed} by the checker"
-
-
-def _finds_no_way(case: _Case) -> tuple[bool, str]:
-    feasible = _feasible(case.plans, case.blocked)
-    return not feasible, "a feasible path to a sealed target" if feasible else ""
-
-
-def _feasible(plans: list[Plan], blocked: Region) -> int:
-    """Number of plans whose path the checker accepts as feasible."""
-    return sum(
+def _claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]:
+    """Only a planner that declares itself exact can fail for its claims; no way leads to a sealed
+    target.
+    """
+    blocked = region(problem.workspace)
+    feasible = [
         plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible
         for plan in plans
-    )
+    ]
+    claims = [right for plan, right in zip(plans, feasible) if plan.claimed_feasible]
+    detail = f"{len(claims)} paths claimed feasible, {sum(claims)} by the checker"
+    if problem.name.endswith(SEALED) and any(feasible):
+        return detail, "a feasible path to a sealed target"
+    return detail, detail if exact and not all(claims) else ""
 
 
-def _difference(one: Plan, other: Plan) -> str:
-    """The first field in which two plans differ bitwise; empty if there is none."""
-    bits = zip(_bits(one).items(), _bits(other).values(), strict=True)
-    return next((field for (field, value), counterpart in bits if value != counterpart), "")
+def _repeats(runs: list[list[Any]], elsewhere: list[list[Any]]) -> str:
+    """What is wrong if runs with the same generator do not have the same bits."""
+    (plan, _), (again, _), *_ = runs
+    if repr(again) != repr(plan):
+        field = next(name for name in plan if repr(plan[name]) != repr(again[name]))
+        return (
+            f"{field}: another value from the same generator; all random numbers come from rng, "
+            "and nothing from a clock or an earlier run"
+        )
+    for there, _ in elsewhere:
+        if isinstance(there, str) or _plain(there[0][0]) != _plain(plan):
+            return "another plan in another process; hash(), id() and the order of a set differ"
+    return ""
 
 
-def _bits(plan: Plan) -> dict[str, Any]:
-    """The fields of a plan as values that are equal exactly when their bits are."""
-    return {
-        "path": plan.path and (plan.path.curve, plan.path.points.shape, plan.path.points.tobytes()),
-        "objective": np.float64(plan.objective).tobytes(),
-        "claimed_feasible": bool(plan.claimed_feasible),
-        "evaluations": int(plan.evaluations),
-        "history": plan.history.tobytes(),
-        "stop": plan.stop,
-        "extra": {name: np.float64(value).tobytes() for name, value in plan.extra.items()},
-    }
-
-
-_FACTS = {
-    "path": _has_its_ends,
-    "history": _history_falls,
-    "extra columns": _extra_is_free,
-    "same bits": _repeats,
-    "global generators": _draws_from_its_own,
-    "problem unchanged": _leaves_problem,
-    "budget": _keeps_budget,
-    "claims": _claims_hold,
-}
-
-
-if __name__ == "__main__":
-    for answered in first_answers(sys.argv[1], json.loads(sys.argv[2])):
-        print(*answered, sep="\t")
+def _plain(plan: dict[str, Any]) -> str:
+    """The text of a plan, whose path is a list after it came from another process."""
+    return repr(plan | {"path": [*plan["path"]]})

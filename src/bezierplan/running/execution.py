@@ -2,33 +2,24 @@
 
 import itertools
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
-from typing import Any, TypeVar
+from pathlib import Path as File
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import Plan, is_file, planner_module
-from bezierplan.running import answer, apart, interface, kernel_cache, rows, watchdog
+from bezierplan.running import answer, guard, interface, rows, worker
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
-from bezierplan.running.loans import Loan, lend
+from bezierplan.running.watchdog import PlannerFailure, begin, executing
 from bezierplan.workspaces import seeds
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.problem import Problem
 
 logger = logging.getLogger(__name__)
-
-T = TypeVar("T")
-
-# Warm-up runs are discarded until this many in a row agree in CPU time to within this share, until
-# those after the first have taken this many seconds, or until one takes so long that its loading
-# time is negligible.
-_ALIKE = 3
-_STABLE = 0.1
-_WARM_UP = 0.2
-_LONG_RUN = 1.0
 
 # Number of runs between two lines of the log.
 _LOGGED = 100
@@ -53,20 +44,27 @@ def settings_in(chunk: Chunk, condition: Condition) -> dict[str, Any]:
     return {name: value for name, value in settings.items() if name in accepted}
 
 
-def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Generator:
-    """The random generator of a run, seeded from names only, not from order, cores or chunks."""
+def task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
+    """A run as what executes planners needs it. Its generator is seeded from names only, not from
+    order, cores or chunks.
+    """
     layout = chunk.problems[condition.problem].get("layout", "")
     parts = {
         "own": [condition.name, chunk.method],
         "shared": [condition.name],
         "common": [layout],
     }
-    return seeds.generator(chunk.study, chunk.experiment, *parts[chunk.seeds], repeat)
+    return worker.Task(
+        f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}",
+        condition.problem,
+        [chunk.study, chunk.experiment, *parts[chunk.seeds], repeat],
+        settings_in(chunk, condition),
+    )
 
 
-def told_run(chunk: Chunk, condition: Condition, repeat: int) -> str:
-    """How a message about a run's planner begins."""
-    return f"run {run_id(chunk, condition, repeat)}: planner {chunk.planner}"
+def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Generator:
+    """The random generator of a run."""
+    return task(chunk, condition, repeat).generator()
 
 
 def told_chunk(chunk: Chunk) -> str:
@@ -74,30 +72,58 @@ def told_chunk(chunk: Chunk) -> str:
     return f"run {chunk.name}: planner {chunk.planner}"
 
 
+def plans(
+    chunk: Chunk,
+    problems: dict[str, Problem],
+    tasks: Iterable[worker.Task],
+    again: worker.Task | None = None,
+) -> Iterator[worker.Made]:
+    """`worker.plans` of a chunk's planner. Raises PlannerFailure, naming the run."""
+    if not is_file(chunk.planner):
+        begins = partial(begin, chunk.time_limit)
+        return worker.plans(chunk.planner, problems, tasks, again, begins)
+    return guard.plans(chunk.planner, problems, tasks, again, told_chunk(chunk), chunk.time_limit)
+
+
 def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> Plan:
     """The plan of one run."""
-    plan = planner_module(chunk.planner).plan
-    return plan(problem, generator(chunk, condition, repeat), **settings_in(chunk, condition))
+    (made,) = plans(chunk, {condition.problem: problem}, [task(chunk, condition, repeat)])
+    return made.plan
 
 
-class UnfitAnswer(watchdog.PlannerFailure):
-    """A planner's answer that no row may show; the message names run, planner and field."""
+def track(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> list[np.ndarray]:
+    """The control points (n, 2) of the best path after each iteration of a run."""
+    run_task = task(chunk, condition, repeat)
+    if not is_file(chunk.planner):
+        with executing(run_task.name):
+            made = planner_module(chunk.planner).track(
+                problem, run_task.generator(), **run_task.settings
+            )
+            return list(made)
+    given = {
+        "planner": str(File(chunk.planner).resolve()),
+        "problem": worker.packed_problems({condition.problem: problem}),
+        "task": run_task,
+    }
+    return list(
+        map(np.array, guard.answers("worker.tracked", given, run_task.name, chunk.time_limit))
+    )
 
 
 def accepted(plan: Any, problem: Problem, chunk: Chunk, condition: Condition, repeat: int) -> Plan:
-    """A planner's answer as plain values. Raises UnfitAnswer if it is not valid for the problem."""
+    """A planner's answer as plain values. Raises PlannerFailure if it is not valid for the
+    problem.
+    """
+    run = task(chunk, condition, repeat)
     try:
-        return answer.accepted(
-            plan, problem, {*TAKEN, *settings_in(chunk, condition), *condition.values}
-        )
+        return answer.accepted(plan, problem, taken(run, condition))
     except answer.Unfit as fault:
-        raise UnfitAnswer(f"{told_run(chunk, condition, repeat)}: its answer: {fault}") from None
+        raise PlannerFailure(f"{run.name}: its answer: {fault}") from None
 
 
-def refuse_changed(loan: Loan, chunk: Chunk, condition: Condition, repeat: int) -> None:
-    """Raise UnfitAnswer if a planner put something else in a workspace that was lent to it."""
-    if fault := loan.fault():
-        raise UnfitAnswer(f"{told_run(chunk, condition, repeat)}: {fault}")
+def taken(run: worker.Task, condition: Condition) -> list[str]:
+    """Names that no extra column of a run may have."""
+    return [*TAKEN, *run.settings, *condition.values]
 
 
 def refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
@@ -134,11 +160,11 @@ def row(
     chunk: Chunk, condition: Condition, repeat: int, plan: Any, problem: Problem, blocked: Region
 ) -> dict[str, Any]:
     """One row of the runs table, from a planner's answer. `blocked` is the region of the problem's
-    workspace, of which no planner holds any part.
+    workspace.
 
-    Length and verdict are those of the points that the row holds. Raises UnfitAnswer if the answer
-    is not valid for this problem: for example, if its path begins or ends elsewhere, or a column
-    would overwrite another.
+    Length and verdict are those of the points that the row holds. Raises PlannerFailure if the
+    answer is not valid for this problem: for example, if its path begins or ends elsewhere, or a
+    column would overwrite another.
     """
     plan = accepted(plan, problem, chunk, condition, repeat)
     curve, points = answer.stored(plan.path)
@@ -168,63 +194,37 @@ def run_chunk(
     """The runs of a chunk (columns as in `columns`) and, in a separate table because they are never
     reproducible, their times.
 
-    Planners get copies of the problems, a user's planner in another process (`apart`), and these
-    stay here to judge by. timed_alike: whether a warm-up makes times comparable, whose runs must
-    repeat themselves. Raises PlannerFailure, naming the run, if a planner fails, does not return a
-    valid plan for the problem (`row`), changes a workspace, or gives another plan when its first
-    run is repeated.
+    timed_alike: whether a warm-up makes times comparable, whose runs must repeat themselves. Raises
+    PlannerFailure, naming the run, if a planner fails, does not return a valid plan for the problem
+    (`row`), changes a problem, or gives another plan when its first run is repeated.
     """
     met = {name: problem for name, problem in problems.items() if name in chunk.problems}
     blocked = {name: region(problem.workspace) for name, problem in met.items()}
-    loans = lend(met)
     planned = chunk.conditions()
     deterministic = interface.traits(chunk.planner).deterministic
     first, last = chunk.repeats
-    outcomes, times = {}, {}
-
-    def plan(k: int, repeat: int) -> Any:
-        loan = loans[planned[k].problem]
-        found = run(chunk, planned[k], repeat, loan.problem)
-        refuse_changed(loan, chunk, planned[k], repeat)
-        return found
-
-    def fault() -> str:
-        return next(filter(None, (loan.thorough_fault() for loan in loans.values())), "")
-
-    with (
-        apart.asking(is_file(chunk.planner), told_chunk(chunk), plan, fault) as ask,
-        watchdog.watching(chunk.time_limit) as watch,
+    order = _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
+    # What needs no random numbers must not be changed by others.
+    warm_up = task(chunk, planned[order[0][0]], order[0][1] + deterministic)
+    warm, outcomes, times = [], {}, {}
+    for number, plan, cpu, wall in plans(
+        chunk,
+        met,
+        [task(chunk, planned[k], repeat) for k, repeat in order],
+        warm_up if timed_alike else None,
     ):
-        kernel_cache.meanwhile[:] = _judgements(met, blocked)
-
-        def asked(k: int, repeat: int) -> tuple[Any, float, float]:
-            name = told_run(chunk, planned[k], repeat)
-            return timed(partial(ask, name, k, repeat), name, watch)
-
-        for n, (k, repeat) in enumerate(
-            _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
-        ):
-            condition = planned[k]
-            made = partial(
-                row,
-                chunk,
-                condition,
-                repeat,
-                problem=met[condition.problem],
-                blocked=blocked[condition.problem],
-            )
-            if n == 0:
-                # What needs no random numbers must not be changed by others.
-                again = partial(asked, k, repeat + deterministic)
-                warm = _warm_up(again) if timed_alike else []
-            found, cpu, wall = asked(k, repeat)
-            outcomes[k, repeat] = made(found)
-            if n == 0:
-                refuse_unrepeatable(map(made, warm), outcomes[k, repeat], chunk, deterministic)
-            times[k, repeat] = Times(outcomes[k, repeat]["id"], cpu, wall)._asdict()
-            if (n + 1) % _LOGGED == 0:
-                logger.info("%d runs done", n + 1)
-        kernel_cache.meanwhile.clear()
+        k, repeat = order[max(number, 0)]
+        problem = planned[k].problem
+        made = row(chunk, planned[k], repeat, plan, met[problem], blocked[problem])
+        if number < 0:
+            warm.append(made)
+            continue
+        if number == 0:
+            refuse_unrepeatable(warm, made, chunk, deterministic)
+        outcomes[k, repeat], times[k, repeat] = made, Times(made["id"], cpu, wall)._asdict()
+        if (number + 1) % _LOGGED == 0:
+            logger.info("%d runs done", number + 1)
+    begin(None, told_chunk(chunk))
     if deterministic:
         for k, repeat in itertools.product(range(len(planned)), range(first + 1, last)):
             outcomes[k, repeat] = outcomes[k, first] | {
@@ -239,24 +239,6 @@ def run_chunk(
     )
 
 
-def _judgements(
-    problems: dict[str, Problem], blocked: dict[str, Region]
-) -> list[Callable[[], object]]:
-    """The check of two paths in each type of region: of one that stays at the start, and so is
-    free, and of the straight line, which mostly collides. They need all kernels of the check.
-    """
-    one_of_each = {type(blocked[name]): name for name in problems}
-    return [
-        partial(
-            answer.verdict,
-            Path("polyline", np.array([problems[name].start, end], dtype=float)),
-            blocked[name],
-        )
-        for name in one_of_each.values()
-        for end in (problems[name].target, problems[name].start)
-    ]
-
-
 def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int]]:
     """All pairs of a condition's number and a repeat, in a random order seeded by the chunk's name.
 
@@ -266,20 +248,6 @@ def _order(chunk: Chunk, conditions: int, repeats: range) -> list[tuple[int, int
     pairs = list(itertools.product(range(conditions), repeats))
     name = chunk.study, chunk.experiment, chunk.method, repeats.start, "order"
     return [pairs[n] for n in seeds.generator(*name).permutation(len(pairs))]
-
-
-def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:
-    """What the first and the last of some runs return, which are made until their CPU time is
-    stable or they are long: the first ones of a process load code and wake the processor.
-    """
-    taken, answers = [], []
-    while len(taken) < _ALIKE or max(taken[-_ALIKE:]) > (1 + _STABLE) * min(taken[-_ALIKE:]):
-        plan, cpu, _ = once()
-        taken.append(cpu)
-        answers[1:] = [plan]
-        if taken[-1] > _LONG_RUN or sum(taken[1:]) > _WARM_UP:
-            break
-    return answers
 
 
 def refuse_unrepeatable(
@@ -299,19 +267,6 @@ def refuse_unrepeatable(
                 "numbers, no clock, no id() or hash(), "
                 "nothing kept from an earlier run; but with the same generator"
             )
-            raise watchdog.PlannerFailure(
+            raise PlannerFailure(
                 f"run {row['id']}: planner {chunk.planner}: {reason} its run has another {column}"
             )
-
-
-def timed(once: Callable[[], T], name: str, watch: Callable[[str], None]) -> tuple[T, float, float]:
-    """What one run returns, its CPU seconds and its wall-clock seconds. Raises PlannerFailure,
-    beginning with the run's name, if the planner fails.
-
-    watch: told what is under way, and with an empty text that it is over (`watchdog.watching`).
-    """
-    with watchdog.executing(name, watch):
-        before = apart.clock()
-        found = once()
-        cpu, wall = (apart.clock() - before).tolist()
-        return found, cpu, wall

@@ -23,7 +23,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, TextIO
 
-from bezierplan.running.watchdog import end_with_parent
+from bezierplan.running import log
+from bezierplan.running.watchdog import UNDER_WAY, end_with_parent, how_ended
 
 # What the first jobs of a workflow import, which wait for it: each on its own would take as long,
 # and more time of all cores.
@@ -48,7 +49,9 @@ LATER = (
     "matplotlib.backends.backend_svg",
     "bezierplan.figures.page.job",
 )
-DONE = b"\n"
+ARRIVES = b"\n"
+PROCESS, ENDED = "process", "ended"
+"""What a job's socket tells beside what begins (`watchdog.begin`): its number, and how it ended."""
 # pyarrow's allocator would start a thread on import; a fork of a process with several threads may
 # lock up, and Python 3.12 warns of it.
 ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
@@ -121,7 +124,9 @@ class Forks:
 
     def succeeds(self, name: str, source: str, snakemake: Any, benchmark: Any = None) -> bool:
         """Run a script in a fork, in this process's folder and with the object that scripts know as
-        `snakemake`; did it come to its end? benchmark: Snakemake's record of what it takes.
+        `snakemake`; did it come to its end? Of an end that it could not report itself, the log and
+        stderr get a line that names what was under way. benchmark: Snakemake's record of what it
+        takes.
         """
         ours, theirs = socket.socketpair()
         with ours:
@@ -131,9 +136,16 @@ class Forks:
             with contextlib.suppress(ConnectionError):
                 ours.sendall(pickle.dumps((os.getcwd(), name, source, snakemake)))
                 ours.shutdown(socket.SHUT_WR)
-                with _measured(int(ours.recv(20) or 0), benchmark):
-                    return ours.recv(1) == DONE
-            return False
+            under_way, status, ended = _watched(ours, benchmark)
+        if status is not None and not ended and os.waitstatus_to_exitcode(status) in (0, 1):
+            return status == 0
+        if status is not None and not ended:
+            ended = how_ended(status)
+        log.report(
+            str(snakemake.log[0]),
+            f"{under_way or snakemake.output[0]}: {ended or 'its process was lost'}",
+        )
+        return False
 
     def _hand_over(self, job: socket.socket) -> None:
         """Send the child's end of a job's socket to the process that is forked, which is started if
@@ -141,10 +153,10 @@ class Forks:
         """
         if self._control is not None:
             with contextlib.suppress(ConnectionError):
-                socket.send_fds(self._control, [DONE], [job.fileno()])
+                socket.send_fds(self._control, [ARRIVES], [job.fileno()])
                 return
         self._begin()
-        socket.send_fds(self._control, [DONE], [job.fileno()])
+        socket.send_fds(self._control, [ARRIVES], [job.fileno()])
 
     def _begin(self) -> None:
         self._control, theirs = socket.socketpair()
@@ -160,14 +172,46 @@ class Forks:
 
 @contextlib.contextmanager
 def _measured(process: int, benchmark: Any) -> Iterator[None]:
-    """Fill Snakemake's record of what a process takes, if there are both."""
-    if benchmark is None or not process:
+    """Fill Snakemake's record of what a process takes, if there is one."""
+    if benchmark is None:
         yield
         return
     from snakemake.benchmark import benchmarked
 
     with benchmarked(process, benchmark):
         yield
+
+
+def _watched(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
+    """What a job had under way last, how it ended as the operating system says, None if there is no
+    telling, and why it was ended here, if it was: it had taken longer than it may.
+    """
+    process, under_way, ended, rest = 0, "", "", b""
+    with contextlib.ExitStack() as measuring:
+        while True:
+            try:
+                read = job.recv(1 << 16)
+            except TimeoutError:
+                ended = f"not done within the time limit of {job.gettimeout():g} s; it is ended"
+                job.settimeout(None)
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+                continue
+            except ConnectionError:
+                read = b""
+            *lines, rest = (rest + read).split(b"\n")
+            for line in lines:
+                kind, _, text = line.decode().partition(" ")
+                if kind == ENDED:
+                    return under_way, int(text), ended
+                if kind == PROCESS:
+                    process = int(text)
+                    measuring.enter_context(_measured(process, benchmark))
+                elif not ended:
+                    under_way = text
+                    job.settimeout(None if kind == "inf" else float(kind))
+            if not read:
+                return under_way, None, ended
 
 
 def stream_for(stream: TextIO | None) -> int | None:
@@ -182,7 +226,8 @@ def serve(control: socket.socket) -> None:
     what later ones need while none arrives; return when the other end has closed.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGCHLD, reap)
+    jobs: dict[int, socket.socket] = {}
+    signal.signal(signal.SIGCHLD, partial(reap, jobs))
     first, later = (
         [partial(importlib.import_module, name) for name in names] for names in (FIRST, LATER)
     )
@@ -196,17 +241,27 @@ def serve(control: socket.socket) -> None:
         arrived, sockets, *_ = socket.recv_fds(control, 1, 1)
         if not arrived:
             return
-        if os.fork() == 0:
-            control.close()
-            run(socket.socket(fileno=sockets[0]))
-        os.close(sockets[0])
+        parent = socket.socket(fileno=sockets[0])
+        # No child ends unnoticed before it is listed.
+        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGCHLD])
+        child = os.fork()
+        if child == 0:
+            for other in (control, *jobs.values()):
+                other.close()
+            run(parent)
+        jobs[child] = parent
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGCHLD])
 
 
-def reap(*_: Any) -> None:
-    """Note which children ended: their CPU time is added to that of this process's children."""
+def reap(jobs: dict[int, socket.socket], *_: Any) -> None:
+    """Tell how children have ended, to the other end of their sockets."""
     with contextlib.suppress(ChildProcessError):
-        while os.waitpid(-1, os.WNOHANG)[0]:
-            pass
+        while True:
+            child, status = os.waitpid(-1, os.WNOHANG)
+            if not child:
+                return
+            with jobs.pop(child) as parent, contextlib.suppress(OSError):
+                parent.sendall(f"{ENDED} {status}\n".encode())
 
 
 def compile_first() -> None:
@@ -222,15 +277,16 @@ def run(parent: socket.socket) -> None:
     """
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGCHLD])
     # What was imported before the fork is no garbage: to look through it again and again takes a
     # fifth of a second of most jobs.
     gc.freeze()
-    # Held until the process ends: Python 3.13 drops an exception's frames, and sockets in them,
-    # before it says what sys.exit was given.
-    os.dup(parent.fileno())
     with parent.makefile("rb") as stream:
         folder, name, source, snakemake = pickle.load(stream)
-    parent.send(str(os.getpid()).encode())
+    tell = parent.makefile("w", encoding="utf-8")
+    tell.write(f"{PROCESS} {os.getpid()}\n")
+    tell.flush()
+    UNDER_WAY.addHandler(logging.StreamHandler(tell))
     # A workflow may have changed its folder since this process's parent was started.
     os.chdir(folder)
     exec(
@@ -240,7 +296,6 @@ def run(parent: socket.socket) -> None:
     logging.shutdown()
     sys.stdout.flush()
     sys.stderr.flush()
-    parent.send(DONE)
     os._exit(0)
 
 

@@ -1,23 +1,23 @@
 """Whether a file is a planner: the checks that come before any run, for studies and for the
 contract tests alike.
 
-A file of unknown origin is first executed in a process of its own (`watchdog.verdict`), for it may
-end or stall the one that it is in.
+A file of unknown origin is first executed in a process of its own (`guard`), for it may end or
+stall the one that it is in.
 """
 
+import copy
 import inspect
-import json
 import traceback
-from collections.abc import Callable, Iterable
-from functools import cache, partial
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from bezierplan import planners
 from bezierplan.planners import is_file, planner_module, planner_settings, setting_fault
 from bezierplan.planners.parts.settings import setting
-from bezierplan.running import watchdog
-from bezierplan.running.tampering import left_alone
+from bezierplan.running import guard
+from bezierplan.running.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.words import LONGEST, plain, told
 from bezierplan.workspaces.circles import Circles
@@ -28,7 +28,7 @@ KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
 """Type of a workspace -> its kind, by which planners say what they serve."""
 
 LIMIT = 60.0
-"""Seconds for which a planner's file may be executed, and each call of its `check` and `serves`."""
+"""Seconds for which a planner's file may be executed when it is imported."""
 
 MOST_EXPLAINED = 4
 """Missing settings that a message explains; of more it gives the names."""
@@ -40,11 +40,12 @@ def loaded(planner: str, location: str) -> ModuleType:
     """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with
     a location, unless it can be executed and has the interface of a planner (`planners`).
     """
-    module, fault = None, ""
     if is_file(planner):
-        fault = watchdog.verdict("when it is imported", lambda: imported(planner)[1], LIMIT)
-    if not fault:
-        module, fault = imported(planner)
+        try:
+            _described(planner)
+        except PlannerFailure as failure:
+            raise Fault(f"{location}: {failure}") from None
+    module, fault = imported(planner)
     if fault:
         raise Fault(f"{location}: {fault}")
     return module
@@ -55,14 +56,9 @@ def imported(planner: str) -> tuple[ModuleType | None, str]:
     if nothing is.
     """
     try:
-        if is_file(planner):
-            import shapely  # noqa: F401, so that a part of it cannot be replaced unnoticed
-        with left_alone(planner):
-            module = planner_module(planner)
-    except watchdog.Interrupted:
+        module = planner_module(planner)
+    except KeyboardInterrupt:
         raise
-    except watchdog.PlannerFailure as failure:
-        return None, str(failure).removeprefix(f"{planner}: ")
     except BaseException as error:  # a user's file can fail in any way
         return None, _failed(error, planner)
     return module, interface_fault(module) or ""
@@ -77,56 +73,52 @@ class Traits(NamedTuple):
     deterministic: bool
 
 
-@cache
 def traits(planner: str) -> Traits:
-    """Those of a planner, given as a name or the path of a file, which on Linux is not executed in
-    this process. Raises PlannerFailure if it cannot be executed. Do not modify the result.
+    """Those of a planner, given as a name or the path of a file, which is not executed in this
+    process. Raises PlannerFailure if it cannot be executed.
     """
-    if not is_file(planner):
-        return _traits(planner)
-    said = watchdog.verdict("when it is imported", partial(_told_traits, planner), LIMIT)
-    try:
-        return Traits(*json.loads(said))
-    except (ValueError, TypeError):
-        raise watchdog.PlannerFailure(f"planner {planner}: {said}") from None
+    if is_file(planner):
+        try:
+            return _described(planner)
+        except PlannerFailure as failure:
+            raise PlannerFailure(f"planner {planner}: {failure}") from None
+    return _traits(planner_module(planner))
 
 
-def _traits(planner: str) -> Traits:
-    module = planner_module(planner)
+@cache
+def _described(planner: str) -> Traits:
+    """The traits of a planner's file. Raises PlannerFailure unless it has the interface of one."""
+    given = {"planner": str(Path(planner).resolve())}
+    (said,) = guard.answers("interface.described", given, "when it is imported", LIMIT)
+    if isinstance(said, str):
+        raise PlannerFailure(said)
+    return Traits(*said)
+
+
+def described(begin: Callable[[str], None], planner: str) -> Iterator[Traits | str]:
+    """The traits of a planner's file, or what is wrong with it, for a process of its own."""
+    module, fault = imported(planner)
+    yield fault or _traits(module)
+
+
+def _traits(module: ModuleType) -> Traits:
     return Traits([*planner_settings(module)], bool(getattr(module, "deterministic", False)))
 
 
-def _told_traits(planner: str) -> str:
-    try:
-        return json.dumps(_traits(planner))
-    except BaseException as error:  # a user's file can fail in any way
-        return _failed(error, planner)
-
-
 def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:
-    """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises
-    Fault, beginning with a location.
+    """Call a planner's `check` or `serves`, which raises ValueError to report a problem, with
+    copies. Raises Fault, beginning with a location.
     """
-    if function.__module__.startswith(f"{planners.__name__}."):
-        said = _complaint(function, *arguments)
-    else:
-        said = watchdog.verdict(
-            f"{function.__name__} of its planner", partial(_complaint, function, *arguments), LIMIT
-        )
-    if said:
-        raise Fault(f"{location}: {said}")
-
-
-def _complaint(function: Callable[..., Any], *given: Any) -> str:
     try:
-        function(*given)
+        function(*map(copy.copy, arguments))
+        return
     except ValueError as error:
-        return plain(" ".join(str(error).split()), LONGEST) or "ValueError"
-    except watchdog.Interrupted:
+        said = plain(" ".join(str(error).split()), LONGEST) or "ValueError"
+    except KeyboardInterrupt:
         raise
     except BaseException as error:  # a user's function can fail in any way
-        return f"{function.__name__} of its planner fails ({told(error)})"
-    return ""
+        said = f"{function.__name__} of its planner fails ({told(error)})"
+    raise Fault(f"{location}: {said}")
 
 
 def interface_fault(module: ModuleType) -> str | None:

@@ -12,12 +12,10 @@ import tempfile
 import traceback
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from functools import partial
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running import watchdog
-from bezierplan.running.watchdog import end_with_parent
+from bezierplan.running.watchdog import PlannerFailure, end_with_parent
 from bezierplan.schema.words import plain, told
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -35,14 +33,12 @@ def job(snakemake: Any) -> Iterator[Any]:
     """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for
     the output files.
 
-    The block runs in a process that another one watches (`watchdog.supervise`). The files get their
-    final names when the block ends. An exception is written to the job's log in full and ends the
-    process with a one-line message, which is also the last line of the log; so does an end that
-    nothing in the process could report.
+    The files get their final names when the block ends. An exception is written to the job's log in
+    full and ends the process with a one-line message, which is also the last line of the log; of an
+    end that nothing in the process could report, `forks` tells.
     """
     log = snakemake.log[0]
     end_with_parent()
-    watchdog.supervise(str(snakemake.output[0]), partial(report, log))
     logging.basicConfig(
         filename=log,
         filemode="w",
@@ -56,21 +52,16 @@ def job(snakemake: Any) -> Iterator[Any]:
         if isinstance(error, OSError) and error.errno in FULL:
             logging.raiseExceptions = False  # the log may lie on the same disk
         logging.error("failed\n%s", account(error))
-        said = str(error) if isinstance(error, watchdog.PlannerFailure) else told(error)
+        said = str(error) if isinstance(error, PlannerFailure) else told(error)
         line = (
             full_disk(error, snakemake.output)
             or damaged(snakemake.input)
             or f"{said} (full account: {log})"
         )
         logging.critical(line)
-        watchdog.settle(1)
         # With its end, or what another job says could stand on its line.
         print(f"{line}\n", end="", file=sys.stderr, flush=True)
         sys.exit(1)
-    except watchdog.Interrupted:
-        watchdog.settle(1)
-        raise
-    watchdog.settle()
 
 
 def report(log: str, line: str) -> None:
@@ -78,8 +69,7 @@ def report(log: str, line: str) -> None:
     line = f"{plain(line)} (log: {log})"
     with suppress(OSError), open(log, "a", encoding="utf-8") as file:
         file.write(f"{LAST}{line}\n")
-    with suppress(OSError):
-        os.write(sys.stderr.fileno(), f"{line}\n".encode())
+    print(f"{line}\n", end="", file=sys.stderr, flush=True)
 
 
 def account(error: BaseException) -> str:

@@ -4,7 +4,6 @@ of all.
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import nullcontext
 from itertools import pairwise
 from typing import Any
 
@@ -13,10 +12,10 @@ import numpy as np
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
-from bezierplan.running import answer, apart, problems, watchdog
+from bezierplan.running import answer, guard, problems, worker
 from bezierplan.running.columns import TAKEN
-from bezierplan.running.loans import lend
 from bezierplan.running.problems import Regions
+from bezierplan.running.watchdog import PlannerFailure
 from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
@@ -81,35 +80,28 @@ def planned(
     parts: Sequence[Problem],
     settings: dict[str, Any],
     seed: int,
-    foreign: bool,
+    file: str,
 ) -> tuple[Plan, float]:
     """What a planner answers to all legs, as plain values (`answer.accepted`), and its CPU seconds.
 
-    name: how messages about the planner begin. foreign: whether it is executed in a process of its
-    own. Raises PlannerFailure for an answer that is none.
+    name: how messages about the planner begin. plan: its function. file: the path of its file,
+    which is executed in a process of its own; empty if it is not given as one. Raises
+    PlannerFailure for an answer that is none.
     """
-    loans = [lend({part.name: part})[part.name] for part in parts]
-
-    def on_leg(leg: int) -> Any:
-        return plan(loans[leg].problem, np.random.default_rng(seed), **settings)
-
-    def fault() -> str:
-        return next(filter(None, (loan.thorough_fault() for loan in loans)), "")
-
-    with (
-        watchdog.watching(None) as watch,
-        apart.asking(foreign, name, on_leg, fault) as ask,
-        # What a program plans with fails as its own code does.
-        watchdog.executing(name, watch) if foreign else nullcontext(),
-    ):
-        before = apart.clock()
-        answers = [ask(name, leg) for leg in range(len(parts))]
-        seconds = float((apart.clock() - before)[0])
+    if file:
+        problems = {str(number): part for number, part in enumerate(parts)}
+        tasks = [worker.Task(name, each, seed, settings) for each in problems]
+        made = [*guard.plans(file, problems, tasks, None, name)]
+        answers, seconds = [each.plan for each in made], sum(each.cpu for each in made)
+    else:
+        answers, seconds, _ = worker.timed(
+            lambda: [plan(part, np.random.default_rng(seed), **settings) for part in parts]
+        )
     taken = {*TAKEN, *settings}
     try:
         accepted = [answer.accepted(plan, part, taken) for plan, part in zip(answers, parts)]
     except answer.Unfit as unfit:
-        raise watchdog.PlannerFailure(f"{name}: its answer: {unfit}") from None
+        raise PlannerFailure(f"{name}: its answer: {unfit}") from None
     return joined(accepted), seconds
 
 

@@ -6,18 +6,17 @@ A chunk has a policy: the values of a `simulation.policy.Policy` by name. Column
 `columns.Times` and `columns.DriveTimes`.
 """
 
-import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
+from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from bezierplan.planners import Plan, is_file, planner_module
-from bezierplan.running import apart, execution, rows, watchdog
+from bezierplan.running import answer, execution, guard, rows, worker
 from bezierplan.running import problems as problem_files
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import (
@@ -29,80 +28,123 @@ from bezierplan.running.columns import (
     Planned,
     Times,
 )
-from bezierplan.running.loans import lend_once
-from bezierplan.running.simulation import bounds, cells, motion_check, ways
+from bezierplan.running.simulation import bounds, cells, motion_check, robot, ways
+from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.running.simulation.robot import Ride, drive
+from bezierplan.running.simulation.robot import Ride
+from bezierplan.running.watchdog import PlannerFailure, begin, executing
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_json
 
 
-class _Driver:
-    """Makes the plans of a chunk's drives, of one drive after the other.
+def drives(
+    planner: str,
+    policy: dict[str, Any],
+    problems: dict[str, Problem],
+    worlds: dict[str, World],
+    runs: Iterable[tuple[worker.Task, list[str]]],
+    begins: Callable[[str], None] = lambda name: None,
+) -> Iterator[tuple[Ride, float, float]]:
+    """Drives of a robot, one after the other, each with its CPU and wall-clock seconds.
 
-    What a planner keeps from plan to plan stays here: the generator of the drive, and what `resume`
-    returned with a plan, by a number.
+    runs: each with the names that no extra column of its plans may have. begins: told the name of
+    each run. Raises PlannerFailure, naming the run, if the planner fails or a plan is not valid for
+    what the robot saw.
     """
+    rules = Policy.model_construct(**policy)
+    for task, taken in runs:
+        begins(task.name)
+        with executing(task.name):
+            asked = _planner(planner, rules.warm, task, taken)
+            place = worlds[task.problem], problems[task.problem]
+            driven = worker.timed(partial(robot.drive, *place, rules, asked))
+        yield driven
 
-    def __init__(self, chunk: Chunk) -> None:
-        self._chunk = chunk
-        self._policy = Policy.model_construct(**chunk.policy)
 
-    def plan(
-        self, condition: Condition, repeat: int, seen: Problem, last: int | None, number: int
-    ) -> Any:
-        """The answer to what the robot sees. number: of this plan in its drive, from 0. last: the
-        number of the plan from which this one starts.
-        """
-        chunk = self._chunk
-        if number == 0:
-            self._rng = execution.generator(chunk, condition, repeat)
-            self._states = {}
-        module, settings = planner_module(chunk.planner), execution.settings_in(chunk, condition)
-        loan = lend_once(seen)
-        if self._policy.warm:
-            state = self._states.get(last)
-            answer = module.resume(loan.problem, self._rng, state, **settings)
-            if type(answer) is not tuple or len(answer) != 2:
+def _planner(planner: str, warm: bool, task: worker.Task, taken: list[str]) -> robot.Planner:
+    """A planner with its settings and the random numbers of a drive. Its plans are plain values."""
+    module, rng = planner_module(planner), task.generator()
+
+    def planned(seen: Problem, last: Any) -> tuple[Plan, Any]:
+        if warm:
+            found = module.resume(seen, rng, last, **task.settings)
+            if not isinstance(found, tuple) or len(found) != 2:
                 raise TypeError(
-                    f"resume returns a {type(answer).__name__}; expected a Plan and what the next "
+                    f"resume returns a {type(found).__name__}; expected a Plan and what the next "
                     "call gets as last"
                 )
-            plan, new = answer
-            self._states = {last: state, number: new}
+            plan, state = found
         else:
-            plan = module.plan(loan.problem, self._rng, **settings)
-        execution.refuse_changed(loan, chunk, condition, repeat)
-        return plan
+            plan, state = module.plan(seen, rng, **task.settings), None
+        try:
+            return answer.accepted(plan, seen, taken), state
+        except answer.Unfit as fault:
+            raise PlannerFailure(f"{task.name}: its answer: {fault}") from None
+
+    return planned
 
 
-@contextmanager
-def driver(chunk: Chunk) -> Iterator[Callable[..., Any]]:
-    """Yield what makes the plans of a chunk's drives, for `run`."""
-    name = execution.told_chunk(chunk)
-    with apart.asking(is_file(chunk.planner), name, _Driver(chunk).plan) as ask:
-        yield ask
+def plain_drives(
+    begins: Callable[[str], None],
+    planner: str,
+    policy: dict[str, Any],
+    problems: dict[str, list[Any]],
+    worlds: dict[str, str],
+    runs: list[list[Any]],
+) -> Iterator[list[Any]]:
+    """`drives` as plain values, for a process of its own."""
+    met = worker.unpacked_problems(problems)
+    moving = {name: from_json(text) for name, text in worlds.items()}
+    tasks = [(worker.Task(*task), taken) for task, taken in runs]
+    for ride, cpu, wall in drives(planner, policy, met, moving, tasks, begins):
+        yield [_packed(ride), cpu, wall]
+    again = {name: to_json(world) for name, world in moving.items()}
+    worker.refuse_changed(worlds, again, tasks[-1][0].name)
+
+
+def _packed(ride: Ride) -> list[Any]:
+    plans = [[*plan._replace(path=answer.stored(plan.path))] for plan in ride.plans]
+    return [ride.motion.points.tolist(), ride.motion.times.tolist(), *ride[1:3], plans]
+
+
+def _unpacked(points: list, times: list, arrived: bool, waited: float, plans: list) -> Ride:
+    of_plans = [robot.Planned(*plan) for plan in plans]
+    return Ride(
+        Motion(np.array(points, dtype=float).reshape(-1, 2), np.array(times, dtype=float)),
+        arrived,
+        waited,
+        [plan._replace(path=answer.restored(*plan.path)) for plan in of_plans],
+    )
 
 
 def run(
     chunk: Chunk,
-    condition: Condition,
-    repeat: int,
-    problem: Problem,
-    world: World,
-    ask: Callable[..., Any],
-) -> Ride:
-    """The drive of one run. ask: from `driver`. Raises UnfitAnswer for a plan not valid for what
-    the robot saw.
-    """
-    name, numbers = execution.told_run(chunk, condition, repeat), itertools.count()
-
-    def planner(seen: Problem, last: int | None) -> tuple[Plan, int]:
-        number = next(numbers)
-        plan = ask(name, condition, repeat, seen, last, number)
-        return execution.accepted(plan, seen, chunk, condition, repeat), number
-
-    return drive(world, problem, Policy.model_construct(**chunk.policy), planner)
+    runs: Iterable[tuple[Condition, int]],
+    problems: dict[str, Problem],
+    worlds: dict[str, World],
+) -> Iterator[tuple[Ride, float, float]]:
+    """`drives` of runs of a chunk, by condition and repeat."""
+    tasks = [
+        (task, execution.taken(task, condition))
+        for condition, repeat in runs
+        for task in [execution.task(chunk, condition, repeat)]
+    ]
+    if not is_file(chunk.planner):
+        begins = partial(begin, chunk.time_limit)
+        yield from drives(chunk.planner, chunk.policy, problems, worlds, tasks, begins)
+        begin(None, execution.told_chunk(chunk))
+        return
+    given = {
+        "planner": str(File(chunk.planner).resolve()),
+        "policy": chunk.policy,
+        "problems": worker.packed_problems(problems),
+        "worlds": {name: to_json(world) for name, world in worlds.items()},
+        "runs": tasks,
+    }
+    name = execution.told_chunk(chunk)
+    for ride, cpu, wall in guard.answers("rides.plain_drives", given, name, chunk.time_limit):
+        with guard.plain_values(name):
+            yield _unpacked(*ride), guard.seconds(cpu), guard.seconds(wall)
 
 
 def row(
@@ -199,41 +241,32 @@ def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
 def run_chunk(
     problems: dict[str, Problem], worlds: dict[str, World], chunk: Chunk
 ) -> tuple[pa.Table, pa.Table, pa.Table]:
-    """The runs of a chunk, their times, and their traces (`row`).
-
-    Robots drive in copies of the worlds, and these stay here to judge by. Raises RuntimeError,
-    naming the run, if a planner fails, does not return a valid plan, or changes a world.
+    """The runs of a chunk, their times, and their traces (`row`). Raises PlannerFailure, naming the
+    run, if a planner fails, does not return a valid plan, or changes a world.
     """
-    texts = {name: to_json(worlds[name]) for name in chunk.problems}
-    driven = {name: from_json(text) for name, text in texts.items()}
-    drives, times, traces = [], [], []
-    with driver(chunk) as ask, watchdog.watching(chunk.time_limit) as watch:
-        for condition in chunk.conditions():
-            for repeat in range(*chunk.repeats):
-                problem, world = problems[condition.problem], worlds[condition.problem]
-                name = execution.told_run(chunk, condition, repeat)
-                once = partial(
-                    run, chunk, condition, repeat, problem, driven[condition.problem], ask
-                )
-                if not drives:
-                    # Compiles and loads.
-                    first, *_ = execution.timed(once, name, watch)
-                ride, cpu, wall = execution.timed(once, name, watch)
-                drive, trace = row(chunk, condition, repeat, ride, problem, world)
-                if not drives:
-                    again, _ = row(chunk, condition, repeat, first, problem, world)
-                    execution.refuse_unrepeatable([again], drive, chunk, deterministic=False)
-                drives.append(drive)
-                traces.append(trace)
-                replans = _replan_times(ride, chunk.policy["step_seconds"])
-                times.append(Times(drive["id"], cpu, wall)._asdict() | replans._asdict())
-    for name, text in texts.items():
-        if to_json(driven[name]) != text:
-            raise execution.UnfitAnswer(
-                f"{execution.told_chunk(chunk)}: problem: {name}: world: is another after the runs"
-            )
-    runs = rows.table(drives, Planned, Outcome, DriveOutcome)
-    return runs, rows.table(times, Times, DriveTimes), pa.Table.from_pylist(traces)
+    met = {name: problems[name] for name in chunk.problems}
+    moving = {name: worlds[name] for name in chunk.problems}
+    runs = [
+        (condition, repeat) for condition in chunk.conditions() for repeat in range(*chunk.repeats)
+    ]
+    # The first drive compiles and loads, and must repeat itself.
+    runs = [*runs[:1], *runs]
+    again, *made = [
+        (*row(chunk, *named, ride, *place), Times("", cpu, wall), ride)
+        for named, (ride, cpu, wall) in zip(runs, run(chunk, runs, met, moving), strict=True)
+        for place in [(met[named[0].problem], moving[named[0].problem])]
+    ]
+    execution.refuse_unrepeatable(again[:1], made[0][0], chunk, deterministic=False)
+    times = [
+        taken._replace(id=drive["id"])._asdict()
+        | _replan_times(ride, chunk.policy["step_seconds"])._asdict()
+        for drive, _, taken, ride in made
+    ]
+    return (
+        rows.table([drive for drive, *_ in made], Planned, Outcome, DriveOutcome),
+        rows.table(times, Times, DriveTimes),
+        pa.Table.from_pylist([trace for _, trace, *_ in made]),
+    )
 
 
 def rerun(
@@ -243,8 +276,9 @@ def rerun(
     ValueError if it has another path than the row.
     """
     named = {each.name: each for each in chunk.conditions()}
-    with driver(chunk) as ask:
-        ride = run(chunk, named[row["condition"]], int(row["repeat"]), problem, world, ask)
+    condition, repeat = named[row["condition"]], int(row["repeat"])
+    name = condition.problem
+    ((ride, *_),) = run(chunk, [(condition, repeat)], {name: problem}, {name: world})
     execution.refuse_other_path(row, _driven(ride).points)
     return ride, motion_check.check(ride.motion, world)
 

@@ -1,20 +1,15 @@
 """One run again, from its name alone."""
 
-from functools import partial
-
 import pandas as pd
 
 from bezierplan.analysis import results
 from bezierplan.geometry.region import region
-from bezierplan.planners import is_file
-from bezierplan.running import apart, execution, problems, rides, worlds
+from bezierplan.running import execution, problems, rides, worlds
 from bezierplan.running.chunk import Chunk, Condition
-from bezierplan.running.loans import lend
 from bezierplan.running.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job, problems_job
-from bezierplan.workspaces.worlds import from_json, to_json
 
 
 def replay(name: str, studies: dict[str, Study]) -> results.Results:
@@ -54,11 +49,7 @@ def _rerun(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> res
     made = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     problem = made[condition.problem]
     named = {condition.problem: problem}
-    (loan,) = lend(named).values()
-    run = partial(execution.run, chunk, condition, repeat, loan.problem)
-    name = execution.told_run(chunk, condition, repeat)
-    with apart.asking(is_file(chunk.planner), name, run, loan.thorough_fault) as ask:
-        plan = ask(name)
+    plan = execution.run(chunk, condition, repeat, problem)
     row = execution.row(chunk, condition, repeat, plan, problem, region(problem.workspace))
     return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())
 
@@ -67,9 +58,8 @@ def _redriven(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> 
     """A run in a world that moves."""
     made, found = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     problem, world = made[condition.problem], found[condition.problem]
-    with rides.driver(chunk) as ask:
-        ride = rides.run(chunk, condition, repeat, problem, from_json(to_json(world)), ask)
-    row, _ = rides.row(chunk, condition, repeat, ride, problem, world)
     named, moving = {condition.problem: problem}, {condition.problem: world}
+    ((ride, *_),) = rides.run(chunk, [(condition, repeat)], named, moving)
+    row, _ = rides.row(chunk, condition, repeat, ride, problem, world)
     joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving).to_pandas())
     return joined._replace(worlds=moving, jobs={chunk.method: chunk})

@@ -14,7 +14,6 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import Note, RunsPanel, Sources, landscape, only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import steps
-from bezierplan.planners import planner_module
 from bezierplan.schema.model import Function, Metric, Whole, value
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -122,18 +121,10 @@ def _commonest(groups: pd.Series) -> list[float]:
 def _tracked(run: pd.Series, chunk: Chunk, problem: Problem) -> list[Path]:
     """The best path after each iteration of a run, reproduced from its chunk."""
     from bezierplan.running import execution
-    from bezierplan.running.loans import lend
-    from bezierplan.running.tampering import left_alone
 
     condition = next(each for each in chunk.conditions() if each.name == run["condition"])
     repeat = int(run["repeat"])
-    (loan,) = lend({"": problem}).values()
-    with left_alone(execution.told_run(chunk, condition, repeat)):
-        track = planner_module(chunk.planner).track(
-            loan.problem,
-            execution.generator(chunk, condition, repeat),
-            **execution.settings_in(chunk, condition),
-        )
+    track = execution.track(chunk, condition, repeat, problem)
     execution.refuse_other_path(run, track[-1])
     return [Path(run["path_curve"], points) for points in track]
 

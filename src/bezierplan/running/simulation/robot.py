@@ -9,7 +9,6 @@ import numpy as np
 
 from bezierplan.geometry.region import blocks
 from bezierplan.planners import Plan
-from bezierplan.running.apart import clock
 from bezierplan.running.simulation import cells, circles
 from bezierplan.running.simulation.circles import ARRIVED, STOPPED
 from bezierplan.running.simulation.evasion import refuge
@@ -17,6 +16,7 @@ from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.regions import region_of
 from bezierplan.running.simulation.ways import Way, drivable, way
+from bezierplan.running.watchdog import cpu_time
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
@@ -131,10 +131,6 @@ def _follow(
     return event, time + np.arange(len(reached)), reached
 
 
-def _cpu_time() -> float:
-    return float(clock()[0])
-
-
 def _aside(world: World, log: _Log, time: float, policy: Policy) -> np.ndarray | None:
     """The place (2,) to which a robot that would stop steps aside; None if it stays."""
     if not policy.evades or isinstance(world, ChangingCells):
@@ -163,7 +159,7 @@ def _plan(
 ) -> tuple[Planned, Way | None, Any]:
     """A plan from where the robot is, and the way that it follows then; None if it found none."""
     motion = log.motion()
-    approach, evaluations, began = motion.points[-1:], 0, _cpu_time()
+    approach, evaluations, began = motion.points[-1:], 0, cpu_time()
     looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
     if policy.start == "centre" or isinstance(world, ChangingCells):
         approach = cells.way_to_start(motion, world.workspace(time), policy.start)
@@ -174,7 +170,7 @@ def _plan(
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
         if position == problem.target:
             return (
-                Planned(time, None, 0.0, margin, _cpu_time() - began, 0),
+                Planned(time, None, 0.0, margin, cpu_time() - began, 0),
                 way(approach),
                 state,
             )
@@ -185,12 +181,12 @@ def _plan(
         if plan.path is not None and plan.claimed_feasible:
             along = way(np.concatenate([approach, drivable(plan.path, policy.spacing, obstacles)]))
             return (
-                Planned(time, plan.path, along.length, margin, _cpu_time() - began, evaluations),
+                Planned(time, plan.path, along.length, margin, cpu_time() - began, evaluations),
                 along,
                 next_state,
             )
     return (
-        Planned(time, None, math.inf, math.nan, _cpu_time() - began, evaluations),
+        Planned(time, None, math.inf, math.nan, cpu_time() - began, evaluations),
         None,
         state,
     )

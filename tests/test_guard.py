@@ -1,0 +1,207 @@
+"""Planners of a reader's own in a process of their own: whatever they do ends in one line that
+names planner and run, and nothing of it reaches the judge.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bezierplan.commands.digest import row_text
+from bezierplan.planners import planner_module
+from bezierplan.running import execution, guard, interface, watchdog, worker
+from bezierplan.running.chunk import Chunk
+from bezierplan.schema import checked
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
+
+PROBLEM = Problem(
+    "disc",
+    Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"),
+    (1.0, 5.0),
+    (9.0, 5.0),
+)
+PLANNER = """
+import ctypes, multiprocessing, os, subprocess, sys, time
+import numpy as np
+from bezierplan.planners import Path, Plan
+
+
+def plan(problem, rng, *, bend: float):
+    middle = [5.0, 5.0 + bend * rng.random()]
+    answer = Plan(Path("polyline", np.array([problem.start, middle, problem.target])), middle[1],
+                  True, 1, np.array([middle[1]]), "one", {"tries": 1})
+    WORK
+    return answer
+
+
+def track(problem, rng, *, bend: float):
+    return [plan(problem, rng, bend=bend).path.points]
+"""
+
+
+def chunk(folder, work="", **changed):
+    file = folder / "bend.py"
+    file.write_text(PLANNER.replace("WORK", work or "pass"))
+    given = Chunk(
+        study="study",
+        experiment="bends",
+        method="bend",
+        planner=str(file),
+        settings={"bend": 1.0},
+        problems={"disc": {"workspace": "field"}},
+        vary={},
+        presets={},
+        seeds="own",
+        repeats=[0, 2],
+        time_limit=3.0,
+    )
+    return given._replace(**changed)
+
+
+DEEDS = {
+    "os._exit(0)": "its process ended itself with exit status 0, before it was done",
+    "sys.exit('bye')": "sys.exit: bye",
+    "ctypes.string_at(0)": "its process was ended by signal SIGSEGV",
+    # The sum holds Python's lock for minutes.
+    "sum(range(10**11))": "not done within the time limit of 3 s; it is ended",
+    "subprocess.Popen(['sleep', '4321.25'], start_new_session=True)": watchdog.LEFT,
+    "problem.workspace.radii[:] *= 0.5": "ValueError: output array is read-only",
+    "object.__setattr__(problem.workspace, 'radii', problem.workspace.radii / 2)": "problem: disc: "
+    "is another after the run; a planner copies what it changes",
+    "raise ValueError('a\\x1b[31m\\r\\0b' + 'c' * 10**6)": r"ValueError: a\x1b[31m\r\x00bccc",
+    "answer = answer._replace(history=[1.0])": "its answer: history: expected an array of numbers",
+    "slow, time.process_time = time.process_time, lambda: slow() * 1e3": "its process took ",
+}
+
+
+@pytest.mark.parametrize("deed", DEEDS)
+def test_what_a_planner_does_is_told_in_one_short_line_that_names_the_run(deed, tmp_path):
+    given = chunk(tmp_path, deed)
+    with pytest.raises(watchdog.PlannerFailure) as told:
+        execution.run(given, given.conditions()[0], 0, PROBLEM)
+    line = str(told.value)
+    assert line.startswith("run study/bends/disc/bend/0: ")
+    assert f": planner {given.planner}: {DEEDS[deed]}" in line
+    assert line.isprintable()
+    assert len(line) < 1000
+    running = [file.read_bytes() for file in Path("/proc").glob("[0-9]*/cmdline") if file.exists()]
+    assert not any(b"4321.25" in words for words in running)
+
+
+def test_runs_are_those_of_this_process_and_print_into_the_log(tmp_path, monkeypatch, caplog):
+    """With other processes that end, and much more than a log should hold."""
+    given = chunk(tmp_path)
+    here = planner_module(given.planner)
+    guarded = chunk(
+        tmp_path,
+        "with multiprocessing.get_context('fork').Pool(1) as pool:\n        pool.map(abs, [1])\n"
+        "    pool.join()\n    print('a' * 10**6)",
+    )
+    runs, times = execution.run_chunk({"disc": PROBLEM}, guarded)
+    assert min(times["cpu_s"].to_pylist()) > 0
+    assert "aaa... (" in caplog.text
+    assert len(caplog.text) < 2 * guard.MOST_PRINTED
+    monkeypatch.setattr(worker, "planner_module", lambda planner: here)
+    monkeypatch.setattr(execution, "is_file", lambda planner: False)
+    again, _ = execution.run_chunk({"disc": PROBLEM}, given)
+    assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
+
+
+def test_a_track_comes_from_the_same_process(tmp_path):
+    given = chunk(tmp_path)
+    (points,) = execution.track(given, given.conditions()[0], 1, PROBLEM)
+    assert np.array_equal(
+        points, execution.run(given, given.conditions()[0], 1, PROBLEM).path.points
+    )
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "no lines\n",
+        '{"answer": 1}\n{"took": -5.0}\n',
+        '{"answer": 1}\n{"took": 1.0}\n',
+        "[]\n",
+    ],
+)
+def test_lines_that_are_none_of_ours_are_told(lines, tmp_path):
+    file = tmp_path / "lines"
+    file.write_text(lines)
+    with pytest.raises(watchdog.PlannerFailure, match=r"^it: its process (does not|took 50)"):
+        guard._read(file, "it", "", 50.0)
+
+
+SOUND = "def plan(problem, rng, *, tries: int):\n    return None\n"
+ENDS = {
+    "import os; os._exit(0)": "when it is imported: its process ended itself with exit status 0, "
+    "before it was done",
+    "raise type('Own', (BaseException,), {})('no')": "line 1: Own: no",
+    "while True: pass": "when it is imported: not done within the time limit of 3 s; it is ended",
+}
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_file_that_ends_or_stalls_when_it_is_imported_is_told_in_one_line(
+    end, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(interface, "LIMIT", 3.0)
+    file = tmp_path / "ends.py"
+    file.write_text(f"{end}\n{SOUND}")
+    with pytest.raises(checked.Fault) as fault:
+        interface.loaded(str(file), "place")
+    assert str(fault.value) == f"place: {ENDS[end]}"
+    assert file.stem not in sys.modules
+
+
+def test_a_check_reports_what_it_raises_and_gets_a_copy(tmp_path):
+    settings = {"tries": 4}
+
+    def check(given):
+        given["tries"] += 1
+        if given["tries"] > 4:
+            raise ValueError("tries: 5;\nexpected at most 4")
+
+    with pytest.raises(checked.Fault, match=r"^place: tries: 5; expected at most 4$"):
+        interface.asked(check, "place", settings)
+    assert settings == {"tries": 4}
+    with pytest.raises(checked.Fault, match=r"^place: exit of its planner fails \(sys.exit: 3\)$"):
+        interface.asked(sys.exit, "place", 3)
+
+
+SLOW = """
+import time
+from pathlib import Path
+
+def plan(problem, rng):
+    Path(BEGUN).touch()
+    time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_command_and_its_planner(number, tmp_path):
+    (tmp_path / "room.txt").write_text("..\n")
+    begun = tmp_path / "begun"
+    (tmp_path / "slow.py").write_text(SLOW.replace("BEGUN", repr(str(begun))))
+    places = ["--start", "0.5,0.5", "--target", "1.5,0.5", "--method", "slow.py"]
+    command = subprocess.Popen(
+        [sys.executable, "-m", "bezierplan", "plan", "room.txt", *places],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    until = time.monotonic() + 60
+    while not begun.exists() and time.monotonic() < until:
+        time.sleep(0.05)
+    os.kill(command.pid, number)
+    _, told = command.communicate(timeout=60)
+    interrupted = number == signal.SIGINT
+    assert command.returncode == (128 + number if interrupted else -number)
+    assert told == ("python -m bezierplan: interrupted\n" if interrupted else "")
