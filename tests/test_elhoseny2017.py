@@ -2,14 +2,12 @@
 random fields and settings.
 """
 
-import shutil
 from pathlib import Path as File
 
 import numpy as np
 import pandas as pd
 import pytest
-from faults import told
-from studies import arguments, studies, study
+from studies import studies, study
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.claims.kinds import function
@@ -17,8 +15,7 @@ from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Condition
-from bezierplan.schema import checked
-from bezierplan.study import jobs, reading
+from bezierplan.study import jobs
 from bezierplan.study.jobs import job, problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
@@ -216,97 +213,6 @@ def test_printed_lengths_over_the_bounds():
     assert elhoseny2017.printed_over_bound(CHECK, found, PUBLISHED | low)[0] == "+"
 
 
-# Faults.
-
-
-@pytest.fixture
-def folder(tmp_path):
-    """A copy of the study to be spoilt."""
-    return File(shutil.copytree(FOLDER, tmp_path / "elhoseny2017"))
-
-
-FAULTS = {
-    "no side": (
-        "    side: 100\n",
-        "",
-        "problems: case1_100: workspace: published_like: side is needed",
-    ),
-    "no cell of the field": (
-        "target: [100, 100]",
-        "target: [101, 100]",
-        "target: [101, 100]: outside the field; expected x and y from 0",
-    ),
-    "a start without coordinates": (
-        "start: [0, 0]\n    target: [100, 100]",
-        "start_cell: 0\n    target_cell: 5",
-        "start_cell: 0: ",
-    ),
-    "no layouts": (
-        "layouts: &fields {smoke: 2, full: 10, extended: 40}",
-        "layouts: &fields 5",
-        "layouts: 5: expected a mapping with smoke, full, extended",
-    ),
-    "obstacles below 0": (
-        "[5, 10, 15, 20, 25]",
-        "[-5, 10, 15, 20, 25]",
-        "obstacles: 0: -5: expected a whole number from 0",
-    ),
-    "a field with no way through": ("radius: 0.06,", "radius: 0.4,", "radius: "),
-    "a radius of 0": (
-        "radius: 0.025,",
-        "radius: 0,",
-        "radius: 0: expected the radius of every circle",
-    ),
-    "an odd population": (
-        "population: 60 ",
-        "population: 61 ",
-        "population: 61; parents are crossed in pairs",
-    ),
-    "a population of none": (
-        "population: 60 ",
-        "population: 0 ",
-        "population: 0; expected a whole number at least 2",
-    ),
-    "no iterations": (
-        "iterations: 80 ",
-        "iterations: 0 ",
-        "iterations: 0; expected a whole number at least 1",
-    ),
-    "a probability above 1": (
-        "crossover_probability: 0.8",
-        "crossover_probability: 1.8",
-        "1.8; expected a number from 0 to 1",
-    ),
-    "a rate below 0": (
-        "mutation_rate: 0.006",
-        "mutation_rate: -0.006",
-        "-0.006; expected a number from 0 to 1",
-    ),
-    "more first points than a curve can have": (
-        "first_points: 5",
-        "first_points: 60",
-        "first_points: 60; a curve has at most 59",
-    ),
-    "an unknown rule for diversity": (
-        "diversity: more_offspring",
-        "diversity: more",
-        "diversity: 'more'; expected one of none",
-    ),
-}
-
-
-def test_the_study_itself_has_no_fault(folder):
-    assert reading.load([folder])["elhoseny2017"].title
-
-
-@pytest.mark.parametrize("fault", FAULTS, ids=str)
-def test_a_fault_is_told_in_one_line(fault, folder):
-    old, new, expected = FAULTS[fault]
-    message = told(folder / "experiments.yaml", old, new, folder)
-    assert expected in message
-    assert "experiments.yaml: " in message
-
-
 def test_means_of_fields_follow_the_free_diagonals():
     """The expected length is that of a monotone path: 1.5 N where the diagonal is free, and 2 N
     where it is not.
@@ -315,26 +221,6 @@ def test_means_of_fields_follow_the_free_diagonals():
     np.testing.assert_allclose(
         elhoseny2017.expected_length(100, 0.025, np.array([5, 25])), 150 + 50 * blocked
     )
-
-
-def test_memory_is_of_the_fields_of_the_study():
-    described = checked.read(FOLDER / "experiments.yaml")
-    gravel = described["problems"]["gravel"]
-    given = arguments("elhoseny2017", "memory")
-    same = {key: given[key] for key in ("radius", "clear_ends")}
-    assert described["workspaces"]["gravel"] == {"kind": "random_field", "unit": "cell", **same}
-    assert (gravel["start"], gravel["target"], gravel["side"]) == (
-        [0, 0],
-        [given["side"]] * 2,
-        given["side"],
-    )
-    assert gravel["obstacles"] == given["obstacles"]
-    table = elhoseny2017.memory(**given).set_index(["held", "obstacles", "side"])["megabytes"]
-    cells = table["occupied cells"]
-    assert (cells.xs(500, level="side") == 501**2 / 1e6).all(), (
-        "obstacles take no cells of their own"
-    )
-    assert table["certified check"].xs(500, level="side").is_monotonic_increasing, "but edges"
 
 
 @pytest.mark.parametrize("problem", ["case1_100", "case1_100_dense"])

@@ -8,15 +8,11 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
-from panels import options_of
 from studies import arguments, study
 from studies import drawing as drawn
 
 from bezierplan.analysis.papers import elhoseny2017
-from bezierplan.figures.panels import drawing
-from bezierplan.geometry import cell_length, curves
-from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry import cell_length
 from bezierplan.study import jobs
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
@@ -111,58 +107,3 @@ def test_figures_may_show_baselines_by_name():
     assert jobs.methods_of(own, "figure7", "fields100") == ["straight_line"]
     assert jobs.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
     assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"].title)
-
-
-def curve_of(marks):
-    return marks.loc[marks["group"] == "curve", ["x", "y"]].to_numpy()
-
-
-def test_the_genes_of_a_chromosome_are_those_of_its_field():
-    marks = drawing.data(drawn("elhoseny2017", "figure3"), options_of(drawing))
-    genes = marks[marks["mark"] == "cell"].sort_values(["gene", "width"])
-    assert len(genes) == 50
-    assert (genes["value"].to_numpy()[::2] == genes["value"].to_numpy()[1::2]).all()
-    field = genes[genes["width"] == 1].set_index("gene")
-    assert field["value"].value_counts().to_dict() == {0: 22, 1: 2, -1: 1}
-    assert (field["x"] == field.index // 5).all()
-    np.testing.assert_allclose(field["y"] - field["y"].min(), field.index % 5)
-    assert field.loc[12, "value"] == -1
-    # The drawn curve is the one of the control points, and free.
-    ones = field[field["value"] == 1]
-    base = field["y"].min()
-    points = sorted(zip(ones["x"], (ones["y"] - base).round(9)), key=sum)
-    path = Path("bezier", np.array([(0, 0), *points, (4, 4)], dtype=float))
-    np.testing.assert_allclose(curve_of(marks)[[0, -1]] - (0, base), [[0, 0], [4, 4]])
-    middle = curves.sample_matrix("bezier", 4, 201) @ path.points
-    distances = np.hypot(*(curve_of(marks)[:, None] - (0, base) - middle).transpose(2, 0, 1)).min(
-        axis=1
-    )
-    assert distances.max() < 0.05
-    grid = random_field.from_circles(
-        Circles((0, 4, 0, 4), np.array([[2.0, 2.0]]), np.array([0.8]), "cell")
-    )
-    assert check(curves.bezier_pieces(path), region(grid)).feasible
-
-
-def test_ten_points_are_judged_in_turn():
-    marks = drawing.data(drawn("elhoseny2017", "figure4"), options_of(drawing))
-    circles = marks[marks["mark"] == "circle"]
-    assert len(circles) == 3
-    assert set(circles["radius"]) == {1.0}
-    points = marks[marks["candidate"].notna()].sort_values("candidate")
-    assert points["candidate"].tolist() == list(range(1, 11))
-    accepted = []
-    for point in points.itertuples():
-        covered = np.hypot(circles["x"] - point.x, circles["y"] - point.y).min() <= 1
-        near = any(math.dist((point.x, point.y), other) < 2.5 for other in accepted)
-        assert point.verdict == ("obstacle" if covered else "too near" if near else "accepted")
-        if point.verdict == "accepted":
-            accepted.append((point.x, point.y))
-    assert set(points["verdict"]) == {"obstacle", "too near", "accepted"}
-    rings = marks[marks["group"].str.startswith("ring", na=False)].groupby("group")
-    assert len(rings) == len(accepted)
-    curve = curve_of(marks)
-    np.testing.assert_allclose(curve[[0, -1]], [[4, 0], [16, 18]])
-    assert np.hypot(
-        *(curve[:, None] - circles[["x", "y"]].to_numpy()).transpose(2, 0, 1)
-    ).min() > 1 - math.sqrt(0.5)

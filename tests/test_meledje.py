@@ -23,7 +23,6 @@ from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import between
 from bezierplan.running.simulation.robot import drive
 from bezierplan.schema import checked
-from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
 from bezierplan.workspaces import files, grid
@@ -37,6 +36,7 @@ from bezierplan.workspaces.ground import (
 )
 from bezierplan.workspaces.problem import Path, Problem
 
+YARD = File(__file__).parent / "data" / "yard"
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
 STUDY = study("meledje")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
@@ -163,17 +163,6 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
 # Drawings
 
 
-def test_chromosome_shows_the_numbers_of_the_paper():
-    marks = drawing.data(drawn("meledje", "figure2"), options_of(drawing))
-    genes = marks[
-        (marks["part"] == "genes") & (marks["mark"] == "text") & marks["text"].str.isdigit()
-    ]
-    assert genes["text"].astype(int).to_list() == [1, 41, 65, 35, 38, 60, 100]
-    line = marks[marks["mark"] == "line"]
-    numbers = 10 * (line["y"] - 1) + line["x"]
-    assert numbers.to_list() == [1, 41, 65, 35, 38, 60, 100]
-
-
 def test_children_of_the_drawn_crossover_exchange_their_tails():
     marks = drawing.data(drawn("meledje", "figure3"), options_of(drawing))
     texts = marks[marks["mark"] == "text"]
@@ -183,47 +172,6 @@ def test_children_of_the_drawn_crossover_exchange_their_tails():
     }
     one, other = rows["parents"]
     assert rows["children"] == [one[:3] + other[3:], other[:3] + one[3:]]
-
-
-def test_drawn_mutations_mark_the_node_that_changes_the_one_in_its_place_and_the_others():
-    marks = drawing.data(
-        drawn("meledje", "figure4"),
-        options_of(drawing),
-    )
-    for operator, own in marks.groupby("operator"):
-        places = {
-            label: set(zip(dots["x"], dots["y"]))
-            for label, dots in own[own["mark"] == "dots"].groupby("label")
-        }
-        before, after = (
-            set(zip(line["x"], line["y"]))
-            for line in (
-                own[(own["mark"] == "line") & (own["label"] == name)]
-                for name in ("before", "after")
-            )
-        )
-        assert places["node that changes"] == before - after, operator
-        # No mark lies under another, and the cells tried are those of the map.
-        assert places["node in its place"] == after - before, operator
-        tried = places.get("cells tried", {(0.5, 0.5)})
-        assert all(0 < x < 10 and 0 < y < 7 for x, y in tried), operator
-        assert places["node"] | places["start"] | places["target"] == before & after, operator
-
-
-def test_drawn_mutations_show_what_is_said_of_them():
-    home = workspace("operators")
-    ground = ground_of(home, 1.0)
-    marks = drawing.data(drawn("meledje", "figure4"), options_of(drawing))
-    met = {}
-    for (operator, label), line in marks[marks["mark"] == "line"].groupby(["operator", "group"]):
-        cells = (np.floor(line["y"]) * 10 + np.floor(line["x"])).astype(int).tolist()
-        met[operator, label] = sum(
-            obstacles_met(ground, *edge) for edge in itertools.pairwise(cells)
-        )
-    assert met["random", "before"] == 0 < met["random", "after"]
-    assert met["ref12", "before"] > 0
-    assert met["ref12", "after"] > 0
-    assert met["proposed", "before"] > 0 == met["proposed", "after"]
 
 
 # The audit
@@ -365,39 +313,9 @@ def test_faults_of_heights_are_told(fault, tmp_path):
 
 # A reader's own map
 
-OWN = """
-title: A map of any size
-methods:
-  proposed: {planner: node_genetic, settings: {mutation: proposed}}
-  repaired: {planner: node_genetic, settings: {mutation: random_repair}}
-settings: {population: 20, generations: 15, stall: 15, initial: feasible, most_nodes: 12,
-  selection: linear_rank, crossover_probability: 1.0, cut: same, mutation_probability: 0.3,
-  mutation_for: path, without_obstacle: any_node, obstacle_node: edge, neighbourhood: eight,
-  keep_better: false, direction: forward, ref21_test: edges, corners: open,
-  random_node: free, penalty: 15.0, elitism: 0, result: last_generation,
-  optimal_within: 1e-6, friction: 1.0}
-workspaces:
-  yard: {kind: grid, file: yard.txt, cell: 0.5, unit: m}
-problems:
-  across: {workspace: yard, start_cell: 0, target_cell: 246}
-experiments:
-  tries:
-    problems: [across]
-    methods: [proposed, repaired]
-    repeats: {smoke: 2, full: 3, extended: 3}
-    chunk: {smoke: 2, full: 3, extended: 3}
-"""
-YARD = "\n".join(["." * 19] * 5 + ["." * 4 + "#" * 13 + ".."] * 3 + ["." * 19] * 5)
 
-
-def own_study(folder, experiments=OWN, yard=YARD):
-    (folder / "experiments.yaml").write_text(experiments)
-    (folder / "yard.txt").write_text(yard)
-    return reading.load([folder])[folder.name]
-
-
-def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
-    study = own_study(tmp_path)
+def test_an_own_map_of_any_size_needs_configuration_alone():
+    study = reading.load([YARD])["yard"]
     made = problems.build_all(problems_job(study, "tries", "full"), study.folder)
     for method in ("proposed", "repaired"):
         runs, times = execution.run_chunk(made, job(study, "tries", method, "full", 0))
@@ -408,58 +326,6 @@ def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
         assert (table["objective"] >= table["optimum"] - 1e-9).all()
         free = table[table["feasible"]]
         assert free["length"].to_numpy() == pytest.approx(free["objective"].to_numpy())
-
-
-FAULTS = {
-    "start occupied": (("start_cell: 0", "start_cell: 100"), "start_cell: 100: in an obstacle"),
-    "target outside": (
-        ("target_cell: 246", "target_cell: 247"),
-        "target_cell: cell 247 is not on the grid",
-    ),
-    "between centres": (
-        ("start_cell: 0, target_cell: 246", "start: [0.3, 0.25], target: [9.25, 6.25]"),
-        "problem across: start: .*centre of",
-    ),
-    "odd population": (
-        ("population: 20", "population: 21"),
-        "population: 21; parents are crossed in pairs",
-    ),
-    "probability above 1": (
-        ("mutation_probability: 0.3", "mutation_probability: 1.3"),
-        "mutation_probability: 1.3; expected a number from 0 to 1",
-    ),
-    "negative penalty": (
-        ("penalty: 15.0", "penalty: -1.0"),
-        "penalty: -1.0; expected a number at least 0",
-    ),
-    "no friction": (("friction: 1.0", "friction: 0"), "friction: 0; climbing"),
-    "unknown operator": (
-        ("mutation: proposed", "mutation: proposal"),
-        "mutation: 'proposal'; expected one of random",
-    ),
-}
-
-
-@pytest.mark.parametrize("fault", FAULTS)
-def test_bad_input_is_told_before_any_run(fault, tmp_path):
-    (before, after), told = FAULTS[fault]
-    assert OWN.count(before) >= 1
-    with pytest.raises(Fault, match=told) as caught:
-        own_study(tmp_path, OWN.replace(before, after))
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("yard", "told"),
-    [
-        (YARD[:-1], "line 13 has 18 cells"),
-        (YARD.replace("#", "x", 1), "unknown character 'x'"),
-        ("", "empty"),
-    ],
-)
-def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
-    with pytest.raises(Fault, match=f"yard.txt: .*{told}"):
-        own_study(tmp_path, yard=yard)
 
 
 def test_schemas_know_heights():

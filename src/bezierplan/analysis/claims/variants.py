@@ -28,7 +28,7 @@ def in_variant(
     """
     for column, chosen in assignment.items():
         pairs = dict(zip(one_or_list(first[column]), one_or_list(chosen), strict=True))
-        if any(_names(check, column) & set(pairs) for check in checks):
+        if any(_exchanged(check, column, dict.fromkeys(pairs)) != check for check in checks):
             checks = [_exchanged(check, column, pairs) for check in checks]
         else:
             checks = [
@@ -43,31 +43,11 @@ def has_runs(check: Check) -> bool:
     return "where" in type(check).model_fields
 
 
-def _places(check: Check, column: str) -> dict[str, Any]:
-    """The keys of a check that hold values of a column, with these."""
-    if column in ("metric", "experiment"):
-        keys: tuple[str, ...] = (column,)
-    else:
-        keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else ()
-    return {key: getattr(check, key) for key in keys if key in check.model_fields_set}
-
-
-def _names(check: Check, column: str) -> set:
-    """The values of a column that a check names."""
-    where = check.where.get(column, []) if has_runs(check) else []
-    return set(_flat([*_places(check, column).values(), where]))
-
-
-def _flat(values: Any) -> list:
-    return (
-        [value for each in values for value in _flat(each)]
-        if isinstance(values, list)
-        else [values]
-    )
-
-
 def _exchanged(check: Check, column: str, pairs: dict) -> Check:
-    changed = {key: _replaced(value, pairs) for key, value in _places(check, column).items()}
+    keys = {"metric": ["metric"], "experiment": ["experiment"]}.get(column, [])
+    keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else keys
+    written = check.model_fields_set.intersection(keys)
+    changed = {key: _replaced(getattr(check, key), pairs) for key in written}
     if has_runs(check) and column in check.where:
         changed["where"] = check.where | {column: _replaced(check.where[column], pairs)}
     return check.but(**changed)

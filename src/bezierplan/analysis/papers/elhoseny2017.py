@@ -17,10 +17,7 @@ from bezierplan.analysis.papers import rules
 from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import select
 from bezierplan.geometry.cell_length import DIAGONAL
-from bezierplan.geometry.region import region
 from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
-from bezierplan.workspaces import random_field
-from bezierplan.workspaces.circles import Circles
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
@@ -200,36 +197,6 @@ def _growth(published: "Published") -> Iterator[dict]:
 
 # --------------------------------------------------------------------------------------------------
 # The radius of the obstacles, which the paper does not state, inferred from its lengths
-
-
-def memory(
-    *, sides: list[int], side: int, obstacles: list[int], radius: float, clear_ends: float
-) -> pd.DataFrame:
-    """Memory used by empty fields of several sides, and by one with many obstacles; columns: side,
-    obstacles, held (what is stored), megabytes.
-
-    All planners share the occupied cells; the certified check stores them again, with all edges and
-    corners of cells.
-
-    sides: of the empty fields. side, obstacles, radius and clear_ends: of the others, as in a
-    `random_field`.
-    """
-    empty = [
-        (each, 0, Circles((0.0, each, 0.0, each), np.empty((0, 2)), np.empty(0), "cell"))
-        for each in sides
-    ]
-    fields = [(each, count, random_field.from_circles(circles)) for each, count, circles in empty]
-    gravel = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
-    for count in obstacles:
-        described = {"side": side, "start": [0, 0], "target": [side, side]}
-        described |= {"obstacles": count, "layout": 0}
-        fields.append((side, count, random_field.field(gravel, described, "elhoseny2017/gravel")))
-    rows = []
-    for length, count, grid in fields:
-        checked = sum(array.nbytes for array in region(grid) if isinstance(array, np.ndarray))
-        for held, size in (("occupied cells", grid.occupied.nbytes), ("certified check", checked)):
-            rows.append({"side": length, "obstacles": count, "held": held, "megabytes": size / 1e6})
-    return pd.DataFrame(rows)
 
 
 def _sides(published: "Published") -> dict[str, int]:

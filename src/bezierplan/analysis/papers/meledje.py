@@ -13,12 +13,10 @@ import pandas as pd
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.papers import rules
 from bezierplan.analysis.papers.drawings import marks as marks
-from bezierplan.analysis.results import select
 from bezierplan.analysis.statistics import holm
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
-    from bezierplan.analysis.claims.kinds.function import Options as Check
+    from bezierplan.analysis.claims.kinds.function import Published
 
 # The counts of `said` that Fisher's exact test compares, its level, and the sign of what counts as
 # best.
@@ -27,44 +25,6 @@ ALPHA = 0.05
 SIGN = {"highest": 1, "lowest": -1}
 # Quantities by which environment 2 is said to confirm environment 1, and their words.
 RANKED = {"optimal": "optima", "objective": "mean fitness", "cpu_s": "mean solution time"}
-
-
-def less_work_for_a_path(
-    check: "Check", results: "Experiments", published: "Published", *, group: str, other: str
-) -> "Judged":
-    """Claim C7: whether one kind of first population takes less work than another until a run ends
-    feasible, in every environment.
-
-    The work is the mean number of evaluations of a run over the share of feasible ones. The effect
-    is the largest ratio of both kinds' work, with the least and largest ratio that their
-    Clopper-Pearson intervals allow; the units are the runs of the smaller kind.
-    """
-    runs = select(results[check.experiment].runs, check.where)
-    ratios = []
-    for _, own in runs.groupby("workspace"):
-        (least, typical, most), (least_other, typical_other, most_other) = (
-            _work(own[own["initial"] == name]) for name in (group, other)
-        )
-        ratios.append((typical / typical_other, least / most_other, most / least_other))
-    typical, low, high = (max(each) for each in zip(*ratios, strict=True))
-    mark = "+" if high < 1 else "-" if low > 1 else "?"
-    return mark, typical, (low, high), int(runs.groupby(["workspace", "initial"]).size().min())
-
-
-def _work(runs: pd.DataFrame) -> tuple[float, float, float]:
-    """Evaluations for each feasible path: least, found and most, infinite where no run is
-    feasible.
-    """
-    from scipy import stats
-
-    found = stats.binomtest(int(runs["feasible"].sum()), len(runs))
-    share = found.proportion_ci(method="exact")
-    with np.errstate(divide="ignore"):
-        least, typical, most = (
-            float(np.divide(runs["evaluations"].mean(), each))
-            for each in (share.high, found.statistic, share.low)
-        )
-    return least, typical, most
 
 
 def audit(published: "Published") -> list[dict]:
