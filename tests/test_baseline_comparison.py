@@ -9,7 +9,7 @@ import pytest
 from bezierplan.analysis import baseline_comparison, measures, metrics
 from bezierplan.analysis.results import Results
 from bezierplan.workspaces.grid import from_lines
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.problem import Problem
 
 SQUARE_CORNER = ("polyline", [0.0, 0, 1, 0, 1, 1])
 STRAIGHT = ("polyline", [0.0, 0, 2, 0])
@@ -181,10 +181,6 @@ def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
         assert found[1] in (3.5, 4.0), name
     with pytest.raises(ValueError, match="run clear is said to be feasible"):
         measures.length_in_cells("length4", runs.assign(octile_bound=6.0), {"room": problem})
-
-
-def test_a_square_corner_is_one():
-    assert measures.corners(Path(SQUARE_CORNER[0], np.reshape(SQUARE_CORNER[1], (-1, 2)))) == 1
 
 
 def test_equal_curvature_is_not_less():
