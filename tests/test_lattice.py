@@ -88,11 +88,6 @@ def test_an_end_that_is_in_no_free_cell_is_named(start, target, named):
         lattice(grid, start, target, "one")
 
 
-def test_an_unknown_rule_for_corners_is_named():
-    with pytest.raises(ValueError, match="unknown corner rule 'two'; known: free, one, none"):
-        neighbours(OPEN.occupied, "two")
-
-
 def test_points_hold_the_centres_of_start_and_target_once():
     assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 1])).tolist() == [[1, 1], [3, 1]]
     assert points(OPEN, (0.0, 0.0), (3.0, 1.0), np.array([0, 1])).tolist() == [

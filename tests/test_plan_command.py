@@ -274,7 +274,7 @@ def test_a_straight_path_is_no_longer_than_the_shortest(capsys, tmp_path):
     (tmp_path / "room.txt").write_text("...\n...\n...\n")
     lines = planned(capsys, tmp_path / "room.txt", "--start", "0.1,0.3", "--target", "2.7,2.3")
     assert lines["length"].endswith(", 0 % above the shortest path")
-    assert lines["curvature"] == "at most 0 / cell"
+    assert lines["curvature"] == "at most 0 / cell at samples"
 
 
 def test_a_large_map_shows_free_and_occupied_cells_apart(capsys, tmp_path):

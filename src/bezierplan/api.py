@@ -18,7 +18,6 @@ import numpy as np
 
 import bezierplan
 from bezierplan.geometry import checker, curves, path_files, samples, shortest_paths
-from bezierplan.geometry.curvature_bound import largest_curvature
 from bezierplan.places import STUDIES
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import answer as answers
@@ -69,9 +68,6 @@ class Judged:
         The clearance that a feasible path keeps, in the map's unit.
     curvature : float
         Largest absolute curvature of samples, in 1/unit; corners have none.
-    curvature_bound : float
-        What it is nowhere more than, certified by subdivision; infinite at a cusp, and where the
-        curve stands still.
     curvature_jump : float
         Its largest jump between two pieces of the path; infinite at a corner.
     corners : bool
@@ -92,7 +88,6 @@ class Judged:
     depth: float = math.nan
     clearance: float = math.nan
     curvature: float = math.nan
-    curvature_bound: float = math.nan
     curvature_jump: float = math.nan
     corners: bool = False
     shortest: float
@@ -403,7 +398,6 @@ def verdict(
         "depth": verdict.depth,
         "clearance": at_home.clearance,
         "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
-        "curvature_bound": largest_curvature(pieces).bound,
         "curvature_jump": jump,
         "corners": not math.isfinite(jump),
     }

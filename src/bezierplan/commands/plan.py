@@ -134,12 +134,8 @@ def described(answer: api.Answer) -> dict[str, str]:
     gap = _digits(100 * abs(answer.gap), 3)
     side = "below" if answer.gap < 0 and gap != "0" else "above"
     lines["length"] = f"{answer.length:.6g} {unit}, {gap} % {side} the shortest path"
-    certified = math.isfinite(answer.curvature_bound)
-    most = answer.curvature_bound if certified else answer.curvature
-    lines["curvature"] = (
-        f"at most {_digits(most, 6)} / {unit}{'' if certified else ' at samples'}"
-        f"{', and corners' if answer.corners else ''}"
-    )
+    corners = ", and corners" if answer.corners else ""
+    lines["curvature"] = f"at most {_digits(answer.curvature, 6)} / {unit} at samples{corners}"
     if not math.isnan(answer.turning_radius):
         wish, radius = settings["turning_radius"], answer.turning_radius
         lines["turning radius"] = f"{wish:.6g} {unit} asked" + (

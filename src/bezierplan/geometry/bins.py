@@ -58,28 +58,20 @@ def _filled(low: np.ndarray, high: np.ndarray, edges: np.ndarray, reach: np.ndar
 
 @compiled
 def _sort(edges: np.ndarray, reach: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
-    """The numbers of the edges of each bin: counted first, then put in their places."""
-    first = np.zeros(bins.columns * bins.rows + 1, dtype=np.int64)
-    for e in range(len(edges)):
-        left, right = min(edges[e, 0], edges[e, 2]), max(edges[e, 0], edges[e, 2])
-        begin, end = columns_between(left - reach[e], right + reach[e], bins)
-        for column in range(begin, end + 1):
-            low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
-            # += on a slice takes seconds to compile.
-            for number in range(column * bins.rows + low, column * bins.rows + high + 1):
-                first[number + 1] += 1
-    first = np.cumsum(first)
-    slot = first[:-1].copy()
-    members = np.empty(first[-1], dtype=np.int64)
+    """The numbers of the edges of each bin, ascending."""
+    places, passing = [0], [0]
     for e in range(len(edges)):
         left, right = min(edges[e, 0], edges[e, 2]), max(edges[e, 0], edges[e, 2])
         begin, end = columns_between(left - reach[e], right + reach[e], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
             for number in range(column * bins.rows + low, column * bins.rows + high + 1):
-                members[slot[number]] = e
-                slot[number] += 1
-    return first, members
+                places.append(number)
+                passing.append(e)
+    bin_of, members = np.array(places[1:]), np.array(passing[1:])
+    order = np.argsort(bin_of, kind="mergesort")
+    first = np.searchsorted(bin_of[order], np.arange(bins.columns * bins.rows + 1))
+    return first, members[order]
 
 
 @allocation_free

@@ -67,10 +67,12 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
     """
     if curve not in CURVES:
         raise ValueError(f"unknown curve {curve!r}; known: {', '.join(CURVES)}")
-    if points < least_points(curve):
+    step = {"ferguson": 2, "cubic_chain": 3}.get(curve, 1)
+    least = least_points(curve)
+    if points < least or (points - least) % step:
+        more = f", or by a multiple of {step} more" if step > 1 else ""
         raise ValueError(
-            f"a curve of kind {curve} needs at least "
-            f"{least_points(curve)} control points, not {points}"
+            f"a curve of kind {curve} needs at least {least} control points{more}, not {points}"
         )
     if curve == "ferguson":
         matrix = _ferguson_pieces(points)
@@ -112,8 +114,6 @@ def _spline_pieces(points: int) -> np.ndarray:
 
 def _chained(points: int) -> np.ndarray:
     """Indices of the control points of each piece of a `cubic_chain`: (pieces, 4)."""
-    if points % 3 != 1:
-        raise ValueError(f"a curve of kind cubic_chain needs 3 k + 1 control points, not {points}")
     return np.arange(0, points - 1, 3)[:, None] + np.arange(4)
 
 
@@ -123,10 +123,6 @@ def _legs(points: int) -> np.ndarray:
 
 
 def _ferguson_pieces(points: int) -> np.ndarray:
-    if points % 2:
-        raise ValueError(
-            f"a curve of kind ferguson needs an even number of control points, not {points}"
-        )
     rows = np.eye(points)
     return _hermite_pieces(rows[::2], rows[1::2])
 

@@ -12,16 +12,13 @@ from bezierplan.geometry.samples import Samples
 
 
 def write_csv(file: Path, samples: Samples) -> None:
-    """A heading row, then distance, x, y, heading and curvature of each sample, with nine digits;
-    large coordinates with more.
+    """A heading row, then distance, x, y, heading and curvature of each sample, with nine
+    digits.
     """
-    largest = max(np.abs(samples.x).max(), np.abs(samples.y).max(), 1.0)
-    place = f"%.{9 + int(math.log10(largest))}g"
-    formats = ["%.9g", place, place, "%.9g", "%.9g"]
     np.savetxt(
         file,
         np.column_stack(samples),
-        fmt=formats,
+        fmt="%.9g",
         delimiter=",",
         header=",".join(Samples._fields),
         comments="",

@@ -229,8 +229,8 @@ def _grid_region(grid: Grid) -> GridRegion:
     blocked[1::2, ::2] = cells[:-1] & cells[1:]
     blocked[::2, 1::2] = cells[:, :-1] & cells[:, 1:]
     blocked[1::2, 1::2] = occupied_around(cells).all(axis=0)
-    horizontal = _runs(cells[:-1, 1:-1] != cells[1:, 1:-1])
-    vertical = _runs(np.ascontiguousarray((cells[1:-1, :-1] != cells[1:-1, 1:]).T))
+    horizontal = runs_of(cells[:-1, 1:-1] != cells[1:, 1:-1])
+    vertical = runs_of(np.ascontiguousarray((cells[1:-1, :-1] != cells[1:-1, 1:]).T))
     edges = np.ascontiguousarray(
         np.concatenate([horizontal[:, [1, 0, 2, 0]], vertical[:, [0, 1, 0, 2]]]) * grid.cell
     )
@@ -252,7 +252,7 @@ def _prefix_sums(elements: np.ndarray) -> np.ndarray:
     return np.pad(elements.cumsum(axis=0, dtype=np.int64).cumsum(axis=1), ((1, 0), (1, 0)))
 
 
-def _runs(boundary: np.ndarray) -> np.ndarray:
+def runs_of(boundary: np.ndarray) -> np.ndarray:
     """Maximal runs of true values in the rows of a bool array: (n, 3) row, first column, column
     after the last.
     """

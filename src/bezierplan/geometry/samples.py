@@ -16,10 +16,6 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NEWTON_STEPS = 4
 
 
-MOST_SAMPLES = 10_000_000
-"""Most samples of a path: a file of them has about half a gigabyte."""
-
-
 class Samples(NamedTuple):
     """Points along a path, each field (n,).
 
@@ -66,11 +62,14 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     if (n is None) == (step is None):
         raise ValueError("expected either n, a number of samples, or step, a distance between two")
     pieces = curves.bezier_pieces(path)
-    speeds, knots = _lengths(pieces)
+    knots = np.arange(_INTERVALS) / _INTERVALS
+    low = np.tile(knots, len(pieces))
+    speeds = _integral(np.repeat(pieces, _INTERVALS, axis=0), low, low + 1 / _INTERVALS)
     cumulative = np.concatenate([[0.0], np.cumsum(speeds)])
     length = cumulative[-1]
     if step is not None:
-        check_step(step, length)
+        if not isinstance(step, Real) or not 0 < step < math.inf:
+            raise ValueError(f"step: {step!r}; expected a number above 0")
         n = max(2, math.ceil(length / step * (1 - 1e-12)) + 1)
     if not isinstance(n, int | np.integer) or n < 2:
         raise ValueError(f"n: {n!r}; expected a whole number of at least 2")
@@ -96,30 +95,6 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
         _headings(pieces[piece], t),
         _curvatures(pieces[piece], t),
     )
-
-
-def check_step(step: float, length: float) -> None:
-    """Raise ValueError for a step that is not above 0, or with too many samples on a length."""
-    _check_above_0("step", step)
-    if length > step * (MOST_SAMPLES - 1):
-        raise ValueError(
-            f"step: {step:g}: more than {MOST_SAMPLES:,} points on {length:.6g} units; expected at "
-            f"least {length / (MOST_SAMPLES - 1):.3g}"
-        )
-
-
-def _check_above_0(name: str, value: float) -> None:
-    if not isinstance(value, Real) or not 0 < value < math.inf:
-        shown = f"{value:g}" if isinstance(value, Real) else repr(value)
-        raise ValueError(f"{name}: {shown}; expected a number above 0")
-
-
-def _lengths(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Arc lengths (pieces * intervals,) of intervals, whose parameters begin at (intervals,)."""
-    knots = np.arange(_INTERVALS) / _INTERVALS
-    repeated = np.repeat(pieces, _INTERVALS, axis=0)
-    low = np.tile(knots, len(pieces))
-    return _integral(repeated, low, low + 1 / _INTERVALS), knots
 
 
 def _integral(pieces: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:

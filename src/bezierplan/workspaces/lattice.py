@@ -80,12 +80,8 @@ def neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
     """The cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not allowed
     and from occupied cells.
 
-    occupied: bool (rows, columns). Raises ValueError for an unknown rule.
+    occupied: bool (rows, columns).
     """
-    if corners not in Corners.__members__:
-        raise ValueError(
-            f"unknown corner rule {corners!r}; known: {', '.join(Corners.__members__)}"
-        )
     walled = np.pad(occupied, 1, constant_values=True)
     row, column = np.argwhere(~occupied).T + 1
     # The two cells next to a step; for a step along an axis these are the cells that it leaves and

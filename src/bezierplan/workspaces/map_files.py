@@ -2,7 +2,6 @@
 command or a call, and the map itself.
 """
 
-from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,6 @@ from bezierplan.workspaces import files, raster, robot
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.polygons import Polygons
-from bezierplan.workspaces.text_file import number
 
 IMAGES = (".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff")
 KINDS = {
@@ -98,19 +96,3 @@ def _loaded(file: Path, description: dict[str, Any]) -> Workspace:
     except ValueError as error:
         told = str(error).removeprefix("file: ").removeprefix(f"{description['file']}: ")
         raise Fault(told if told.startswith("margin: ") else f"{file}: {told}") from None
-
-
-def needs_cells(served: Collection[str] | None) -> bool:
-    """Whether a planner that serves some kinds of workspace, None for all, excludes polygons."""
-    return served is not None and "polygons" not in served
-
-
-def point(name: str, text: str | None) -> tuple[float, float]:
-    """A point from words such as `2.5,10`. Raises ValueError, naming the option."""
-    try:
-        x, y = map(number, (text or "").split(","))
-    except ValueError:
-        raise ValueError(
-            f"{name}: {text or 'missing'}; expected X,Y, two numbers such as 2.5,10"
-        ) from None
-    return x, y

@@ -1,17 +1,9 @@
-"""Text files of users, and numbers in them."""
+"""Text files of users."""
 
-import math
 from pathlib import Path
 
 LARGEST_FILE = 16 * 2**20
 """Most bytes of a text file: enough for a map of 4,000 x 4,000 cells."""
-
-
-def number(word: str) -> float:
-    """A word as a finite number. Raises ValueError."""
-    if not math.isfinite(entry := float(word)):
-        raise ValueError(f"{word} is not a finite number")
-    return entry
 
 
 def lines_of(text: str) -> list[str]:

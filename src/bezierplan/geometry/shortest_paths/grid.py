@@ -81,7 +81,8 @@ def centre_path(problem: Problem) -> Bound:
     if any(grid.occupied[row, column] for row, column in nodes):
         return no_path()
     cells = np.concatenate([nodes, np.argwhere(~grid.occupied)])
-    refuse_large(len(cells))
+    if len(cells) > MOST_NODES:
+        raise ValueError(f"a graph of {len(cells)} nodes; expected at most {MOST_NODES}")
     lattice = 2 * cells[:, ::-1] + 1
     any_slope = np.zeros(len(cells), dtype=np.int64)
     visible = _visible_on_grid(lattice, any_slope, walled(grid.occupied), 2)
@@ -99,14 +100,6 @@ def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int
     if not (is_centre and 0 <= round(row) < rows and 0 <= round(column) < columns):
         raise ValueError(f"the {name} {point} is not the centre of a cell")
     return round(row), round(column)
-
-
-def refuse_large(nodes: int) -> None:
-    if nodes > MOST_NODES:
-        raise ValueError(
-            f"the visibility graph has {nodes} nodes, more than {MOST_NODES}; use a coarser or a "
-            "smaller workspace"
-        )
 
 
 def _grid_corners(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ def lattice_path(
 
     occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a
     diagonal step; others count 1. corner_rule: how many of the two cells beside a diagonal step may
-    be occupied. Raises ValueError for an unknown rule and if start or target is outside the grid.
+    be occupied.
 
     The rule `free` allows a diagonal step past an occupied cell, the rule `none` does not:
 
@@ -33,17 +33,6 @@ def lattice_path(
     >>> lattice_path(occupied, **ends, diagonal_weight=1.5, corner_rule="none").length
     5.0
     """
-    if corner_rule not in Corners.__members__:
-        raise ValueError(
-            f"unknown corner rule {corner_rule!r}; known: {', '.join(Corners.__members__)}"
-        )
-    rows, columns = occupied.shape
-    for name, (row, column) in (("start", start), ("target", target)):
-        if not (0 <= row < rows and 0 <= column < columns):
-            raise ValueError(
-                f"the {name} cell (row {row}, column {column}) is not on the grid of {rows} x "
-                f"{columns} cells"
-            )
     if occupied[start] or occupied[target]:
         return no_path()
 
@@ -56,7 +45,7 @@ def lattice_path(
         diagonal_weight,
         int(Corners[corner_rule]),
     )
-    row, column = np.divmod(cells, columns + 2)
+    row, column = np.divmod(cells, walled_cells.shape[1])
     return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
 
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry.region import runs_of
 from bezierplan.geometry.shortest_paths.graph import way_back
 from bezierplan.kernels import allocation_free, compiled
 
@@ -42,10 +43,8 @@ class Scene(NamedTuple):
 
 def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
     """The scene of occupied cells with a ring around them and corners as `grid` finds them."""
-    around = np.pad(cells, ((0, 0), (1, 1)))
-    # Where a run begins and ends, in turn.
-    row, column = np.nonzero(around[:, 1:] != around[:, :-1])
-    row, runs = row[::2], np.column_stack([column[::2], column[1::2]]) - 1
+    row, begin, end = runs_of(cells).astype(np.int64).T
+    runs = np.column_stack([begin, end]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
     first_corner = np.searchsorted(corners[:, 1], np.arange(len(cells)))
     column, row = corners.T
