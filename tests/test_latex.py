@@ -11,9 +11,8 @@ from bezierplan.analysis import latex
 
 
 def written(**columns: list[str]) -> str:
-    return latex.environment(
-        latex.Captioned(pd.DataFrame(columns), "Shares & lengths, 50 % of them", "tab:s-table1")
-    )
+    caption = "Shares & lengths, 50 % of them"
+    return latex.document(pd.DataFrame(columns), caption, "tab:s-table1")
 
 
 @pytest.mark.parametrize("sign", list("&%$#_{}~^\\<>"))
@@ -47,11 +46,3 @@ def test_a_wide_table_is_scaled_to_the_page():
     text = written(**{f"c{number}": ["1"] for number in range(9)})
     assert r"\resizebox{\textwidth}{!}{%" in text
     assert text.count("{") == text.count("}")
-
-
-def test_a_document_holds_every_table():
-    tables = [
-        latex.Captioned(pd.DataFrame({"n": ["1"]}), f"Table {number}", f"tab:{number}")
-        for number in (1, 2)
-    ]
-    assert latex.document(tables).count(r"\begin{table}") == 2

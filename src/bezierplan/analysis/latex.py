@@ -1,8 +1,6 @@
 """Tables as LaTeX, ready to be read by a paper that loads `booktabs` and `graphicx`."""
 
 import itertools
-from collections.abc import Mapping
-from typing import NamedTuple
 
 import pandas as pd
 
@@ -23,41 +21,13 @@ _MOST_COLUMNS = 7
 _LEVEL = ": "
 
 
-class Captioned(NamedTuple):
-    """A table with its caption and the label that `\\ref` takes. table: all text, as in its csv
-    file.
-    """
-
-    table: pd.DataFrame
-    caption: str
-    label: str
-
-
-def captioned(files: Mapping[str, str], captions: Mapping[str, str], study: str) -> list[Captioned]:
-    """Tables in csv files, by name, with their captions; their labels begin with the name of the
-    study.
-    """
-    return [
-        Captioned(
-            pd.read_csv(file, dtype=str, keep_default_na=False),
-            captions[name],
-            f"tab:{study}-{name}",
-        )
-        for name, file in files.items()
-    ]
-
-
-def document(tables: list[Captioned]) -> str:
-    """Tables one after the other, each as an environment of its own."""
-    return "\n".join(["% Needs \\usepackage{booktabs,graphicx}.", *map(environment, tables)])
-
-
-def environment(captioned: Captioned) -> str:
+def document(table: pd.DataFrame, caption: str, label: str) -> str:
     """A table with rules as of a book: numbers on the right, and columns whose names begin alike
-    below a common head.
+    below a common head. table: all text, as in its csv file. label: what `\\ref` takes.
 
     >>> lengths = pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]})
-    >>> print(environment(Captioned(lengths, "Lengths in %", "tab:x")))
+    >>> print(document(lengths, "Lengths in %", "tab:x"))
+    % Needs \\usepackage{booktabs,graphicx}.
     \\begin{table}[htbp]
       \\centering
       \\caption{Lengths in \\%}
@@ -72,7 +42,6 @@ def environment(captioned: Captioned) -> str:
     \\end{table}
     <BLANKLINE>
     """
-    table = captioned.table
     sides = "".join("r" if _is_number(table[column]) else "l" for column in table)
     cells = map(_row, table.itertuples(index=False))
     rows = ["\\toprule", *_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]
@@ -81,12 +50,11 @@ def environment(captioned: Captioned) -> str:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
     head = [
         "\\centering",
-        f"\\caption{{{escaped(captioned.caption)}}}",
-        f"\\label{{{captioned.label}}}",
+        f"\\caption{{{escaped(caption)}}}",
+        f"\\label{{{label}}}",
     ]
-    return "\n".join(
-        ["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""]
-    )
+    lines = ["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""]
+    return "\n".join(["% Needs \\usepackage{booktabs,graphicx}.", *lines])
 
 
 def escaped(text: str) -> str:

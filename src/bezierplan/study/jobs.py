@@ -446,11 +446,13 @@ class Latex(Job):
 
     def run(self, given, made, threads):
         """Set the table."""
+        import pandas as pd
+
         from bezierplan.analysis import latex
 
-        study, _, name = self.label.partition("-")
-        tables = latex.captioned({name: given.table}, {name: self.caption}, study)
-        Path(made[0]).write_text(latex.document(tables), encoding="utf-8")
+        table = pd.read_csv(given.table, dtype=str, keep_default_na=False)
+        text = latex.document(table, self.caption, f"tab:{self.label}")
+        Path(made[0]).write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True)
