@@ -98,7 +98,7 @@ lock: .venv/ready ## regenerate the lock files from pyproject.toml (newest versi
 	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
 
-newest: .venv/ready-dev ## check whether newer libraries change a result or fail a test, and which (ARGS: other flags of `make lock`)
+newest: .venv/ready-dev ## check whether newer libraries change a result or fail a test (ARGS: other flags of `make lock`)
 	$(RUN) tests/newest/run.py $(ARGS)
 
 clean: ## remove results and caches

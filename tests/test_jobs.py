@@ -204,7 +204,6 @@ def test_the_small_subset_holds_every_scenario(scenario):
 @pytest.fixture(scope="module")
 def gathering():
     with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(Path(__file__).parent / "benchmark"))
         import gathering
 
         patch.setattr(gathering, "MADE", 4)

@@ -18,7 +18,7 @@ try:
         STUDIES,
         [
             *(rule.name for rule in workflow.rules),
-            *("all", "smoke", "beyond", "extended", "alternatives", "default"),
+            *("all", "smoke", "beyond", "extended", "alternatives", "published", "default"),
         ],
     )
 except Fault as fault:
@@ -48,6 +48,18 @@ rule extended:
         files_in("extended", "paper"),
         files_in("extended", "beyond"),
         "results/extended/index.html",
+
+
+# What `make verify-outcome` compares with docs/outcome.
+rule published:
+    input:
+        [
+            file
+            for study in STUDIES.values()
+            for name, table in study.compared().items()
+            if table.published
+            for file in files_of("full", study, name)
+        ],
 
 
 rule alternatives:

@@ -7,8 +7,12 @@ holds functions of the interface whose options are the command's as well.
 
 import os
 import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
 
 from bezierplan.places import TREE
+from bezierplan.schema import checked
 
 SNAKEMAKE = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
 """The beginning of a command that starts the workflow."""
@@ -19,3 +23,16 @@ def cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def studies_of(names: Sequence[str] = ()) -> dict[str, Any]:
+    """The studies of some names or folders, or those of config/config.yaml: in the working folder,
+    or of the project. Raises Fault.
+    """
+    from bezierplan.study import reading
+
+    config: dict[str, Any] = {"studies": list(names)}
+    if not names:
+        files = (folder / "config" / "config.yaml" for folder in (Path(), TREE))
+        config = checked.read(next(file for file in files if file.is_file()))
+    return reading.load(reading.read_config(config))

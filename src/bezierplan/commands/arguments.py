@@ -43,13 +43,13 @@ def call(
     )
     options: dict[str, str] = {}
     for function in (main, *functions):
-        for parameter, kind, text in parameters(function):
+        for parameter, text in parameters(function):
             rest = parameter.kind is parameter.VAR_KEYWORD
             word = not rest and parameter.default is parameter.empty
             # Words of a function that is passed on, and what is passed on, are no arguments.
             skipped = rest if function is main else word
             if parameter.name not in options and not skipped:
-                options[parameter.name] = _add(parser, parameter, word, kind, text)
+                options[parameter.name] = _add(parser, parameter, word, text)
     # A word such as -2,0 is no option.
     words = [f" {word}" if re.match(r"-[0-9.]", word) else word for word in words]
     values = vars(parser.parse_args(words))
@@ -69,26 +69,21 @@ def _sections(function: Callable[..., Any]) -> dict[str, str]:
     return dict(zip(["", *parts[1::2]], parts[::2]))
 
 
-def parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Parameter, str, str]]:
-    """The parameters of a function, with the type and the text of its docstring."""
+def parameters(function: Callable[..., Any]) -> Iterator[tuple[inspect.Parameter, str]]:
+    """The parameters of a function, with the text of its docstring."""
     section = _sections(function).get("Parameters", "")
-    entries = re.findall(r"^\**(\w+)(?: : (.*))?\n((?: {4}.*\n?)+)", section, re.MULTILINE)
-    texts = {name: (kind, " ".join(words.split())) for name, kind, words in entries}
+    texts = dict(re.findall(r"^\**(\w+).*\n((?: {4}.*\n?)+)", section, re.MULTILINE))
     for name, parameter in inspect.signature(function, eval_str=True).parameters.items():
-        yield parameter, *texts.get(name, ("", ""))
+        yield parameter, " ".join(texts.get(name, "").split())
 
 
-def _add(
-    parser: ArgumentParser, parameter: inspect.Parameter, word: bool, kind: str, text: str
-) -> str:
+def _add(parser: ArgumentParser, parameter: inspect.Parameter, word: bool, text: str) -> str:
     """Add an argument, and return its option; of a word nothing, and of several words a star."""
     annotation = Settings if parameter.kind is parameter.VAR_KEYWORD else parameter.annotation
     read = next(each for each in (annotation, *get_args(annotation), str) if each in READS)
     options: dict[str, Any] = {"help": text.replace("%", "%%")}
     if read is bool:
         options["action"] = "store_true"
-    elif choices := re.findall(r'"(\w+)"', kind):
-        options["choices"] = choices
     else:
         options["type"], options["metavar"] = READS[read]
     if word:

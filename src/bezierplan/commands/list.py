@@ -4,9 +4,9 @@ import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from bezierplan.analysis.table_kinds import Table
+from bezierplan.commands import studies_of
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.study import reading
 from bezierplan.study.artefacts import Figure, in_printed_order
 from bezierplan.study.definition import Study
 
@@ -30,7 +30,7 @@ def main(*words: str, settings: bool = False, studies: Sequence[str] = ()) -> No
     list methods song2016
     list --settings --studies tharwat2018
     """
-    loaded = reading.load(reading.read_config({"studies": list(studies)} if studies else {}))
+    loaded = studies_of(studies)
     for word in words:
         if word not in KINDS and word not in loaded:
             raise Fault(
@@ -70,7 +70,7 @@ def _methods(study: Study) -> Iterator[str]:
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         planner = study.planner(name)
-        says = (inspect.getdoc(planner_module(planner)) or "").partition("\n\n")[0]
+        says = f"{inspect.getdoc(planner_module(planner))}".partition("\n\n")[0]
         yield f"{name:20} {planner}{variant}: {' '.join(says.split())}"
 
 

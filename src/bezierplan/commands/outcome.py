@@ -10,9 +10,8 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan.analysis import headline, summary
-from bezierplan.commands import replay
+from bezierplan.commands import replay, studies_of
 from bezierplan.schema.checked import Fault
-from bezierplan.study import reading
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
@@ -44,7 +43,7 @@ def write() -> None:
     """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results
     are missing.
     """
-    studies = reading.load(reading.read_config({}))
+    studies = studies_of()
     titles = {key: study.title for key, study in studies.items()}
     claims = summary.with_papers_size(
         pd.read_csv(RESULTS / "claims.csv"), pd.read_csv(FULL / "claims.csv")
@@ -76,7 +75,7 @@ def write() -> None:
 
 def table(kept: Path) -> str:
     """The README's headline, from a folder's tables, and the scale, from its summary."""
-    titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
+    titles = {key: study.title for key, study in studies_of().items()}
     overview = headline.headline(
         *(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", BASELINE_COMPARISON)),
         titles,

@@ -8,12 +8,11 @@ import pandas as pd
 
 from bezierplan import api
 from bezierplan.analysis import results
-from bezierplan.commands import plan
+from bezierplan.commands import plan, studies_of
 from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation
 from bezierplan.running import rides
 from bezierplan.running.chunk import chunk_files
-from bezierplan.study import reading
 from bezierplan.study.replays import replay
 
 
@@ -33,7 +32,7 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     replay song2016/routes/15_240/smooth/3
     replay elhoseny2017/moving/moving_slow_0_10/mga_replans/0
     """
-    loaded = reading.load(reading.read_config({"studies": list(studies)} if studies else {}))
+    loaded = studies_of(studies)
     reproduced = replay(run, loaded)
     row = reproduced.runs.iloc[0]
     for file, stored in stored_runs(run, Path("results")).items():
