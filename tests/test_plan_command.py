@@ -258,7 +258,7 @@ FAULTS = {
         "--out: nowhere/path.svg: no folder nowhere; expected one that exists",
     ),
     "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
-    "rule": ([GAPS, *ENDS, "--cell", "1", "--rule", "some"], "--rule: some; expected overlap"),
+    "rule": ([GAPS, *ENDS, "--cell", "1", "--rule", "some"], "--rule: some: unknown"),
     "unknown option": ([GAPS, *ENDS, "--fast"], "unrecognized arguments: --fast"),
 }
 

@@ -31,7 +31,7 @@ def studies_of(names: Sequence[str] = ()) -> dict[str, Any]:
     """
     from bezierplan.study import reading
 
-    config: dict[str, Any] = {"studies": list(names)}
+    config: dict[str, Any] = {"studies": [*names]}
     if not names:
         files = (folder / "config" / "config.yaml" for folder in (Path(), TREE))
         config = checked.read(next(file for file in files if file.is_file()))
