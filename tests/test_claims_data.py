@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 from bezierplan.analysis.claims import kinds
-from bezierplan.analysis.metrics import METRICS
 from bezierplan.schema import checked
 from bezierplan.schema.model import Model, keys, one_or_list, parsed
 from bezierplan.study import claims as study_claims
@@ -139,26 +138,6 @@ def test_the_interpretation_in_force_decides(key):
             name for column, name in names_by_column(claim | {"variants": {}}) if column == "method"
         }
         assert not named & others, claim["id"]
-
-
-def test_names_of_song2016():
-    study = checked.read(STUDIES / "song2016" / "experiments.yaml")
-    artefacts = checked.read(STUDIES / "song2016" / "artefacts.yaml")
-    known = {
-        "method": study["methods"],
-        "problem": study["problems"],
-        "experiment": study["experiments"],
-        "metric": METRICS,
-    }
-    known["feasible"] = [True, False]
-    for claim in claims("song2016"):
-        assert {
-            (column, name) for column, name in names_by_column(claim) if name not in known[column]
-        } == set(), claim["id"]
-        assert (
-            set(one_or_list(claim["artefact"]))
-            <= artefacts["tables"].keys() | artefacts["figures"].keys()
-        )
 
 
 @pytest.mark.parametrize("key", CLAIMS)

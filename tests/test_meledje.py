@@ -55,13 +55,6 @@ def problem(name):
 # The study's files
 
 
-def test_counts_of_the_published_tables_add_to_the_trials():
-    for name in ("table2", "table3", "table4", "table5"):
-        counts = PUBLISHED[name].query("statistic == 'count'").groupby("method")["value"]
-        assert (counts.size() == 3).all()
-        assert (counts.sum() == 100).all()
-
-
 def test_repeats_are_the_trials_of_the_paper():
     assert STUDY.experiments["operators"].repeats["full"] == 100
     assert STUDY.experiments["operators"].seeds == "shared"
@@ -199,24 +192,6 @@ def test_audit_of_the_published_tables():
     assert wrong[wrong["item"] == "text"][["place", "printed", "limit"]].values.tolist() == [
         ["title", 0.0, 1.0]
     ]
-
-
-@pytest.mark.parametrize(
-    ("table", "metric", "value"),
-    [("table2", "optimal", 40), ("table4", "objective", 30.0), ("table5", "infeasible", 99)],
-)
-def test_audit_sees_a_changed_number(table, metric, value):
-    changed = PUBLISHED[table].copy()
-    changed.loc[(changed["metric"] == metric) & (changed["method"] == "ref12"), "value"] = value
-    faults = [
-        {
-            (row["item"], row["place"], row["rule"])
-            for row in meledje.audit(tables)
-            if not row["consistent"]
-        }
-        for tables in (PUBLISHED, PUBLISHED | {table: changed})
-    ]
-    assert faults[1] - faults[0]
 
 
 # Ground that is not flat
