@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from bezierplan.running import digest as digests
+from bezierplan.machine import digest as digests
 
 SOURCE = Path(__file__).parents[1] / "src"
-ASK = "from bezierplan.running.digest import source_digest; print(source_digest(*{modules!r}))"
+ASK = "from bezierplan.machine.digest import source_digest; print(source_digest(*{modules!r}))"
 
 
 @pytest.fixture
@@ -108,8 +108,8 @@ def test_modules_beside_an_own_planner_count(tree, tmp_path):
 
 def test_how_a_job_is_logged_does_not_count(tree):
     before = digest(tree, "bezierplan.running.execution")
-    for name in ("log", "digest", "kernel_cache"):
-        append(tree / "bezierplan" / "running" / f"{name}.py", "\nNEW = 1\n")
+    for name in ("running/log", "machine/digest", "machine/kernel_cache"):
+        append(tree / "bezierplan" / f"{name}.py", "\nNEW = 1\n")
     assert digest(tree, "bezierplan.running.execution") == before
 
 

@@ -13,7 +13,8 @@ import pytest
 
 from bezierplan.analysis import headline, metrics, statistics, summary
 from bezierplan.figures import sheet
-from bezierplan.running import digest, watchdog
+from bezierplan.machine import digest
+from bezierplan.running import watchdog
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading, targets
 

@@ -8,10 +8,11 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 
 import pytest
 
-from bezierplan.running import kernel_cache
+from bezierplan.machine import kernel_cache
 
 MODULE = """
 from bezierplan.kernels import compiled
@@ -35,8 +36,9 @@ def wrong(x):
 
 START = """
 import os, sys, time
+from functools import partial
 from pathlib import Path
-from bezierplan.running import digest
+from bezierplan.machine import digest
 digest.KERNELS = Path("kernels").resolve()
 import kernels_of_mine as mine
 from bezierplan.running.forks import compile_first
@@ -135,43 +137,24 @@ def test_a_kernel_that_cannot_be_compiled_leaves_no_lock(start, tmp_path):
 
 def test_a_process_that_holds_a_lock_does_not_wait_for_ever(tmp_path, monkeypatch):
     monkeypatch.setattr(kernel_cache, "PATIENCE", 0.2)
-    above, below = tmp_path / "above", tmp_path / "below"
+    above, below, held = tmp_path / "above", tmp_path / "below", []
     below.mkdir()
     with open(below / "lock", "w") as other:
         fcntl.flock(other, fcntl.LOCK_EX)
-        with kernel_cache._alone(above), kernel_cache._alone(below), kernel_cache._alone(above):
-            assert kernel_cache._held == [above, below]
-    assert kernel_cache._held == []
-
-
-def test_a_process_that_waits_does_what_it_will_need_later(tmp_path, monkeypatch):
-    """Once, and not while it holds a lock itself, for which others may wait."""
-    done = []
-
-    def later():
-        with kernel_cache._alone(tmp_path / "own"):
-            done.append(list(kernel_cache._held))
-            fcntl.flock(other, fcntl.LOCK_UN)
-
-    monkeypatch.setattr(kernel_cache, "meanwhile", [later])
-    monkeypatch.setattr(kernel_cache, "PATIENCE", 0.2)
-    (tmp_path / "busy").mkdir()
-    with open(tmp_path / "busy" / "lock", "w") as other:
-        fcntl.flock(other, fcntl.LOCK_EX)
-        with kernel_cache._alone(tmp_path / "above"), kernel_cache._alone(tmp_path / "busy"):
-            assert done == []
-        with kernel_cache._alone(tmp_path / "busy"):
-            assert done == [[tmp_path / "own"]]
-    assert kernel_cache.meanwhile == []
+        alone = partial(kernel_cache._alone, held=held)
+        with alone(above), alone(below), alone(above):
+            assert held == [above, below]
+    assert held == []
 
 
 def test_a_file_system_without_locks(tmp_path, monkeypatch):
     def refuse(*_):
         raise OSError("no locks available")
 
+    held = []
     monkeypatch.setattr(fcntl, "flock", refuse)
-    with kernel_cache._alone(tmp_path):
-        assert kernel_cache._held == [tmp_path]
+    with kernel_cache._alone(tmp_path, held):
+        assert held == [tmp_path]
 
 
 # A kernel of another library, which keeps it beside its source; and what the process has of numba's
@@ -229,7 +212,7 @@ def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
     (tmp_path / "kernels_of_mine.py").write_text(MODULE)
     (tmp_path / "a file").touch()
     code = (
-        "from pathlib import Path\nfrom bezierplan.running import digest\ndigest.KERNELS = "
+        "from pathlib import Path\nfrom bezierplan.machine import digest\ndigest.KERNELS = "
         "Path('a file')\n"
     )
     code += "import kernels_of_mine\nprint(kernels_of_mine.outer(20))"

@@ -8,6 +8,7 @@ from typing import Annotated, Literal, NamedTuple
 
 import pytest
 
+from bezierplan.machine.digest import _parsed
 from bezierplan.planners import known_planners, planner_module, planner_settings
 from bezierplan.planners.parts.settings import (
     UNITS,
@@ -19,7 +20,6 @@ from bezierplan.planners.parts.settings import (
     setting_fault,
     with_settings,
 )
-from bezierplan.running.digest import _parsed
 
 Rule = IntEnum("Rule", "keep drop", start=0)
 

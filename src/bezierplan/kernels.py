@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from numba import njit
 from numba.core import config
 
-from bezierplan.running.kernel_cache import Kernel
+from bezierplan.machine.kernel_cache import Kernel
 
 # Options of `njit` as numba sets them itself, and without the entry point that it adds for callers
 # written in C, which takes about a tenth of the time to compile.

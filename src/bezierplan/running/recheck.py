@@ -14,22 +14,22 @@ import hashlib
 import json
 import math
 import multiprocessing
-import os
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from pathlib import Path as File
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as compute
 
 from bezierplan.geometry import curves
-from bezierplan.geometry.region import Region, region, walled
+from bezierplan.geometry.region import Region, walled
+from bezierplan.machine.digest import COMPUTING, library_version
 from bezierplan.running import answer, columns, problems, rides, rows, worlds
 from bezierplan.running.chunk import chunk_files
-from bezierplan.running.digest import COMPUTING, library_version
 from bezierplan.running.watchdog import end_with_parent
 from bezierplan.schema.words import plain
 from bezierplan.workspaces.grid import Grid
@@ -127,26 +127,14 @@ def verify(
 ) -> Verdict:
     """The verdict on tasks, in several processes. told: gets a line of progress now and then."""
     # The largest first, so that no process ends long after the others: bounds take longest.
-    largest = sorted(
-        tasks,
-        key=lambda task: (
-            not task.bounds,
-            -sum(_size(file) for file in (task.problems, *task.runs)),
-        ),
-    )
+    largest = sorted(tasks, key=lambda task: (not task.bounds, -len(task.runs)))
     done = []
     for n, each in enumerate(_mapped(judged, largest, processes), start=1):
         done.append(each)
         if n % 10 == 0 or n == len(tasks):
-            told(
-                f"{n} of {len(tasks)} tables checked, "
-                f"{sum(len(verdict.faults) for verdict in done)} faults"
-            )
+            faults = sum(len(verdict.faults) for verdict in done)
+            told(f"{n} of {len(tasks)} tables checked, {faults} faults")
     return merged(done)
-
-
-def _size(file: str) -> int:
-    return os.path.getsize(file) if os.path.isfile(file) else 0
 
 
 def _mapped(
@@ -166,12 +154,8 @@ def _mapped(
 
 def merged(verdicts: Iterable[Verdict]) -> Verdict:
     """Several verdicts as one."""
-    all_of = list(verdicts)
-    counts = (sum(getattr(each, name) for each in all_of) for name in Verdict._fields[1:-1])
-    faults = sorted(
-        (fault for each in all_of for fault in each.faults), key=lambda fault: fault[:3]
-    )
-    return Verdict(faults, *counts, tuple(line for each in all_of for line in each.digests))
+    whole = Verdict(*(sum(parts[1:], parts[0]) for parts in zip(*verdicts)))
+    return whole._replace(faults=sorted(whole.faults, key=lambda fault: fault[:3]))
 
 
 def write(verdict: Verdict, file: str) -> None:
@@ -201,22 +185,25 @@ def judged(task: Task) -> Verdict:
     if task.bounds:
         return _bounds_judged(task, made, moving)
     chunks = [_chunk(file, _DRIVE_COLUMNS if moving else _RUN_COLUMNS) for file in task.runs]
-    faults = [
-        fault for chunk in chunks for fault in _chunk_faults(chunk, made, task.problems)
-    ] + _twice(chunks)
-    chunk_faults, paths = (
-        (_drive_faults(chunks, made, moving), 0) if moving else _path_faults(chunks, made)
-    )
-    digests = tuple(f"{'/'.join(File(chunk.file).parts[-5:])} {chunk.digest}" for chunk in chunks)
-    undigested = sum(chunk.kept is None for chunk in chunks)
+    faults = [fault for chunk in chunks for fault in _identity_faults(chunk, made, task.problems)]
+    names = [name for chunk in chunks for name in chunk["id"]]
+    twice = {name for name, times in Counter(names).items() if times > 1}
+    faults += [
+        Fault(chunk.file, name, "id", "twice", "once")
+        for chunk in chunks
+        for name in chunk["id"]
+        if name in twice
+    ]
+    known: dict[tuple[str, str, bytes], _Judged] = {}
+    faults += _drive_faults(chunks, made, moving) if moving else _path_faults(chunks, made, known)
     return Verdict(
-        faults + chunk_faults,
+        faults,
         len(chunks),
-        sum(len(chunk.ids) for chunk in chunks),
-        paths,
+        len(names),
+        len(known),
         0,
-        undigested,
-        digests,
+        sum(chunk.kept is None for chunk in chunks),
+        tuple(f"{'/'.join(File(chunk.file).parts[-5:])} {chunk.digest}" for chunk in chunks),
     )
 
 
@@ -225,21 +212,18 @@ def judged(task: Task) -> Verdict:
 
 
 class _Chunk(NamedTuple):
-    """A file of runs: its columns that are looked at, as lists or arrays by name; others are
-    covered by digests.
-
-    points: (n,) arrays of control points, flat. rows: by problem, numbers of its rows. digest: of
-    all rows; kept: that of the file itself, if it has one.
+    """A file of runs: its columns that are looked at, by name: words as lists, numbers as arrays,
+    lists as lists of arrays; others are covered by digests. digest: of all rows; kept: that of the
+    file itself, if it has one.
     """
 
     file: str
-    ids: list[str]
-    words: dict[str, pa.Array]
-    numbers: dict[str, np.ndarray]
-    points: list[np.ndarray]
-    rows: dict[str, np.ndarray]
+    columns: dict[str, Any]
     digest: str
     kept: str | None
+
+    def __getitem__(self, name: str) -> Any:
+        return self.columns[name]
 
 
 _IDENTITY = ("id", "study", "experiment", "condition", "problem", "method", "repeat")
@@ -253,127 +237,74 @@ _DRIVE_COLUMNS = (
     *("objective", "length", "claimed_feasible", "feasible", "collision_at", "clearance"),
     *("path_points", "arrival", "travelled", "clearance_least"),
 )
-
 _TYPES: dict[str, tuple[str, Callable[[pa.DataType], bool]]] = {
     # What wrote a file chooses between the two types of text.
-    "name": ("text", lambda kind: pa.types.is_string(kind) or pa.types.is_large_string(kind)),
     "word": ("text", lambda kind: pa.types.is_string(kind) or pa.types.is_large_string(kind)),
     "flag": ("truths", pa.types.is_boolean),
-    "number": ("numbers", lambda type_: pa.types.is_floating(type_) or pa.types.is_integer(type_)),
+    "number": ("numbers", lambda kind: pa.types.is_floating(kind) or pa.types.is_integer(kind)),
     "list": ("lists of numbers", pa.types.is_list),
 }
 
 
-def _chunk(file: str, wanted: Iterable[str]) -> _Chunk:
-    """A file of runs. Raises ValueError for one without the columns wanted."""
+def _chunk(file: str, names: Iterable[str]) -> _Chunk:
+    """A file of runs. Raises ValueError for one without these columns."""
     table = rows.read(file)
-    known = columns.PLANNED | columns.RESULTS | columns.DRIVE_RESULTS
-    seen = {name: _column(file, table, name, known[name]) for name in wanted}
-    numbers = {
-        name: seen[name].to_numpy(zero_copy_only=False).astype(float)
-        for name in wanted
-        if known[name] in ("number", "flag")
-    }
-    if "history" in seen:
-        numbers["history"] = seen["history"].value_lengths().to_numpy().astype(float)
-    coded = seen["problem"].dictionary_encode()
-    codes = coded.indices.to_numpy()
-    return _Chunk(
-        file=file,
-        ids=seen["id"].to_pylist(),
-        words={name: seen[name] for name in wanted if known[name] in ("name", "word")}
-        | {"repeat": seen["repeat"].cast(pa.string())},
-        numbers=numbers,
-        points=_arrays(seen["path_points"]),
-        rows={
-            name: np.flatnonzero(codes == code)
-            for code, name in enumerate(coded.dictionary.to_pylist())
-        },
-        digest=rows.rows_digest(table),
-        kept=rows.kept_digest(table),
-    )
+    kinds = columns.PLANNED | columns.RESULTS | columns.DRIVE_RESULTS
+    found = {name: _column(file, table, name, kinds[name]) for name in names}
+    return _Chunk(file, found, rows.rows_digest(table), rows.kept_digest(table))
 
 
-def _column(file: str, table: pa.Table, name: str, kind: str) -> pa.Array:
+def _column(file: str, table: pa.Table, name: str, kind: str) -> Any:
     """A column, with a value in each row. Raises ValueError for one that is not there or holds
     other things.
     """
+    kind = "word" if kind == "name" else kind
     expected, fits = _TYPES[kind]
     if name not in table.column_names:
         raise rows.misplaced(file, f"no column {name}")
     column = table[name].combine_chunks()
     if not fits(column.type) or column.null_count:
         raise rows.misplaced(file, f"column {name}: expected {expected} in every row")
-    return column
+    if kind == "word":
+        return column.to_pylist()
+    if kind == "list":
+        flat = column.flatten().cast(pa.float64()).to_numpy(zero_copy_only=False)
+        return np.split(flat, np.cumsum(column.value_lengths().to_numpy())[:-1])
+    return column.to_numpy(zero_copy_only=False).astype(float)
 
 
-def _arrays(column: pa.Array) -> list[np.ndarray]:
-    """The lists of numbers in a column, each as an array of floats."""
-    flat = column.flatten().cast(pa.float64()).to_numpy(zero_copy_only=False)
-    return np.split(flat, np.cumsum(column.value_lengths().to_numpy())[:-1])
-
-
-def _chunk_faults(chunk: _Chunk, made: dict[str, Problem], problems_file: str) -> list[Fault]:
+def _identity_faults(chunk: _Chunk, made: dict[str, Problem], file: str) -> Iterator[Fault]:
     """Whether rows stand in their file, their ids say what their columns say, and the file's digest
-    is that of its rows.
+    is that of its rows. file: of the problems.
     """
-    faults = []
     if chunk.kept not in (None, chunk.digest):
-        faults.append(Fault(chunk.file, "all rows", "digest", chunk.kept, chunk.digest))
+        yield Fault(chunk.file, "all rows", "digest", chunk.kept, chunk.digest)
     *_, experiment, method, _ = File(chunk.file).parts
-    parts = [chunk.words[part] for part in ("study", "experiment", "condition", "method", "repeat")]
-    wanted = {
-        "id": compute.binary_join_element_wise(*parts, "/"),
-        "experiment": pa.array([experiment] * len(chunk.ids)),
-        "method": pa.array([method] * len(chunk.ids)),
-        # A condition's name begins with its problem's.
-        "problem": compute.list_element(
-            compute.split_pattern(chunk.words["condition"], ",", max_splits=1), 0
-        ),
-    }
-    for column, values in wanted.items():
-        for row in np.flatnonzero(
-            compute.not_equal(chunk.words[column], values).to_numpy(zero_copy_only=False)
-        ):
-            faults.append(
-                Fault(
-                    chunk.file,
-                    chunk.ids[row],
-                    column,
-                    chunk.words[column][row].as_py(),
-                    values[row].as_py(),
-                )
-            )
-    for name in chunk.rows.keys() - made.keys():
-        faults += [
-            Fault(chunk.file, chunk.ids[row], "problem", name, f"one of {problems_file}")
-            for row in chunk.rows[name]
-        ]
-    return faults
-
-
-def _twice(chunks: list[_Chunk]) -> list[Fault]:
-    """The rows whose id another one has."""
-    seen: set[str] = set()
-    faults = []
-    for chunk in chunks:
-        for name in chunk.ids:
-            if name in seen:
-                faults.append(Fault(chunk.file, name, "id", "twice", "once"))
-            seen.add(name)
-    return faults
+    parts = ("study", "experiment", "condition", "method", "repeat")
+    for name, problem, *values in zip(*(chunk[part] for part in ("id", "problem", *parts))):
+        row = dict(zip(parts, values), id=name, problem=problem)
+        expected = {
+            "id": "/".join([*values[:-1], f"{values[-1]:.0f}"]),
+            "experiment": experiment,
+            "method": method,
+            # A condition's name begins with its problem's.
+            "problem": row["condition"].partition(",")[0],
+        }
+        for column, value in expected.items():
+            if row[column] != value:
+                yield Fault(chunk.file, name, column, row[column], value)
+        if problem not in made:
+            yield Fault(chunk.file, name, "problem", problem, f"one of {file}")
 
 
 def _differing(chunk: _Chunk, again: dict[str, tuple[np.ndarray, Any]]) -> Iterator[Fault]:
     """A chunk's values that differ from those computed again, by column, with its tolerance."""
     for name, (values, tolerance) in again.items():
-        stored = chunk.numbers[name]
-        plain = bool if name in _FLAGS else float
-        for row in np.flatnonzero(~same(stored, values, tolerance)):
-            yield Fault(chunk.file, chunk.ids[row], name, plain(stored[row]), plain(values[row]))
-
-
-_FLAGS = ("feasible", "claimed_feasible")
+        plain = bool if name in ("feasible", "claimed_feasible") else float
+        for row in np.flatnonzero(~same(chunk[name], values, tolerance)):
+            yield Fault(
+                chunk.file, chunk["id"][row], name, plain(chunk[name][row]), plain(values[row])
+            )
 
 
 def same(stored: np.ndarray, again: np.ndarray, tolerance: Any) -> np.ndarray:
@@ -381,11 +312,9 @@ def same(stored: np.ndarray, again: np.ndarray, tolerance: Any) -> np.ndarray:
     not a number equals itself.
     """
     with np.errstate(invalid="ignore"):
-        close = np.abs(stored - again) <= tolerance * np.maximum(
-            1.0, np.maximum(np.abs(stored), np.abs(again))
-        )
-    finite = np.isfinite(stored) & np.isfinite(again)
-    return (stored == again) | (finite & close) | (np.isnan(stored) & np.isnan(again))
+        size = np.maximum(1.0, np.maximum(np.abs(stored), np.abs(again)))
+        close = (np.abs(stored - again) <= tolerance * size) & np.isfinite(size)
+    return (stored == again) | close | (np.isnan(stored) & np.isnan(again))
 
 
 # --------------------------------------------------------------------------------------------------
@@ -401,30 +330,27 @@ class _Judged(NamedTuple):
     faults: tuple[tuple[str, Any, Any], ...]
 
 
-def _path_faults(chunks: list[_Chunk], made: dict[str, Problem]) -> tuple[list[Fault], int]:
-    """What of runs differs from what their points say, and the number of different paths. Each
-    problem's region is built once.
-    """
-    all_faults, count = [], 0
-    verdicts = [np.full((len(chunk.ids), 6), math.nan) for chunk in chunks]
-    for name, problem in made.items():
-        concerned = [
-            (chunk, verdict) for chunk, verdict in zip(chunks, verdicts) if name in chunk.rows
-        ]
-        blocked = region(problem.workspace) if concerned else None
-        known: dict[tuple[str, bytes], _Judged] = {}
-        for chunk, verdict in concerned:
-            curves_of = chunk.words["path_curve"].take(pa.array(chunk.rows[name])).to_pylist()
-            for row, curve in zip(chunk.rows[name], curves_of):
-                points = chunk.points[row]
-                key = curve, points.tobytes()
-                if key not in known:
-                    known[key] = _path_judged(curve, points, problem, blocked)
-                verdict[row], faults = known[key]
-                all_faults += [Fault(chunk.file, chunk.ids[row], *fault) for fault in faults]
-        count += len(known)
-    for chunk, verdict in zip(chunks, verdicts):
-        length, feasible, collision_at, depth, clearance, tolerance = verdict.T
+def _path_faults(
+    chunks: list[_Chunk],
+    made: dict[str, Problem],
+    known: dict[tuple[str, str, bytes], _Judged],
+) -> Iterator[Fault]:
+    """What of runs differs from what their points say. known: what different paths say."""
+    regions = problems.remembered()
+    for chunk in chunks:
+        verdicts = np.full((len(chunk["id"]), 6), math.nan)
+        for row, (name, curve, points) in enumerate(
+            zip(chunk["problem"], chunk["path_curve"], chunk["path_points"])
+        ):
+            if name not in made:
+                continue
+            key = name, curve, points.tobytes()
+            if key not in known:
+                blocked = regions(made[name].workspace)
+                known[key] = _path_judged(curve, points, made[name], blocked)
+            verdicts[row], faults = known[key]
+            yield from (Fault(chunk.file, chunk["id"][row], *fault) for fault in faults)
+        length, feasible, collision_at, depth, clearance, tolerance = verdicts.T
         slack = 2 * np.nan_to_num(tolerance) + _SAME
         again = {
             "length": (length, _SAME),
@@ -433,10 +359,9 @@ def _path_faults(chunks: list[_Chunk], made: dict[str, Problem]) -> tuple[list[F
             "collision_depth": (depth, slack),
             "clearance": (clearance, slack),
             "clearance_error": (tolerance, slack),
-            "generations": (chunk.numbers["history"] - 1, 0.0),
+            "generations": (np.array([len(each) - 1.0 for each in chunk["history"]]), 0.0),
         }
-        all_faults += _differing(chunk, again)
-    return all_faults, count
+        yield from _differing(chunk, again)
 
 
 def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Region) -> _Judged:
@@ -446,22 +371,13 @@ def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Regi
         length, check = answer.verdict(path, blocked)
     except ValueError as error:
         return _Judged((math.nan,) * 6, (("path_points", "a path", error),))
-    ends = (
-        []
-        if path is None
-        else zip(
-            ("start", "target"),
-            (path.points[at] for at in curves.ends(curve)),
-            (problem.start, problem.target),
-        )
-    )
-    faults = [
-        (f"path_points ({end})", tuple(at.tolist()), to)
-        for end, at, to in ends
-        if tuple(at.tolist()) != to
-    ]
+    faults = []
     if path is None and len(points):
         faults.append(("path_points", f"{len(points)} numbers", "none without a curve"))
+    for end, place in zip(("start", "target"), curves.ends(curve) if path else ()):
+        point = tuple(path.points[place].tolist())
+        if point != getattr(problem, end):
+            faults.append((f"path_points ({end})", point, getattr(problem, end)))
     return _Judged((length, *check[:5]), tuple(faults))
 
 
@@ -479,10 +395,7 @@ class _Trace(NamedTuple):
 def _traces(file: str) -> dict[str, _Trace]:
     beside = str(File(file).with_suffix(".traces.parquet"))
     table = rows.read(beside)
-    x, y, clearance = (
-        _arrays(_column(beside, table, name, "list")) for name in ("x", "y", "clearance")
-    )
-    names = _column(beside, table, "id", "name").to_pylist()
+    x, y, clearance = (_column(beside, table, name, "list") for name in ("x", "y", "clearance"))
     if not all(
         len(one) == len(other) > len(least) > 0 for one, other, least in zip(x, y, clearance)
     ):
@@ -492,52 +405,39 @@ def _traces(file: str) -> dict[str, _Trace]:
         )
     return {
         name: _Trace(np.column_stack(points), least)
-        for name, *points, least in zip(names, x, y, clearance)
+        for name, *points, least in zip(_column(beside, table, "id", "word"), x, y, clearance)
     }
 
 
 def _drive_faults(
     chunks: list[_Chunk], made: dict[str, Problem], moving: dict[str, World]
-) -> list[Fault]:
+) -> Iterator[Fault]:
     """What of drives differs from what their ways and their traces say. Obstacles at whole steps
     are placed once for each problem.
     """
-    faults = []
-    traces = {chunk.file: _traces(chunk.file) for chunk in chunks}
-    measured = [np.full((len(chunk.ids), 4), math.nan) for chunk in chunks]
-    for name, problem in made.items():
-        concerned = [
-            (chunk, values) for chunk, values in zip(chunks, measured) if name in chunk.rows
-        ]
-        steps = max(
-            (
-                len(trace.clearance)
-                for chunk, _ in concerned
-                for trace in traces[chunk.file].values()
-            ),
-            default=0,
-        )
-        least_distance = _distances(moving[name], steps)
-        for chunk, values in concerned:
-            for row in chunk.rows[name]:
-                trace = traces[chunk.file].get(chunk.ids[row])
-                if trace is None:
-                    faults.append(
-                        Fault(chunk.file, chunk.ids[row], "id", "a drive", "no trace of that id")
-                    )
-                else:
-                    values[row] = _measured(chunk.points[row], trace, problem, least_distance)
-    for chunk, values in zip(chunks, measured):
-        pace = np.array(
-            [
-                moving[name].pace if name in moving else math.nan
-                for name in chunk.words["problem"].to_pylist()
-            ]
-        )
-        length, joins, least, deepest = values.T
-        arrival, clearance_least = chunk.numbers["arrival"], chunk.numbers["clearance_least"]
+    traces = [_traces(chunk.file) for chunk in chunks]
+    steps = max((len(each.clearance) for of in traces for each in of.values()), default=0)
+    distances = cache(lambda name: _distances(moving[name], steps))
+    for chunk, found in zip(chunks, traces):
+        measured = np.full((len(chunk["id"]), 5), math.nan)
+        for row, (run, name, flat) in enumerate(
+            zip(chunk["id"], chunk["problem"], chunk["path_points"])
+        ):
+            if run not in found:
+                yield Fault(chunk.file, run, "id", "a drive", "no trace of that id")
+            elif name in made:
+                points, ends = flat.reshape(-1, 2), (made[name].start, made[name].target)
+                measured[row] = (
+                    np.hypot(*np.diff(points, axis=0).T).sum(),
+                    (tuple(points[0].tolist()), tuple(points[-1].tolist())) == ends,
+                    found[run].clearance.min(),
+                    distances(name)(found[run].points),
+                    moving[name].pace,
+                )
+        length, joins, least, deepest, pace = measured.T
+        arrival, clearance_least = chunk["arrival"], chunk["clearance_least"]
         arrived, low = ~np.isnan(arrival), np.minimum(clearance_least, 0.0) - _TRACE
-        free = np.isnan(chunk.numbers["collision_at"]) & (deepest >= low)
+        free = np.isnan(chunk["collision_at"]) & (deepest >= low)
         again = {
             "length": (length, _SAME),
             "travelled": (length, _SAME),
@@ -548,27 +448,7 @@ def _drive_faults(
             "clearance": (np.maximum(clearance_least, 0.0), _SAME),
             "clearance_least": (least, _TRACE),
         }
-        faults += _differing(chunk, again)
-    return faults
-
-
-def _measured(
-    flat: np.ndarray, trace: _Trace, problem: Problem, least_distance: Callable[[np.ndarray], float]
-) -> tuple[float, bool, float, float]:
-    """Of a drive: the length of its way, whether that joins start and target, the least clearance
-    of its trace, and its least distance to an obstacle at whole steps.
-    """
-    points = flat.reshape(-1, 2)
-    joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (
-        problem.start,
-        problem.target,
-    )
-    return (
-        float(np.hypot(*np.diff(points, axis=0).T).sum()),
-        joins,
-        float(trace.clearance.min()),
-        least_distance(trace.points),
-    )
+        yield from _differing(chunk, again)
 
 
 def _distances(world: World, steps: int) -> Callable[[np.ndarray], float]:

@@ -19,10 +19,10 @@ from bezierplan.analysis.jobs import AuditJob, MeasuredJob, SummaryJob, Tried
 from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.panels import Panel
+from bezierplan.machine.digest import content_digest, function_digest, module_of
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
-from bezierplan.running.digest import content_digest, function_digest, module_of
 from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives

@@ -14,8 +14,8 @@ from bezierplan.figures.page.page_job import (
     StudyShown,
     TableShown,
 )
+from bezierplan.machine.digest import content_digest
 from bezierplan.places import STUDIES, TREE
-from bezierplan.running.digest import content_digest
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.schema import checked
 from bezierplan.study import jobs

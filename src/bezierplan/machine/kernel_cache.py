@@ -13,12 +13,12 @@ import gc
 import inspect
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import FunctionType
-from typing import Any
+from typing import Any, ClassVar
 
 from numba.core.caching import (
     CompileResultCacheImpl,
@@ -31,7 +31,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
 
-from bezierplan.running.digest import kernel_folder
+from bezierplan.machine.digest import kernel_folder
 
 # Seconds between two looks at whether another process still compiles, and how long a process waits
 # that holds a lock itself. A kernel calls kernels of modules that its own imports, so locks are
@@ -45,14 +45,6 @@ PATIENCE = 60.0
 # ones before older ones are collected. numba makes millions of objects that stay until the end;
 # with Python's own thresholds, collections take a tenth of the time.
 COLLECTION_THRESHOLDS = (100_000, 10, 10)
-
-_held: list[Path] = []
-"""Folders in which this process compiles, each for a kernel of the one before."""
-
-meanwhile: list[Callable[[], object]] = []
-"""What a process does, once each, that waits for a kernel which another one compiles: it compiles
-others that it will need.
-"""
 
 
 class _Locator(_CacheLocator):
@@ -148,6 +140,9 @@ class Kernel(CPUDispatcher):
     compiles it.
     """
 
+    held: ClassVar[list[Path]] = []
+    """Folders in which this process compiles, each for a kernel of the one before."""
+
     def enable_caching(self) -> None:
         """Keep compiled forms of this kernel."""
         folder = kernel_folder(self.py_func.__module__, inspect.getfile(self.py_func))
@@ -169,7 +164,7 @@ class Kernel(CPUDispatcher):
             if sig in self.overloads or self._cache.keeps(sig, self.targetctx.codegen()):
                 return super().compile(sig)
             folder = Path(self._cache.cache_path)
-            with _alone(folder), _rare_garbage_collection():
+            with _alone(folder, self.held), _rare_garbage_collection():
                 return super().compile(sig)
 
 
@@ -185,29 +180,26 @@ def _rare_garbage_collection() -> Iterator[None]:
 
 
 @contextmanager
-def _alone(folder: Path) -> Iterator[None]:
+def _alone(folder: Path, held: list[Path]) -> Iterator[None]:
     """Hold the lock of a folder of kernels; the operating system releases it if this process is
-    killed.
+    killed. held: folders in which this process compiles, each for a kernel of the one before.
 
     Without the lock, kernels are compiled by each process that needs them: on a file system without
     locks, and after `PATIENCE` seconds.
     """
-    if folder in _held:
+    if folder in held:
         yield
         return
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
-        until = time.monotonic() + (PATIENCE if _held else math.inf)
+        until = time.monotonic() + (PATIENCE if held else math.inf)
         while not _locked(lock) and time.monotonic() < until:
-            if meanwhile and not _held:
-                meanwhile.pop(0)()
-            else:
-                time.sleep(LOOK)
-        _held.append(folder)
+            time.sleep(LOOK)
+        held.append(folder)
         try:
             yield
         finally:
-            _held.pop()
+            held.pop()
 
 
 def _locked(lock: Any) -> bool:

@@ -29,8 +29,8 @@ NEUTRAL = {
     f"{ROOT}.{name}"
     for name in (
         "places",
-        "running.digest",
-        "running.kernel_cache",
+        "machine.digest",
+        "machine.kernel_cache",
         "running.log",
     )
 }

@@ -1,0 +1,1 @@
+"""What compiled kernels and jobs depend on, and where kernels lie."""
