@@ -18,7 +18,6 @@ SQUARE = [[4, 4], [6, 4], [6, 6], [4, 6], [4, 4]]
 BORDER = [[0, 0], [10, 0], [10, 10], [0, 10], [0, 0]]
 ROS = "image: room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\n"
 CELLS = "....\n.##.\n....\n"
-MOVING_AI = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n"
 
 
 def feature(rings, role="obstacle", **more):
@@ -48,7 +47,6 @@ def folder(tmp_path, monkeypatch):
     for name, text in {
         "room.yaml": ROS,
         "room.txt": CELLS,
-        "room.map": MOVING_AI,
         "room.geojson": ONE,
         "line.py": "",
     }.items():
@@ -75,11 +73,6 @@ def refused(capsys, *words):
 
 # A map's name, its text or bytes, and the line that tells what is wrong with it.
 MAPS = {
-    "an unknown cell of MovingAI": (
-        "map",
-        MOVING_AI.replace(".@@.", ".@ ."),
-        "below the word map: line 2: unknown character ' '",
-    ),
     "1e308": ("geojson", ONE.replace("[6, 4]", "[1e308, 4]"), "1e+308 is not a coordinate"),
     "null": ("geojson", ONE.replace("[6, 4]", "[null, 4]"), "geometry: expected a Polygon"),
     "a list": ("geojson", "[1, 2]", "expected an object with a list of features"),
@@ -144,8 +137,8 @@ LINES = {
         "--resolution: missing key; the side of a pixel",
     ),
     "an out in a file": (
-        ["room.txt", *ENDS, "--out", "room.map/a.svg"],
-        "--out: room.map/a.svg: no folder room.map",
+        ["room.txt", *ENDS, "--out", "room.txt/a.svg"],
+        "--out: room.txt/a.svg: no folder room.txt",
     ),
     "an unknown option": (
         ["room.txt", *ENDS, "--radius", "1"],
@@ -178,13 +171,12 @@ def test_what_editors_and_windows_write_is_read(folder, capsys):
     (folder / "a.TXT").write_bytes(
         b"\xef\xbb\xbf" + CELLS.replace("\n", "\r\n").encode() + b"\r\n\r\n"
     )
-    (folder / "a.map").write_bytes(b"\xef\xbb\xbf" + MOVING_AI.encode() + b"\n")
     (folder / "a.geojson").write_bytes(b"\xef\xbb\xbf" + ONE.encode())
     (folder / "a.yaml").write_bytes(
         b"\xef\xbb\xbf" + ROS.replace("room.png", "C:\\maps\\room.png").encode()
     )
     ends = ["--start", "0.5,2.5", "--target", "0.9,2.5"]
-    for name in ("a.TXT", "a.map", "a.geojson", "a.yaml"):
+    for name in ("a.TXT", "a.geojson", "a.yaml"):
         assert "feasible        yes" in planned(capsys, name, *ends)
 
 

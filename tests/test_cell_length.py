@@ -2,8 +2,6 @@
 spacing, and the traps of grid lines.
 """
 
-import math
-
 import numpy as np
 import pytest
 
@@ -39,16 +37,6 @@ STRAIGHT = [
 
 
 @pytest.mark.parametrize(("start", "target", "four", "eight"), STRAIGHT)
-@pytest.mark.parametrize("steps", [145, 150, 200, 333, 1000, 20_000])
-def test_straight_lines_in_both_directions_with_any_spacing(start, target, four, eight, steps):
-    for a, b in ((start, target), (target, start)):
-        x, y = (np.linspace(a[i], b[i], steps + 1) for i in (0, 1))
-        found = measured(x, y)
-        assert found[:2] == (four, eight)
-        assert found[2] == pytest.approx(math.dist(a, b), rel=1e-12)
-
-
-@pytest.mark.parametrize(("start", "target", "four", "eight"), STRAIGHT)
 def test_straight_paths(start, target, four, eight):
     for path in (polyline(start, target), polyline(target, start)):
         assert cell_length.length4(path, field(100)) == four
@@ -65,25 +53,6 @@ def test_both_diagonals_of_an_empty_field_measure_the_same(side):
     for ends in (((0, 0), (side, side)), ((side, 0), (0, side))):
         curve = Path("bezier", np.linspace(*ends, 5))
         assert cell_length.length4(curve, field(side)) == 1.5 * side
-
-
-def test_a_wave_along_the_diagonal():
-    for steps in (400, 1000, 4000):
-        x = np.linspace(0, 100, steps + 1)
-        y = x + 0.1 * np.sin(x / 10)
-        for found in (measured(x, y), measured(x[::-1], y[::-1])):
-            assert found[:2] == (200.0, 150.0)
-            assert found[2] == pytest.approx(141.384, abs=6e-4)
-
-
-def test_a_path_on_a_grid_line_keeps_to_one_side():
-    # Along the line x = 2.5 between two columns, with rounding to either side of it.
-    y = np.linspace(0, 10, 41)
-    x = 2.5 + 1e-13 * np.where(np.arange(41) % 2, 1, -1)
-    x[0] = x[-1] = 2
-    columns, rows = cell_length.touched_cells(x + 0.5, y + 0.5)
-    assert set(columns) == {2}
-    assert list(rows) == list(range(11))
 
 
 def test_a_coordinate_that_leaves_a_grid_line_is_in_the_next_cell():
@@ -160,21 +129,6 @@ def test_no_free_path_counts_less_than_the_shortest_path_of_cells():
             least = shortest_paths.lattice_path(occupied, (0, 0), (11, 11), 1.5, "free").length
             assert cell_length.length4(path, grid) >= cell_length.length8(path, grid) >= least
     assert found > 20
-
-
-def test_legs():
-    occupied = np.zeros((5, 6), dtype=bool)
-    occupied[2, 3] = True
-    assert cell_length.is_free_leg(occupied, 0.5, 0.5, 5.5, 0.5)
-    assert not cell_length.is_free_leg(occupied, 0.5, 2.5, 5.5, 2.5)
-    # Through the lower left corner of the occupied cell, which touches it only there; barely within
-    # it; barely beside it.
-    assert cell_length.is_free_leg(occupied, 2.5, 2.5, 3.5, 1.5)
-    assert not cell_length.is_free_leg(occupied, 2.5, 2.501, 3.5, 1.501)
-    assert cell_length.is_free_leg(occupied, 2.5, 2.499, 3.5, 1.499)
-    # Outside the grid nothing is free.
-    assert not cell_length.is_free_leg(occupied, 0.5, 0.5, -0.5, 0.5)
-    assert not cell_length.is_free_leg(occupied, 0.5, 0.5, 0.5, 5.5)
 
 
 def test_lengths_are_in_units():

@@ -4,8 +4,6 @@ near.
 
 import math
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +15,7 @@ from bezierplan.geometry.curves import bernstein
 from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
-from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 
 MAPS = Path(__file__).parent / "data" / "maps"
@@ -254,21 +252,6 @@ def test_a_stored_shortest_path_is_free(file):
     assert found.intervals <= 64 + 40 * len(eval(path[1]))
 
 
-def test_lattice_paths_need_few_intervals():
-    grid = from_lines((MAPS / "song2016.txt").read_text().splitlines(), 10.0, "m")
-    blocked = region(grid)
-    steps = np.array([[0, 0], [0, 40], [10, 50], [20, 50], [40, 50]]) + 5.0
-    assert check(polyline(steps), blocked).feasible
-    assert check(polyline(steps), blocked).intervals <= 64
-    along_lines = np.array([[0, 0], [0, 60], [100, 60]], dtype=float)
-    assert (
-        check(
-            polyline(along_lines), region(Grid(np.zeros((16, 16), dtype=bool), 10.0, "m"))
-        ).intervals
-        == 2
-    )
-
-
 @pytest.mark.parametrize("contacts", [1, 3, 10])
 @pytest.mark.parametrize("degree", [2, 5, 11])
 def test_intervals_at_tangents(contacts, degree):
@@ -351,29 +334,6 @@ def test_unfit_shapes_are_refused():
         check(np.zeros((3, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="degree"):
         check(np.zeros((1, 62, 2)), UNIT_DISC)
-
-
-@pytest.mark.parametrize(
-    "blocked",
-    [
-        "Grid(np.eye(3, dtype=bool), 1.0, 'm')",
-        "Circles((0, 9, 0, 9), np.ones((1, 2)), np.ones(1), 'm')",
-    ],
-)
-def test_grids_and_circles_are_checked_without_heavy_libraries(blocked):
-    lines = [
-        "import sys, numpy as np",
-        "from bezierplan.workspaces.circles import Circles",
-        "from bezierplan.workspaces.grid import Grid",
-        "from bezierplan.geometry.checker import check",
-        "from bezierplan.geometry.region import region",
-        f"check(np.zeros((1, 2, 2)), region({blocked}))",
-        "print(*{'shapely', 'scipy.sparse', 'pandas'} & set(sys.modules))",
-    ]
-    done = subprocess.run(
-        [sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == ""
 
 
 def test_the_error_of_a_depth_is_proven():

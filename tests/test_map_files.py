@@ -1,4 +1,4 @@
-"""Maps that people have: ROS map_server maps and MovingAI grids, and every fault in one line."""
+"""Maps that people have: ROS map_server maps and images, and every fault in one line."""
 
 import json
 
@@ -15,18 +15,12 @@ YAML = (
 )
 # Grey values, the top row first: free, unknown and occupied.
 PIXELS = np.array([[254, 254, 254, 254], [254, 205, 0, 254], [254, 254, 254, 254]], dtype=np.uint8)
-MAP = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@@W.\n.TO..\nGS...\n"
 
 
 def ros_map(folder, yaml=YAML, pixels=PIXELS, image="room.png", **options):
     Image.fromarray(pixels).save(folder / image)
     (folder / "room.yaml").write_text(yaml)
     return files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml", **options}, folder)
-
-
-def moving_ai(folder, text=MAP):
-    (folder / "room.map").write_text(text)
-    return files.load({"kind": "moving_ai", "unit": "cell", "file": "room.map"}, folder)
 
 
 def test_a_ros_map(tmp_path):
@@ -224,33 +218,6 @@ def test_what_is_no_image_is_refused(tmp_path):
     (tmp_path / "room.png").write_text("P5, but not really")
     with pytest.raises(ValueError, match=r"image: room.png: cannot be read as an image"):
         files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
-
-
-def test_a_moving_ai_map(tmp_path):
-    assert moving_ai(tmp_path).occupied.tolist() == [
-        [False] * 5,
-        [False, True, True, False, False],
-        [False, True, True, True, False],
-        [False] * 5,
-    ]
-
-
-MAP_FAULTS = {
-    "type": (("type octile\n", ""), "line 1: expected four lines with type octile, height,"),
-    "rows": (("GS...\n", ""), "line 2: height 4, width 5; but 3 x 5 cells follow"),
-    "ragged": (("GS...", "GS.."), "below the word map: line 4 has 4 cells, the first line has 5"),
-    "character": (("GS...", "GX..."), "below the word map: line 4: unknown character 'X'"),
-    "empty": ((MAP, ""), "line 1: expected four lines"),
-}
-
-
-@pytest.mark.parametrize("fault", MAP_FAULTS)
-def test_map_fault_is_one_line(tmp_path, fault):
-    (old, new), told = MAP_FAULTS[fault]
-    assert old in MAP
-    with pytest.raises(ValueError, match=told) as found:
-        moving_ai(tmp_path, MAP.replace(old, new, 1))
-    assert str(found.value).startswith("room.map: ")
 
 
 def test_a_robots_radius_leaves_cells_free_that_are_as_far():

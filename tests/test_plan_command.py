@@ -208,9 +208,6 @@ def test_other_kinds_of_map(capsys, tmp_path):
     ends = ["--start", "-2,0", "--target", "2,0"]
     lines = planned(capsys, tmp_path / "room.yaml", *ends, "--settings", "{turning_radius: 0}")
     assert lines["shortest path"] == "4.82843 m"
-    (tmp_path / "room.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n.@.\n")
-    ends = ["--start", "0.5,0.5", "--target", "2.5,0.5"]
-    assert planned(capsys, tmp_path / "room.map", *ends)["feasible"] == "yes"
 
 
 FAULTS = {

@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.geometry.region import blocks, region
-from bezierplan.running import problems
-from bezierplan.running.descriptions import Descriptions
-from bezierplan.workspaces import files, random_field
-from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces import random_field
 
 FIELD = {"kind": "random_field", "radius": 0.06, "clear_ends": 2.0, "unit": "cell"}
 PROBLEM = {
@@ -35,15 +31,6 @@ def test_a_field_is_drawn_from_its_name_alone():
     assert not np.array_equal(
         one.drawn.centres, random_field.field(FIELD, PROBLEM, "study/other").drawn.centres
     )
-
-
-def test_nested_fields_differ_in_their_last_circles():
-    nested = FIELD | {"nested": True}
-    many = random_field.field(nested, PROBLEM, "study/dense").drawn.centres
-    few = random_field.field(nested, PROBLEM | {"obstacles": 5}, "study/dense").drawn.centres
-    assert np.array_equal(few, many[:5])
-    other = random_field.field(nested, PROBLEM | {"layout": 1}, "study/dense").drawn.centres
-    assert not np.array_equal(many, other)
 
 
 def test_nested_fields_stay_nested_where_draws_are_repeated():
@@ -95,14 +82,6 @@ def test_cells_are_those_whose_centres_lie_in_circles():
     assert grid.cell_of(100, 0) == (0, 100)
 
 
-def test_a_circle_over_the_border_and_one_that_reaches_no_centre():
-    grid = random_field.from_circles(
-        Circles((0, 9, 0, 9), np.array([[0.0, 9.0], [4.5, 4.5]]), np.array([1.0, 0.3]), "cell")
-    )
-    row, column = np.nonzero(grid.occupied)
-    assert sorted(zip(column, row)) == [(0, 8), (0, 9), (1, 9)]
-
-
 def test_circles_keep_clear_of_the_ends():
     for number in range(200):
         grid = random_field.field(
@@ -110,10 +89,6 @@ def test_circles_keep_clear_of_the_ends():
         )
         for end in ((0, 0), (100, 100)):
             assert np.hypot(*(grid.drawn.centres - end).T).min() >= 2.5 + 2
-
-
-def test_no_obstacles_leave_an_empty_field():
-    assert not random_field.field(FIELD, PROBLEM | {"obstacles": 0}, "study/empty").occupied.any()
 
 
 def test_fields_that_cut_off_the_target_are_drawn_again():
@@ -141,32 +116,3 @@ def test_ends_outside_are_told():
         ValueError, match=r"target: \[101, 100\]: outside the field; expected x and y from 0 to 100"
     ):
         random_field.field(FIELD, PROBLEM | {"target": [101, 100]}, "study/dense")
-
-
-def test_a_field_is_written_and_read_bit_by_bit(tmp_path):
-    job = Descriptions("study", {"case1_0_25": PROBLEM}, {"dense": FIELD})
-    made = problems.build_all(job, tmp_path)
-    problems.write(made, job.homes, tmp_path / "problems.parquet")
-    (one,), (again,) = made.values(), problems.read(tmp_path / "problems.parquet").values()
-    assert np.array_equal(one.workspace.occupied, again.workspace.occupied)
-    assert np.array_equal(one.workspace.drawn.centres, again.workspace.drawn.centres)
-    assert one.workspace.origin == again.workspace.origin
-    assert files.to_json(one.workspace) == files.to_json(again.workspace)
-
-
-def test_bounds_of_a_moved_grid_are_those_of_the_same_cells_at_the_origin(tmp_path):
-    job = Descriptions("study", {"case1_0_25": PROBLEM}, {"dense": FIELD})
-    (moved,) = problems.build_all(job, tmp_path).values()
-    at_origin = moved._replace(
-        workspace=type(moved.workspace)(moved.workspace.occupied, 1.0, "cell"),
-        start=(0.5, 0.5),
-        target=(100.5, 100.5),
-    )
-    one, other = shortest_paths.shortest_path(moved), shortest_paths.shortest_path(at_origin)
-    assert one.length == other.length
-    np.testing.assert_allclose(one.points + 0.5, other.points, rtol=0, atol=1e-12)
-    table = problems.bounds_of({"a": moved}).to_pydict()
-    assert table["octile_bound"][0] >= 150
-    assert table["bound"][0] == one.length
-    centre = moved.workspace.drawn.centres[0]
-    assert blocks(region(moved.workspace), tuple(np.rint(np.clip(centre, 0, 100))))

@@ -6,8 +6,6 @@ import math
 
 import numpy as np
 import pytest
-import yaml
-from faults import told
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from studies import study
@@ -20,7 +18,7 @@ from bezierplan.geometry.region import region
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.settings import filled
-from bezierplan.study import jobs, reading
+from bezierplan.study import jobs
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
@@ -203,23 +201,6 @@ def test_the_violation_of_a_sphere_is_the_mean_depth_as_a_share_of_its_radius():
     )
 
 
-def test_the_swarm_comes_close_to_the_exact_way_around_a_sphere():
-    task = Problem("", among((0, 0, 0, 2)), (-4.0, 0.0, -4.0), (4.0, 0.0, 4.0))
-    bound, lengths = spheres.least_length(task.workspace, task.start, task.target), []
-    for seed in range(5):
-        found = chaotic_pso.plan(task, np.random.default_rng(seed), **SETTINGS | {"d_min": 0.01})
-        pieces = curves.bezier_pieces(found.path)
-        assert found.claimed_feasible
-        assert spheres.is_free(pieces, task.workspace)
-        lengths.append(spheres.length(pieces))
-        assert lengths[-1] == pytest.approx(found.objective, rel=1e-3)
-        np.testing.assert_array_equal(
-            chaotic_pso.track(task, np.random.default_rng(seed), **SETTINGS | {"d_min": 0.01})[-1],
-            found.path.points,
-        )
-    assert bound < min(lengths) < 1.02 * bound
-
-
 # The panel.
 
 
@@ -274,102 +255,3 @@ def test_the_figure_shows_what_its_runs_are():
 def test_a_wall_may_be_nearer_than_a_sphere():
     places = np.array([[9.0, 0, 0], [0, 0, -10.5], [0, 3, 0]])
     assert panel._clearance(places, among((0, 0, 0, 2))).tolist() == [1, -0.5, 1]
-
-
-EXPERIMENTS = {
-    "title": "My spheres",
-    "methods": {"swarm": {"planner": "chaotic_pso"}, "line": {"planner": "straight_line"}},
-    "settings": SETTINGS,
-    "workspaces": {
-        "ball": {"kind": "spheres", "bounds": list(BOX), "spheres": [[0, 0, 0, 2]], "unit": "m"},
-        "field": {"kind": "circles", "bounds": list(BOX[:4]), "circles": [[0, 0, 2]], "unit": "m"},
-    },
-    "problems": {"across": {"workspace": "field", "start": [-4, 0], "target": [4, 0]}},
-    "experiments": {
-        "first": {
-            "problems": ["across"],
-            "methods": ["swarm"],
-            "repeats": {"smoke": 1, "full": 1, "extended": 1},
-            "chunk": {"smoke": 1, "full": 1, "extended": 1},
-        }
-    },
-}
-PANEL = {
-    "kind": "spheres",
-    "workspace": "ball",
-    "start": [-4, 0, 0],
-    "target": [4, 0, 1],
-    "method": "swarm",
-    "runs": 1,
-    "plane": "xz",
-}
-
-
-@pytest.fixture
-def folder(tmp_path):
-    """A reader's own study with spheres."""
-    (tmp_path / "mine").mkdir()
-    # Flow style on one line, so that faults can replace words.
-    (tmp_path / "mine" / "experiments.yaml").write_text(
-        yaml.safe_dump(EXPERIMENTS, default_flow_style=True, width=10_000)
-    )
-    artefacts = {"figures": {"ball": {"title": "My ball", "columns": 1, "panels": [PANEL]}}}
-    (tmp_path / "mine" / "artefacts.yaml").write_text(
-        yaml.safe_dump(artefacts, default_flow_style=True, width=10_000)
-    )
-    return tmp_path / "mine"
-
-
-def test_a_reader_declares_spheres_in_a_few_lines(folder):
-    (own,) = reading.load([folder]).values()
-    (options,) = jobs.Figure.of({own.key: own}, "full", own.key, "ball").panels
-    assert options.settings == own.resolved("swarm")
-    frame = panel.data((files.load(own.workspaces["ball"].plain(), folder), own.key), options)
-    assert list(frame["run"].dropna().unique()) == ["mine/ball/swarm/0"]
-
-
-@pytest.mark.parametrize(
-    ("file", "old", "new", "expected"),
-    [
-        (
-            "experiments",
-            "[0, 0, 0, 2]",
-            "[0, 0, 2]",
-            "workspaces: ball: spheres: 0: [0, 0, 2]: expected [x, y, z, radius]",
-        ),
-        (
-            "experiments",
-            "[0, 0, 0, 2]",
-            "[0, 0, 0, -2]",
-            "workspaces: ball: spheres: sphere 0: radius -2; expected at least 1e-06",
-        ),
-        (
-            "experiments",
-            "workspace: field",
-            "workspace: ball",
-            "problems: across: workspace: ball: has three dimensions",
-        ),
-        (
-            "artefacts",
-            "workspace: ball",
-            "workspace: field",
-            "panels: 0: workspace: field: a workspace of kind circles; expected one of kind",
-        ),
-        (
-            "artefacts",
-            "[4, 0, 1]",
-            "[1, 0, 1]",
-            "panels: 0: target: [1.0, 0.0, 1.0]: in a sphere or outside the box",
-        ),
-        (
-            "artefacts",
-            "method: swarm",
-            "method: line",
-            "panels: 0: method: line: its planner cannot plan among spheres",
-        ),
-    ],
-)
-def test_faults_are_reported_in_one_line(file, old, new, expected, folder):
-    message = told(folder / f"{file}.yaml", old, new, folder)
-    assert expected in message
-    assert f"{file}.yaml: " in message

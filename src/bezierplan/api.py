@@ -251,7 +251,7 @@ def read_map(
     ----------
     file : str or Path
         GeoJSON polygons (.geojson, .json); an occupancy map of ROS's map_server (.yaml), or an
-        image alone (.png, .pgm, .bmp); a MovingAI grid (.map), or cells as text (.txt).
+        image alone (.png, .pgm, .bmp); or cells as text (.txt).
     cell : float, optional
         Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that
         need cells.

@@ -20,7 +20,6 @@ KINDS = {
     ".json": "polygons",
     ".yaml": "ros_map",
     ".yml": "ros_map",
-    ".map": "moving_ai",
     ".txt": "grid",
     **dict.fromkeys(IMAGES, "image"),
 }
@@ -56,7 +55,7 @@ def described(
     home = {
         "kind": kind,
         "file": file.name,
-        "unit": unit or ("cell" if kind in ("grid", "moving_ai") else "m"),
+        "unit": unit or ("cell" if kind == "grid" else "m"),
     }
     for name in description:
         if name not in kinds()[kind].model_fields:

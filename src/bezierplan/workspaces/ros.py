@@ -117,7 +117,8 @@ def _occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:
     try:
         with Image.open(file) as image:
             columns, rows = image.size
-            light, known = _shades(image) if columns * rows <= MOST_CELLS else (None, None)
+            if columns * rows <= MOST_CELLS:
+                light, known = _shades(image)
     except Exception as error:  # of a damaged file each format raises another one
         raise ValueError(
             f"image: {file.name}: cannot be read as an image ({type(error).__name__})"
