@@ -115,7 +115,7 @@ def test_points_of_a_path_may_be_whole_or_listed():
         (bp.Path("polyline", np.zeros((3, 3))), ValueError, r"path: points: .*\(n, 2\)"),
         (bp.Path("polyline", np.zeros((3, 2), complex)), ValueError, "path: points: expected"),
         (bp.Path("bezier", np.ones((100, 2))), ValueError, "path: points: 100; expected at most"),
-        (bp.Path("bow", np.ones((3, 2))), ValueError, "path: unknown curve 'bow'"),
+        (bp.Path("bow", np.ones((3, 2))), ValueError, "path: curve: 'bow'; expected one of"),
     ],
 )
 def test_a_path_that_is_none_is_told(path, error, told):

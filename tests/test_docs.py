@@ -101,8 +101,8 @@ def test_fault_in_the_configuration_of_a_module_is_told_in_one_line(own):
     ],
 )
 def test_configuration_of_a_module_is_checked(given, expected):
-    with pytest.raises(Fault, match=f"^config of the module: {expected}"):
-        reading.read_config({"studies": ["song2016"]} | given, alone=True)
+    with pytest.raises(Fault, match=f"^config/config.yaml or --config: {expected}"):
+        reading.read_config({"studies": ["song2016"]} | given)
 
 
 def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
@@ -119,7 +119,7 @@ def test_settings_of_a_planner_are_replaced_one_by_one(tmp_path):
         "studies": [f"{tmp_path}/song2016"],
         "settings": {"song2016": {"penalty": 5.0, "binary_genetic": {"generations": 9}}},
     }
-    resolved = reading.load(reading.read_config(given, alone=True))["song2016"].resolved("smooth")
+    resolved = reading.load(reading.read_config(given))["song2016"].resolved("smooth")
     assert (
         resolved["penalty"],
         resolved["generations"],

@@ -224,8 +224,5 @@ def test_figure_shows_the_own_planner(results):
 
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
-    assert (
-        "Of 2 published numbers, 1 agrees and 1 disagrees. "
-        "Of 2 claims, 1 is supported and 1 is contradicted." in summary
-    )
+    assert "2 published numbers: 1 in agreement, 1 in disagreement. 2 claims: 1 supp" in summary
     assert "| 1 / 1 / 0 of 2 |" in summary

@@ -139,21 +139,6 @@ def test_a_folder_whose_name_is_a_command_is_refused(tree, name):
     assert not (tree / "bad").exists()
 
 
-def test_a_folder_with_blanks_is_no_matter(tree):
-    tree = tree.rename(tree.parent / "a clone")
-    assert (
-        f"{sys.executable} -m venv .venv"
-        in make(tree, "-n", "smoke", f"PYTHON={sys.executable}").stdout
-    )
-
-
-def test_the_first_fitting_python_is_taken(tree, tmp_path):
-    old = executable(tmp_path / "old", other_version(3, 10))
-    good = executable(tmp_path / "good", other_version(3, 12))
-    answer = make(tree, "-n", ".venv/ready", f"PYTHON={old} {good}")
-    assert f"{good} -m venv .venv" in answer.stdout.splitlines()
-
-
 # A Python that installs nothing, but writes down with what it was asked to.
 INSTALLER = """#!/bin/sh
 case "$*" in
@@ -179,12 +164,6 @@ def test_uv_installs_what_is_locked_and_pip_where_uv_cannot(tree, tmp_path, code
     assert (tree / ".venv" / "ready").exists()
 
 
-def test_byte_code_is_kept_whatever_the_environment_says(tree, monkeypatch):
-    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
-    (tree / "shown.mk").write_text('shown:\n\t@echo "<$$PYTHONDONTWRITEBYTECODE>"\n')
-    assert make(tree, "-f", "Makefile", "-f", "shown.mk", "shown").stdout == "<>\n"
-
-
 def test_a_finished_set_up_is_not_done_again(finished):
     assert make(finished, "-q", ".venv/ready-dev").returncode == 0
 
@@ -201,12 +180,6 @@ def test_another_environment_is_set_up_anew(finished, name):
     later = (finished / ".venv" / "ready").stat().st_mtime + 10
     os.utime(finished / name, (later, later))
     assert make(finished, "-q", ".venv/ready-dev", f"PYTHON={sys.executable}").returncode == 1
-
-
-def test_a_half_made_environment_is_set_up_anew(finished):
-    (finished / ".venv" / "ready").unlink()
-    answer = make(finished, "-n", ".venv/ready", f"PYTHON={sys.executable}")
-    assert "rm -rf .venv" in answer.stdout.splitlines()
 
 
 def test_an_environment_whose_python_has_gone_is_set_up_anew(finished):
