@@ -198,6 +198,7 @@ def _judge_variant(
     reasons = [
         _by_own_criterion(claim, verdict),
         _less_than(deciding, verdict, material),
+        _one_by_one(judged, verdict),
         _reason(shown),
         _disagreement(judged),
         claim.note or "",
@@ -245,6 +246,14 @@ def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str
         "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
     )
     return f"{where}differs by less than {size}"
+
+
+def _one_by_one(judged: list[_Judged], verdict: str) -> str:
+    """Of a sentence without effect that takes comparisons together: how many of these hold."""
+    single = [each.mark for each in judged if not each.primary and each.comparison]
+    if verdict != "no effect" or "+" not in single:
+        return ""
+    return f"one by one {single.count('+')} of {len(single)} hold"
 
 
 def _findings(
