@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 from types import SimpleNamespace
 
-import pandas as pd
 import pytest
 import starts
 from snakemake.iocontainers import OutputFiles
@@ -88,23 +87,6 @@ def test_full_disk_ends_a_job_with_one_line_and_leaves_no_part(tmp_path):
     assert done.stdout.split() == ["1", "log"]
 
 
-def test_foreign_table_in_the_place_of_runs_is_told(job, tmp_path, capsys):
-    file = tmp_path / "runs" / "0.parquet"
-    file.parent.mkdir()
-    pd.DataFrame({"other": [1]}).to_parquet(file)
-    job.input = [str(file)]
-    with pytest.raises(SystemExit, match=r"^1$"), log.job(job):
-        raise KeyError("repeat")
-    assert (
-        capsys.readouterr().err
-        == f"{file}: not a table of runs; delete it and start again: the workflow reproduces it\n"
-    )
-    pd.DataFrame({"id": ["a"]}).to_parquet(file)
-    with pytest.raises(SystemExit, match=r"^1$"), log.job(job):
-        raise KeyError("repeat")
-    assert capsys.readouterr().err.startswith("KeyError: 'repeat'")
-
-
 SWAPS = """
 import os
 os.access = lambda *_: False  # the tree cannot be written, so compiled code goes below the home
@@ -168,17 +150,6 @@ def test_second_workflow_in_a_folder_ends_at_once_and_the_first_goes_on(tmp_path
     assert second.returncode == 1
     assert "LockException" in second.stderr
     assert (tmp_path / "results/a.txt").stat().st_size > 0
-
-
-def test_the_foreign_table_is_named_and_not_a_good_one_before_it(tmp_path):
-    runs = tmp_path / "runs"
-    runs.mkdir()
-    pd.DataFrame({"id": ["a"]}).to_parquet(runs / "0.parquet")
-    pd.DataFrame({"other": [1]}).to_parquet(runs / "1.parquet")
-    assert log.damaged([str(runs / "0.parquet")]) == ""
-    assert log.damaged([str(runs / name) for name in ("0.parquet", "1.parquet")]).startswith(
-        f"{runs / '1.parquet'}: not a table of runs"
-    )
 
 
 FAILS = """

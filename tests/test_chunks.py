@@ -13,7 +13,7 @@ import pytest
 from studies import studies
 
 from bezierplan.analysis import results
-from bezierplan.running import columns, log, problems, rows
+from bezierplan.running import columns, problems, rows
 from bezierplan.running.inputs import Files
 from bezierplan.study import definition, jobs
 from bezierplan.study.experiments import Experiment
@@ -66,13 +66,6 @@ def test_conditions_with_fewer_runs_leave_the_later_chunks(method, numbers, firs
     assert [chunk.repeats for chunk in made] == [
         [1000 * number, 1000 * number + 1000] for number in chunks
     ]
-
-
-def test_other_scales_have_all_runs():
-    own = studies()["tharwat2018"]
-    for scale in ("smoke", "full"):
-        assert list(jobs.chunks(own, "maps", "random_search", scale)) == [0]
-        assert len(jobs.job(own, "maps", "pso", scale, 0).conditions()) == 6
 
 
 def test_a_caption_says_where_there_are_fewer_runs():
@@ -232,27 +225,4 @@ def test_a_file_in_the_place_of_another_is_told(chunks, fault):
     assert (
         str(found.value)
         == f"{chunks / place}: {told}; delete it and start again: the workflow reproduces it"
-    )
-
-
-@pytest.mark.parametrize("cut", [1, 100])
-@pytest.mark.parametrize(
-    "place", [f"{MINE}/1.parquet", f"{MINE}/1.times.parquet", "problems.parquet", "bounds.parquet"]
-)
-def test_a_file_that_was_cut_off_is_told(chunks, place, cut):
-    (chunks / place).write_bytes((chunks / place).read_bytes()[:-cut])
-    with pytest.raises(ValueError, match=f"{place}: not a whole Parquet file; delete it"):
-        read(chunks)
-
-
-@pytest.mark.parametrize("content", [b"", b" \n", b"PAR1\x15\x04", b"<!doctype html>", b"a,\0\n"])
-def test_what_is_no_csv_is_told(tmp_path, content):
-    (tmp_path / "results").mkdir()
-    table = tmp_path / "results" / "claims.csv"
-    table.write_bytes(b"id,verdict\n")
-    assert not log.damaged([str(table)])
-    table.write_bytes(content)
-    assert (
-        log.damaged([str(table)])
-        == f"{table}: not a csv file; delete it and start again: the workflow reproduces it"
     )

@@ -7,15 +7,11 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure
-from panels import options_of
 from PIL import Image, ImageSequence
-from pivots import pivot_of
 
-from bezierplan.analysis import metrics, results, tables
+from bezierplan.analysis import metrics, results
 from bezierplan.commands import replay
-from bezierplan.figures import animation, sheet
-from bezierplan.figures.panels import lines
+from bezierplan.figures import animation
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems, rides, worlds
 from bezierplan.running.chunk import Condition
@@ -375,41 +371,3 @@ def test_delays_are_paired_over_the_worlds_that_all_methods_finish():
         [0.1, np.nan, 0.2, np.nan], nan_ok=True
     )
     assert metrics.values(found.runs, "paired_gap_least_arrival", {}).isna().all()
-
-
-def test_an_entry_of_a_table_pairs_the_methods_that_it_names():
-    values = [
-        {"metric": "feasible", "statistic": "share", "label": "share", "decimals": 2},
-        {
-            "metric": "paired_gap_least_arrival",
-            "statistic": "median",
-            "label": "delay",
-            "decimals": 3,
-            "where": {"method": ["one", "other"]},
-        },
-    ]
-    spec = pivot_of({"index": ["method"], "columns": ["value"], "values": values})
-    table = tables.pivot(paired_runs(), spec, {})
-    assert table["delay"].to_dict() == {"blind": "", "one": "0.100", "other": "0.200"}
-    assert table["share"].to_dict() == {"blind": "0.00", "one": "1.00", "other": "0.50"}
-    assert table["runs counted: delay"].to_dict() == {
-        "blind": "",
-        "one": "1 of 2",
-        "other": "1 of 2",
-    }
-
-
-def test_the_caption_says_how_many_runs_a_point_has():
-    found = paired_runs()
-    runs = found.runs.assign(obstacles=5).pipe(results.select, {"method": ["one", "other"]})
-    panel = {
-        "experiment": "drives",
-        "x": "obstacles",
-        "metric": "paired_gap_least_arrival",
-        "statistic": "median",
-        "hue": "method",
-    }
-    options = options_of(lines, **panel)
-    frame = lines.data(found._replace(runs=runs), options)
-    note = lines.draw(Figure().subplots(), frame, sheet.Scene({}, {}, {}, "m"), options)
-    assert note.told == "median of 1 of 2 runs per point, 50 to 100 % feasible"

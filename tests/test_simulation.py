@@ -17,7 +17,7 @@ from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.regions import region_of
 from bezierplan.running.simulation.robot import drive
-from bezierplan.running.simulation.ways import drivable, way
+from bezierplan.running.simulation.ways import way
 from bezierplan.workspaces import worlds
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Path, Problem
@@ -138,22 +138,6 @@ def test_grazing_collisions_between_steps_are_found(excess, hits, at):
         )
 
 
-def test_a_waiting_robot_can_be_hit():
-    world = circles((10, 2, 1, 0, 0.5))
-    place = np.array([[10.0, 10.0], [10.0, 10.0]])
-    found = motion_check.check(Motion(place, np.array([0.0, 30.0])), world)
-    assert found.collision_at == pytest.approx(14.0)
-
-
-def test_a_way_out_of_the_field_is_a_collision():
-    world = circles()
-    found = motion_check.check(
-        Motion(np.array([[1.0, 1.0], [1.0, 21.0], [1.0, 5.0]]), np.array([0.0, 4.0, 8.0])), world
-    )
-    assert found.collision_at == 4.0
-    assert found.depth == 1.0
-
-
 def test_cells_collide_only_while_they_are_occupied():
     maps = tuple(
         from_lines(lines, 1.0, "m")
@@ -194,18 +178,6 @@ def test_a_robot_that_plans_again_drives_round_a_circle_that_comes_into_its_way(
     assert math.isnan(motion_check.check(ride.motion, world).collision_at)
     lengths = np.hypot(*np.diff(ride.motion.points, axis=0).T)
     assert (lengths <= np.diff(ride.motion.times) + 1e-9).all()  # never faster than the pace
-
-
-def test_a_robot_without_a_plan_waits_until_the_world_ends():
-    world = circles(end=7)
-    ride = drive(
-        world,
-        across(world),
-        REPLANS,
-        lambda problem, state: (straight(problem, state)[0]._replace(path=None), state),
-    )
-    assert not ride.arrived
-    assert (ride.waited, ride.motion.times[-1]) == (7.0, 7.0)
 
 
 def test_a_robot_that_looks_ahead_ignores_a_circle_that_will_have_passed():
@@ -332,13 +304,6 @@ def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, repla
     assert [plan.time for plan in ride.plans[1:]] == [0.8, 2.0][:replans]
 
 
-@pytest.mark.parametrize(("velocity", "replans"), [(0.0, 0), (0.1, 19)])
-def test_circles_that_move_change_the_world_at_every_step(velocity, replans):
-    world = circles((10, 2, 1, velocity, 0))
-    ride = drive(world, across(world), REPLANS.but(replan="when_changed"), straight)
-    assert (ride.arrived, ride.replans) == (True, replans)
-
-
 def rounded(problem, state):
     """A planner whose curves touch what they pass."""
     return rounded_shortest_path.plan(
@@ -371,15 +336,6 @@ def test_a_robot_drives_along_a_curve_that_touches_a_cell(replan):
     assert math.isnan(motion_check.check(ride.motion, world).collision_at)
 
 
-def test_chords_of_a_curve_that_enters_an_obstacle_stay():
-    """Only what touches is cut finer: a curve that enters would be cut without end."""
-    path = Path("bezier", np.array([[0.0, 10.0], [10.0, 12.0], [20.0, 10.0]]))
-    enters, passes = (
-        region(circles((10, 10.5, radius, 0, 0)).obstacles(0)) for radius in (2.0, 0.1)
-    )
-    assert len(drivable(path, 0.5, passes)) <= len(drivable(path, 0.5, enters)) < 150
-
-
 def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
     grid = from_lines(["....", ".##.", "...."], 1.0, "m")
     motion = Motion(np.array([[0.5, 0.5], [0.5, 1.75]]), np.array([0.0, 1.25]))
@@ -388,13 +344,6 @@ def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
     expected = 0.25 + math.dist((0.5, 1.5), (1.5, 2.5)) + math.dist((1.5, 2.5), (2.5, 2.5)) + 1.0
     assert cells.least_plan(motion, grid, (3.5, 2.5)) == pytest.approx(expected)
     assert math.isnan(cells.least_plan(motion, grid, (3.4, 2.5)))
-
-
-def test_the_free_length_of_a_way_ends_at_an_occupied_cell():
-    grid = from_lines(["....", "..#.", "...."], 1.0, "m")
-    along = way(np.array([[0.5, 1.5], [3.5, 1.5]]))
-    assert cells.free_length(grid, along, 0.25) == pytest.approx(1.5)
-    assert cells.free_length(grid, along, 2.5) == math.inf
 
 
 @given(
@@ -410,12 +359,6 @@ def test_the_region_that_is_kept_of_a_map_is_the_map_s_own(occupied, shape, cell
     for name in ("origin", "blocked", "counts", "edges", "contacts"):
         assert np.array_equal(getattr(kept, name), getattr(own, name))
     assert region_of(Grid(grid.occupied.copy(), cell, "m", origin)) is kept
-
-
-def test_no_region_of_shapes_or_of_a_large_map_is_kept():
-    large = Grid(np.zeros((101, 100), dtype=bool), 1.0, "m")
-    for workspace in (large, circles((5, 5, 1, 0, 0)).obstacles(0)):
-        assert region_of(workspace) is not region_of(workspace)
 
 
 # What no robot can beat

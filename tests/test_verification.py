@@ -55,11 +55,6 @@ def test_nothing_is_said_of_times_single_runs_and_extremes(given):
     assert verification.failed(found).empty
 
 
-def test_numbers_are_matched_by_name_not_by_place():
-    own = rows([1.0, 2.0])
-    assert verification.compared(rows([1.0, 2.0, 3.0]).iloc[::-1], own)["p"].tolist() == [1.0, 1.0]
-
-
 def test_names_match_however_a_column_was_read():
     kept, own = (rows([1.0, 2.0]).assign(method=method) for method in (["10.0", "20.0"], [10, 20]))
     assert len(verification.compared(kept, own)) == 2

@@ -10,7 +10,7 @@ import pyarrow.parquet as parquet
 import pytest
 
 from bezierplan.__main__ import main
-from bezierplan.running import execution, problems, recheck, rides, rows, worlds
+from bezierplan.running import execution, problems, rides, rows, worlds
 from bezierplan.running.chunk import Chunk
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
@@ -297,14 +297,6 @@ def test_points_that_are_no_path_are_told(results, capsys):
     status, lines, _ = verified(capsys, results)
     assert status == 1
     assert sum(": path_points: stored a path, recomputed " in line for line in lines) == 4
-
-
-def test_the_digest_of_results_is_that_of_the_workflow_whatever_the_tasks(results):
-    whole = recheck.tasks(results)
-    alone = [
-        recheck.Task(task.problems, task.bounds, (file,)) for task in whole for file in task.runs
-    ]
-    assert recheck.verify(whole, 1).digest == recheck.verify(alone, 1).digest
 
 
 def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):

@@ -188,15 +188,13 @@ def row(
     return identity(chunk, condition, repeat) | outcome._asdict() | plan.extra
 
 
-def run_chunk(
-    problems: dict[str, Problem], chunk: Chunk, timed_alike: bool = True
-) -> tuple[pa.Table, pa.Table]:
+def run_chunk(problems: dict[str, Problem], chunk: Chunk) -> tuple[pa.Table, pa.Table]:
     """The runs of a chunk (columns as in `columns`) and, in a separate table because they are never
     reproducible, their times.
 
-    timed_alike: whether a warm-up makes times comparable, whose runs must repeat themselves. Raises
-    PlannerFailure, naming the run, if a planner fails, does not return a valid plan for the problem
-    (`row`), changes a problem, or gives another plan when its first run is repeated.
+    A warm-up makes times comparable, and its runs must repeat themselves. Raises PlannerFailure,
+    naming the run, if a planner fails, does not return a valid plan for the problem (`row`),
+    changes a problem, or gives another plan when its first run is repeated.
     """
     met = {name: problem for name, problem in problems.items() if name in chunk.problems}
     blocked = {name: region(problem.workspace) for name, problem in met.items()}
@@ -211,7 +209,7 @@ def run_chunk(
         chunk,
         met,
         [task(chunk, planned[k], repeat) for k, repeat in order],
-        warm_up if timed_alike else None,
+        warm_up,
     ):
         k, repeat = order[max(number, 0)]
         problem = planned[k].problem

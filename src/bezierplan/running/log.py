@@ -24,8 +24,6 @@ LAST = "CRITICAL "
 """What comes, in the log of a job that has failed, before the line that says why."""
 MOST_FRAMES, MOST_LINES, LONGEST_LINE = 100, 400, 2000
 """The most frames and lines of a traceback in a log, and the most characters of a line."""
-RUNS_COLUMN = "id"
-"""A column of every table of runs."""
 
 
 @contextmanager
@@ -115,32 +113,16 @@ def full_disk(error: Exception, files: Any) -> str:
 
 
 def damaged(files: Iterable[str]) -> str:
-    """What to do about the first Parquet file that is cut off, or is no table of runs in the place
-    of one, or the first csv file of results that is none; empty if there is none.
-    """
+    """What to do about the first Parquet file that is cut off; empty if there is none."""
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
-    for file in map(Path, files):
-        what = ""
-        if file.suffix == ".csv" and "results" in file.parts and not _is_text(file):
-            what = "csv file"
-        if file.suffix == ".parquet":
-            try:
-                columns = parquet.read_schema(file).names
-                if "runs" in file.parts[-4:] and RUNS_COLUMN not in columns:
-                    what = "table of runs"
-            except (OSError, pa.ArrowException):
-                what = "whole Parquet file"
-        if what:
-            return f"{file}: not a {what}; delete it and start again: the workflow reproduces it"
+    for file in files:
+        try:
+            _ = file.endswith(".parquet") and parquet.read_schema(file)
+        except (OSError, pa.ArrowException):
+            return (
+                f"{file}: not a whole Parquet file; delete it and start again: the workflow "
+                "reproduces it"
+            )
     return ""
-
-
-def _is_text(file: Path) -> bool:
-    """Whether a file begins like a table of text: not empty, nothing binary, and no page."""
-    try:
-        begin = file.read_bytes()[:4096]
-    except OSError:
-        return False
-    return bool(begin.strip()) and b"\0" not in begin and not begin.startswith((b"PAR1", b"<"))
