@@ -166,14 +166,14 @@ MISPLACED = {
     "runs for times": (
         f"{MINE}/0.times.parquet",
         f"{MINE}/1.parquet",
-        "not the times of 0.parquet",
+        "no column cpu_s",
     ),
     "times for runs": (
         f"{MINE}/0.parquet",
         f"{MINE}/0.times.parquet",
-        "of experiment no runs, not first",
+        "no column study",
     ),
-    "bounds for runs": (f"{MINE}/0.parquet", "bounds.parquet", "of experiment no runs, not first"),
+    "bounds for runs": (f"{MINE}/0.parquet", "bounds.parquet", "no column id"),
     "a csv for runs": (f"{MINE}/0.parquet", b"id,length\n1,2\n", "not a whole Parquet file"),
     "a page for runs": (f"{MINE}/0.parquet", b"<html></html>", "not a whole Parquet file"),
     "nothing for runs": (f"{MINE}/0.parquet", b"", "not a whole Parquet file"),
@@ -183,7 +183,7 @@ MISPLACED = {
     "runs for bounds": (
         "bounds.parquet",
         f"{MINE}/0.times.parquet",
-        "not of the problems that the runs are of",
+        "no column problem",
     ),
     "runs of an earlier version": (
         f"{MINE}/0.parquet",

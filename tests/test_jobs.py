@@ -89,7 +89,6 @@ def test_files_appear_when_all_are_written(tmp_path):
 
 def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(log, "end_with_parent", lambda: None)
-    monkeypatch.setattr(log.watchdog, "supervise", lambda *_: None)
     damaged = tmp_path / "cut.parquet"
     damaged.write_bytes(b"PAR1")
     reasons = {
