@@ -166,36 +166,6 @@ def test_a_superlative_that_fails_by_the_closest_alone_says_against_which_it_hol
     assert judged(LOWER | {"than": ["b", "c"], "together": True}, third)["where_it_holds"] == ""
 
 
-def test_a_superlative_holds_in_the_printed_numbers_if_all_of_it_does():
-    check = LOWER | {"than": ["b", "c"], "together": True}
-    runs = table({name: sample(name, mean) for name, mean in (("a", 0), ("b", 1), ("c", 2))})
-    for other, held in ((3.0, "1 of 1"), (0.5, "0 of 1")):
-        printed = pd.DataFrame(
-            {
-                "method": ["a", "b", "c"],
-                "metric": "objective",
-                "statistic": "mean",
-                "value": [1.0, 2.0, other],
-                "n": 10,
-            }
-        )
-        artefacts = {"t": [{"experiment": "tried", "published": "t.csv"}]}
-        assert (
-            judged(check, runs, published={"t": printed}, artefacts=artefacts)["published"] == held
-        )
-
-
-def test_a_median_of_seconds_is_set_beside_the_printed_mean():
-    check = LOWER | {"metric": "cpu_s", "scale": "relative", "statistic": "median", "margin": 0.25}
-    runs = table({"a": sample("a", 10), "b": sample("b", 20)}, metric="cpu_s")
-    printed = pd.DataFrame(
-        {"method": ["a", "b"], "metric": "cpu_s", "statistic": "mean", "value": [1.0, 2.0], "n": 10}
-    )
-    artefacts = {"t": [{"experiment": "tried", "published": "t.csv"}]}
-    row = judged(check, runs, published={"t": printed}, artefacts=artefacts)
-    assert row[["verdict", "published"]].to_list() == ["supported", "1 of 1"]
-
-
 def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
     """Runs of one method at five values of `particles`; the mean grows with slope, the standard
     deviation is std times the number.
@@ -875,26 +845,16 @@ PRINTED = pd.DataFrame(
         "value": [5.0, 6.0, 4.0],
     }
 )
-TABLE = {
-    "table1": [
-        {
-            "experiment": "tried",
-            "published": "table1.csv",
-            "where": {"method": ["a", "b", "c"]},
-        }
-    ]
-}
+TABLE = {"table1": [{"experiment": "tried", "published": "table1.csv"}]}
 
 
 def with_printed(
-    check: dict, printed: pd.DataFrame = PRINTED, **material
+    check: dict, printed: pd.DataFrame = PRINTED, runs=None, **material
 ) -> tuple[pd.Series, pd.DataFrame]:
+    claim = {"checks": [check], "artefact": "table1"}
+    runs = table(TIERS) if runs is None else runs
     summary, details = judge(
-        {"checks": [check], "artefact": "table1"},
-        table(TIERS),
-        published={"table1": printed},
-        artefacts=TABLE,
-        **material,
+        claim, runs, published={"table1": printed}, artefacts=TABLE, **material
     )
     return summary.iloc[0], details
 
@@ -909,6 +869,30 @@ def test_the_same_check_on_the_printed_numbers():
     assert with_printed(WITHIN)[0]["published"] == "1 of 1"
     assert with_printed(WITHIN | {"margin": 0.5})[0]["published"] == "0 of 1"
     assert with_printed(SHARE | {"event": {"below": 5.5}})[0]["published"] == "1 of 1"
+
+
+@pytest.mark.parametrize(("value", "published"), [(7.0, "1 of 1"), (4.0, "0 of 1")])
+def test_a_superlative_holds_in_the_printed_numbers_if_all_of_it_does(value, published):
+    check = LOWER | {"than": ["b", "c"], "together": True}
+    printed = PRINTED.assign(value=[5.0, 6.0, value])
+    assert with_printed(check, printed)[0]["published"] == published
+
+
+def test_a_median_of_seconds_is_set_beside_the_printed_mean():
+    check = LOWER | {"metric": "cpu_s", "scale": "relative", "statistic": "median", "margin": 0.25}
+    runs = table({"a": sample("a", 10), "b": sample("b", 20)}, metric="cpu_s")
+    row, _ = with_printed(check, PRINTED.assign(metric="cpu_s"), runs)
+    assert row[["verdict", "published"]].to_list() == ["supported", "1 of 1"]
+
+
+@pytest.mark.parametrize(
+    ("values", "published"), [([1, 3, 2, 4, 9], "1 of 1"), ([9, 7, 8, 2, 1], "0 of 1")]
+)
+def test_trend_over_printed_numbers(values, published):
+    same = {"metric": "objective", "statistic": "mean", "n": 10, "unit": "m"}
+    printed = pd.DataFrame({"particles": [5, 10, 20, 30, 50], **same, "value": values})
+    row, _ = with_printed(TREND, printed, over_x(0.2))
+    assert row["published"] == published
 
 
 def test_a_variant_stands_beside_the_numbers_of_its_method():
@@ -937,34 +921,6 @@ def test_slopes_that_should_be_equal_are_equal_on_every_processor():
     changes = 0.5 * np.array([[0, 0, 1, 2, 2], [2, 2, 1, 0, 0], [0, 0, 0, 0, 0], [1, 0, 0, 0, 1]])
     slopes = np.abs(trend._slopes(x, (constant[:, None] + changes).reshape(-1, 5)))
     assert sorted(set(slopes.tolist())) == [0.0, pytest.approx(0.06)]
-
-
-def test_trend_over_printed_numbers():
-    printed = pd.DataFrame(
-        {
-            "particles": [5, 10, 20, 30, 50],
-            "metric": "objective",
-            "statistic": "mean",
-            "n": 10,
-            "unit": "m",
-        }
-    )
-    artefacts = {"table1": [{"experiment": "tried", "published": "table1.csv"}]}
-    claim = {"checks": [TREND], "artefact": "table1"}
-    row = judge(
-        claim,
-        over_x(0.2),
-        published={"table1": printed.assign(value=[1, 3, 2, 4, 9])},
-        artefacts=artefacts,
-    )[0].iloc[0]
-    assert row["published"] == "1 of 1"
-    row = judge(
-        claim,
-        over_x(0.2),
-        published={"table1": printed.assign(value=[9, 7, 8, 2, 1])},
-        artefacts=artefacts,
-    )[0].iloc[0]
-    assert row["published"] == "0 of 1"
 
 
 def test_conditions_that_the_paper_does_not_tell_apart_are_not_printed():
@@ -1130,32 +1086,13 @@ def test_degenerate_values_give_no_fault(n, value):
         )
         for size in (1, 2, 3, 4)
     )
-    one_size = {
-        kind: check | {"where": check.get("where", {}) | {"problem_size": 1}}
-        for kind, check in ANY_KIND.items()
-        if kind != "trend"
-    }
-    checks = {
-        f"C{number}": check for number, check in enumerate((ANY_KIND | one_size).values(), start=1)
-    }
-    together = [
-        Claim(id=name, place="1", statement="It is so.", checks=[check])
-        for name, check in checks.items()
-    ]
-    results = {"tried": Results(runs.reset_index(drop=True), PROBLEMS, pd.DataFrame())}
-    found = judging.judge(
-        together, results, {}, {}, "study", {}, variant_of={}, paired={}, repeats={"tried": 10}
-    )[0].set_index("id")
-    assert set(found["verdict"]) <= {"no effect", "undecided", "contradicted", "supported"}
-    if math.isnan(value) or n < 6:
+    for kind, check in ANY_KIND.items():
+        where = check.get("where", {}) | ({} if kind == "trend" else {"problem_size": 1})
+        row = judged(check | {"where": where}, runs)
+        assert row["verdict"] in ("no effect", "undecided", "contradicted", "supported")
         # One counterexample decides `all`.
-        few = found.drop(
-            index=[]
-            if math.isnan(value)
-            else [name for name, check in checks.items() if check.get("threshold") == "all"]
-        )
-        assert set(few["verdict"]) == {"undecided"}
-        assert few["reason"].all()
+        if math.isnan(value) or (n < 6 and kind != "all"):
+            assert (row["verdict"], bool(row["reason"])) == ("undecided", True)
 
 
 @pytest.mark.parametrize("kind", ["lower", "median", "ordered", "equal_within", "difference"])

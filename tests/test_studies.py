@@ -13,14 +13,13 @@ from studies import KEYS, arguments, drawing
 from studies import study as shared
 
 from bezierplan.analysis import audit, metrics
-from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.papers import song2016, tharwat2018
 from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
-from bezierplan.schema import checked, model
-from bezierplan.study import checks, reading, targets
+from bezierplan.schema import checked
+from bezierplan.study import checks, jobs, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
@@ -62,14 +61,11 @@ def test_audit_of_song2016():
 
 
 def test_chaotic_sequences():
-    parameters = chaotic_maps.Parameters(
-        **{name: SEQUENCES[name] for name in chaotic_maps.Parameters._fields}
-    )
     table = tharwat2018.chaotic_sequences(**SEQUENCES)
     assert table.groupby("map").size().to_dict() == dict.fromkeys(tharwat2018.CHAOTIC, 500)
     assert table["value"].between(0, 1).all()
     for name, own in table.groupby("map"):
-        again = chaotic_maps.sequence(name, own["value"].iloc[0], 500, parameters)
+        again = chaotic_maps.sequence(name, own["value"].iloc[0], 500, SEQUENCES["singer_mu"])
         assert again.values.tolist() == own["value"].to_list()
         assert again.collapsed_at == 0
 
@@ -365,8 +361,7 @@ def test_flow_chart_has_a_box_around_every_step():
 
 def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
-    params = targets.audit_params({"tharwat2018": study}, "full", "tharwat2018")
-    layouts = model.job(AuditJob, params["job"]).layouts
+    layouts = jobs.Audit.of({"tharwat2018": study}, "full", "tharwat2018").audit.layouts
     tables = published("tharwat2018")
     compared = {name: audit.read_published(study.published_file(name)) for name in layouts}
     rows = audit.table(
