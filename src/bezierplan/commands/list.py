@@ -18,7 +18,7 @@ def main(*words: str, settings: bool = False, studies: Sequence[str] = ()) -> No
     Parameters
     ----------
     *words : str
-        kinds (tables, figures, methods, workspaces, experiments, claims) and studies; without any,
+        kinds (tables, figures, methods, experiments, claims) and studies; without any,
         all of them
     settings : bool
         each planner's settings: accepted values, meaning, unit, source
@@ -78,7 +78,6 @@ KINDS: dict[str, Callable[[Study], Iterable[str]]] = {
     "tables": lambda study: _titled(study, study.tables),
     "figures": lambda study: _titled(study, study.figures),
     "methods": _methods,
-    "workspaces": lambda study: (f"{k:20} {each.kind}" for k, each in study.workspaces.items()),
     "experiments": lambda study: (
         f"{name:20} {len(each.problems)} problems, {len(each.methods)} methods, repeats "
         f"{each.repeats}"
