@@ -1,8 +1,10 @@
 """Figures: what is drawn stands in the table beside them, and can be read in print."""
 
-import inspect
+import functools
+import itertools
 import subprocess
 import sys
+import tempfile
 from dataclasses import replace
 from pathlib import Path as File
 
@@ -11,29 +13,26 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from panels import options_of, panels_of
 
-from bezierplan.analysis import metrics
 from bezierplan.analysis.results import Results
+from bezierplan.figures import glance, sheet, style
 from bezierplan.figures import panels as kinds_of_panel
-from bezierplan.figures import sheet, style
 from bezierplan.figures.panels import (
     Sources,
     along_path,
+    bars,
     boxes,
     clearance,
     convergence,
-    dots,
-    drawing,
     lines,
     paths,
     workspace,
 )
 from bezierplan.geometry import curves
-from bezierplan.workspaces import ground, random_field
+from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -95,21 +94,11 @@ def scene(found: Results) -> sheet.Scene:
     )
 
 
-def panels() -> list[dict]:
-    run = {"experiment": "routes", "where": {"problem": "0_15", "method": "smooth"}, "pick": LOWEST}
-    return [
-        {"kind": "paths", "title": "0 to 15", **run},
-        {"kind": "convergence", "title": "0 to 15", **run},
-        {"kind": "along_path", "title": "0 to 15", **run, "quantity": "curvature", "limit": 0.1},
-        {
-            "kind": "workspace",
-            "title": "embedded",
-            "workspace": "narrow",
-            "numbers": "all",
-            "embed": True,
-        },
-        {"kind": "workspace", "title": "circles", "workspace": "circles"},
-    ]
+RUN = {"experiment": "routes", "where": {"problem": "0_15", "method": "smooth"}, "pick": LOWEST}
+CURVATURE = {"kind": "along_path", **RUN, "quantity": "curvature", "limit": 0.1}
+METHODS = {"experiment": "routes", "where": {"method": ["smooth", "coarse", "random"]}}
+CLOSE = {"control": "points", "view": [-9, 9, -4, 5], "pick": {"median": "length"}}
+OF_THREE = {"experiment": "routes", "where": {"method": "smooth", "points": 3}}
 
 
 def comparison(published: pd.DataFrame | None = None) -> Results:
@@ -189,71 +178,47 @@ def marks(home: Workspace | None = None) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def comparing_panels() -> list[dict]:
-    runs = {"experiment": "routes", "where": {"method": ["smooth", "coarse", "random"]}}
-    smooth = {"experiment": "routes", "where": {"method": "smooth"}}
-    return [
-        {"kind": "convergence", "title": "methods", **runs, "hue": "method"},
-        {
-            "kind": "convergence",
-            "title": "points",
-            **smooth,
-            "hue": "points",
-            "statistic": "median",
-        },
-        {
-            "kind": "lines",
-            "title": "points",
-            **smooth,
-            "x": "points",
-            "metric": "objective",
-            "repeats": [0, 1],
-        },
-        {
-            "kind": "lines",
-            "title": "methods",
-            **runs,
-            "x": "points",
-            "metric": "length",
-            "hue": "method",
-        },
-        {
-            "kind": "lines",
-            "title": "sequence",
-            "data": "sequence",
-            "where": {"map": "long"},
-            "x": "k",
-            "metric": "value",
-        },
-        {
-            "kind": "dots",
-            "title": "points",
-            **runs,
-            "x": "points",
-            "hue": "method",
-            "metric": "length",
-        },
-        {
-            "kind": "paths",
-            "title": "explicit",
-            "explicit": {"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]},
-        },
-        {"kind": "boxes", "title": "methods", **runs, "metric": "objective"},
-        {"kind": "drawing", "title": "marks", "data": "marks"},
-        {"kind": "drawing", "title": "marks in a field", "data": "marks", "workspace": "circles"},
-    ]
-
-
-def gallery(panels: int) -> list[dict]:
-    run = {
-        "experiment": "routes",
-        "where": {"method": "smooth", "points": 3},
-        "pick": {"median": "length"},
-    }
-    return [
-        {"kind": "paths", "title": f"n = {n}", **run, "control": "points", "view": [-9, 9, -4, 5]}
-        for n in range(panels)
-    ]
+# Sheets by name: runs, panels, and panels side by side.
+SHEETS = {
+    "run": (
+        results(),
+        [
+            {"kind": "paths", "title": "0 to 15", "letters": ["S", "T"], "context": True, **RUN},
+            {"kind": "convergence", "title": "0 to 15", "context": True, **RUN},
+            CURVATURE | {"title": "0 to 15", "context": True},
+            {"kind": "workspace", "workspace": "narrow", "numbers": "all", "embed": True},
+            {"kind": "workspace", "title": "circles", "workspace": "circles"},
+        ],
+        2,
+    ),
+    "methods": (
+        comparison(printed_means().assign(table="table3")),
+        [
+            {"kind": "convergence", "title": "methods", **METHODS, "hue": "method"},
+            {"kind": "lines", **METHODS, "x": "points", "metric": "length", "hue": "method"},
+            {"kind": "lines", "title": "sequence", "data": "sequence", "x": "k", "metric": "value"},
+            {"kind": "bars", **METHODS, "x": "points", "hue": "method", "metric": "length"},
+            {"kind": "boxes", **METHODS, "metric": "objective", "printed": "table3"},
+            {
+                "kind": "drawing",
+                "title": "marks in a field",
+                "data": "marks",
+                "workspace": "circles",
+            },
+            {
+                "kind": "paths",
+                "title": "explicit",
+                "explicit": {"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]},
+            },
+        ],
+        2,
+    ),
+    "gallery": (
+        comparison(),
+        [{"kind": "paths", "title": f"n = {n}", **OF_THREE, **CLOSE} for n in range(10)],
+        5,
+    ),
+}
 
 
 def sources(found: Results) -> Sources:
@@ -263,23 +228,42 @@ def sources(found: Results) -> Sources:
     )
 
 
-def drawn(found: Results, own: list[dict], columns: int, folder: File) -> Figure:
+def drawn(found: Results, *own: dict, columns: int = 1) -> Figure:
     """A figure as the workflow makes it: by way of the csv."""
-    file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(panels_of(own), sources(found)), file)
-    return sheet.draw(panels_of(own), sheet.read_data(file), scene(found), columns)
+    with tempfile.TemporaryDirectory() as folder:
+        file = str(File(folder) / "figure.csv")
+        sheet.write_data(sheet.data(panels_of(list(own)), sources(found)), file)
+        return sheet.draw(panels_of(list(own)), sheet.read_data(file), scene(found), columns)
 
 
-def words(figure: Figure) -> list[str]:
-    """All texts of a figure, and its caption."""
-    return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [
-        figure.get_label()
-    ]
+@functools.cache
+def sheet_of(name: str) -> Figure:
+    """A sheet, drawn once for all tests."""
+    found, own, columns = SHEETS[name]
+    return drawn(found, *own, columns=columns)
+
+
+def words(figure: Figure) -> str:
+    """All texts of a figure, and its caption, in one line."""
+    texts = [text.get_text() for text in figure.findobj(Text)]
+    return " ".join(" | ".join([*texts, figure.get_label()]).split())
+
+
+def parts(frame: pd.DataFrame) -> dict[str, list]:
+    """Places by the part that they belong to."""
+    return {part: own[["x", "y"]].to_numpy().tolist() for part, own in frame.groupby("part")}
+
+
+def of_run(found: Results, **keys) -> pd.DataFrame:
+    return paths.data(found, options_of(paths, **{"pick": LOWEST} | keys))
+
+
+# Paths
 
 
 def test_csv_keeps_every_number(tmp_path):
-    found = results()
-    frame = sheet.data(panels_of(panels()), sources(found))
+    found, own, _ = SHEETS["run"]
+    frame = sheet.data(panels_of(own), sources(found))
     assert frame.columns[0] == "panel"
     assert sorted(frame["panel"].unique()) == [0, 1, 2, 3, 4]
     sheet.write_data(frame, str(tmp_path / "figure.csv"))
@@ -288,32 +272,44 @@ def test_csv_keeps_every_number(tmp_path):
         np.testing.assert_array_equal(read[column], frame[column])
 
 
-def test_paths_data_holds_all_that_is_drawn():
+def test_a_path_is_drawn_with_its_points_and_the_exact_shortest_one():
     found = results()
-    frame = paths.data(found, options_of(paths, pick=LOWEST))
+    frame = of_run(found, context=True)
     assert set(frame["run"]) == {"study/routes/0_15/smooth/1"}, "the shortest run is not feasible"
-    parts = {part: points[["x", "y"]].to_numpy() for part, points in frame.groupby("part")}
-    assert set(parts) == {"start", "target", "bound", "hull", "control", "path"}
-    np.testing.assert_array_equal(parts["control"].ravel(), found.runs["path_points"][1])
-    np.testing.assert_array_equal(parts["bound"], [[5, 5], [10, 30], [35, 35]])
-    np.testing.assert_allclose(parts["path"][[0, -1]], [[5, 5], [35, 35]])
-    np.testing.assert_array_equal(parts["hull"][0], parts["hull"][-1])
+    places = parts(frame)
+    assert set(places) == {"start", "target", "bound", "hull", "control", "path"}
+    np.testing.assert_array_equal(np.ravel(places["control"]), found.runs["path_points"][1])
+    assert places["bound"] == [[5, 5], [10, 30], [35, 35]]
+    np.testing.assert_allclose(np.array(places["path"])[[0, -1]], [[5, 5], [35, 35]])
+    assert places["hull"][0] == places["hull"][-1]
+    assert "bound" not in parts(of_run(found))
 
 
-def test_points_of_a_polyline_are_nodes():
-    """Not control points, which are not on the curve; and no node is told to be one of several in
-    one place.
-    """
+@pytest.mark.parametrize(
+    ("curve", "control", "expected"),
+    [
+        ("piecewise_quadratic", "all", {"control", "hull"}),
+        ("piecewise_quadratic", "points", {"points"}),
+        ("piecewise_quadratic", "none", set()),
+        ("polyline", "points", {"nodes"}),  # not control points, which are not on the curve
+        ("spline", "all", {"control"}),
+        ("ferguson", "all", set()),  # tangents are no control points
+    ],
+)
+def test_points_of_a_path(curve, control, expected):
     found = results()
-    runs = found.runs.assign(path_curve="polyline")
-    frame = paths.data(found._replace(runs=runs), options_of(paths, pick=LOWEST, control="points"))
-    nodes = frame.loc[frame["part"] == "nodes", ["x", "y"]].to_numpy()
-    np.testing.assert_array_equal(nodes.ravel(), found.runs["path_points"][1])
-    assert "points" not in set(frame["part"])
-    assert not any("distinct" in line for line in paths._note(frame, "m"))
+    found.runs["path_curve"] = curve
+    if curve == "ferguson":
+        found.runs["path_points"] = [[5, 5, 30, 0, 5, 25, 0, 30, 35, 35, 30, 0.0]] * 3
+    assert set(parts(of_run(found, control=control))) == {"start", "target", "path"} | expected
 
 
-def test_paths_side_by_side(tmp_path):
+def test_paths_meet_the_corners_of_a_polyline():
+    places = parts(of_run(results(curve="polyline")).round(9))
+    assert all(corner in places["path"] for corner in places["control"])
+
+
+def test_paths_side_by_side():
     found = results()
     other = found.runs.assign(
         method="other",
@@ -321,135 +317,61 @@ def test_paths_side_by_side(tmp_path):
         length=found.runs["length"] + 1,
     )
     both = found._replace(runs=pd.concat([found.runs, other], ignore_index=True))
-    frame = paths.data(both, options_of(paths, pick=LOWEST, hue="method"))
-    assert set(frame["part"]) == {"start", "target", "bound", "path"}, "no control points"
+    frame = of_run(both, hue="method")
+    assert set(frame["part"]) == {"start", "target", "path"}, "no control points"
     for method, own in frame.groupby("method"):
-        alone = paths.data(
-            both._replace(runs=both.runs[both.runs["method"] == method]),
-            options_of(paths, pick=LOWEST, control="none"),
-        )
-        pd.testing.assert_frame_equal(own.reset_index(drop=True)[alone.columns], alone)
-    panel = {
-        "kind": "paths",
-        "experiment": "routes",
-        "pick": LOWEST,
-        "hue": "method",
-        "where": {"method": ["other", "smooth"]},
-    }
-    figure = drawn(both, [panel], 1, tmp_path)
-    legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    expected = ["other", "smooth (quadratic pieces)", "exact shortest path", "start", "target"]
-    assert [text for text in legend if "cell" not in text] == expected
+        alone = both._replace(runs=both.runs[both.runs["method"] == method])
+        same = of_run(alone, control="none")
+        pd.testing.assert_frame_equal(own.reset_index(drop=True)[same.columns], same)
+    panel = RUN | {"kind": "paths", "hue": "method", "where": {"method": ["other", "smooth"]}}
     length = found.runs["length"].iloc[1]
-    wanted = (
-        f"length (unit): other {round(length + 1, 2):g}, smooth (quadratic pieces) "
-        f"{round(length, 2):g}"
+    caption = f"other {length + 1:.2f}, smooth (quadratic pieces) {length:.2f}"
+    assert f"length (unit): {caption}" in words(drawn(both, panel))
+    assert f"objective (unit): other {59:.2f}" in words(
+        drawn(both, panel | {"measure": "objective"})
     )
-    assert any(wanted in " ".join(text.split()) for text in words(figure))
+    none = results(feasible=(False, False))
+    assert "(quadratic pieces) no path" in words(drawn(none, panel))
+    assert "0 of 1 have a path" in words(drawn(none, panel))
 
 
-def test_paths_side_by_side_say_who_has_none(tmp_path):
-    found = results(feasible=(False, False, False))
-    panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method"}
-    told = words(drawn(found, [panel], 1, tmp_path))
-    assert any("(quadratic pieces) no path" in " ".join(text.split()) for text in told)
-    assert "0 of 1 have a path" in told
-    assert not any("have a path" in text for text in words(drawn(results(), [panel], 1, tmp_path)))
-
-
-def test_paths_side_by_side_give_the_measure_that_is_asked_for(tmp_path):
-    found = results()
-    found.runs["clearance"] = [1.25, 2.5, 3.75]
-    panel = {
-        "kind": "paths",
-        "experiment": "routes",
-        "pick": LOWEST,
-        "hue": "method",
-        "measure": "clearance",
-    }
-    assert any(
-        "clearance (unit): smooth (quadratic pieces) 2.5" in " ".join(text.split())
-        for text in words(drawn(found, [panel], 1, tmp_path))
-    )
-
-
-def test_a_bare_field_shows_no_path(tmp_path):
-    panel = panels()[0] | {"bare": True, "letters": ["S", "T"]}
-    assert set(paths.data(results(), options_of(paths, pick=LOWEST, bare=True))["part"]) == {
-        "start",
-        "target",
-    }
-    figure = drawn(results(), [panel], 1, tmp_path)
-    assert {"S", "T", "start", "target"} <= set(words(figure))
-    assert not any("run" in text or "path" in text for text in words(figure))
+def test_a_bare_field_shows_no_path():
+    frame = of_run(results(), bare=True)
+    assert set(frame["part"]) == {"start", "target"}
+    text = words(drawn(results(), {"kind": "paths", **RUN, "bare": True, "letters": ["S", "T"]}))
+    assert text.startswith("S | T | ")
+    assert "run" not in text
 
 
 def test_only_runs_that_have_some_of_a_metric_are_picked():
     found = results((True, True, True))
     # The second one is the centre of an occupied cell.
-    inside = [
-        5.0,
-        5.0,
-        25.0,
-        15.0,
-        5.0,
-        35.0,
-        5.0,
-        35.0,
-        35.0,
-        35.0,
-    ]
+    inside = [5.0, 5.0, 25.0, 15.0, 5.0, 35.0, 5.0, 35.0, 35.0, 35.0]
     found.runs.at[0, "path_points"] = inside
     best, having = (
-        paths.data(found, options_of(paths, pick=LOWEST | more))
-        for more in ({}, {"having": "occupied_points"})
+        of_run(found, pick=LOWEST | more) for more in ({}, {"having": "occupied_points"})
     )
     assert best["run"].iloc[0].endswith("/2")
     assert having["run"].iloc[0].endswith("/0")
-    assert having.loc[having["part"] == "occupied", ["x", "y"]].to_numpy().tolist() == [[25, 15]]
-    assert "occupied" not in set(best["part"])
 
 
-def test_cells_that_changed_are_marked(tmp_path):
+def test_cells_that_changed_are_marked():
     found = results()
-    other = found.problems["0_15"]._replace(
-        name="before", workspace=from_lines(["....", ".#..", "..##", "...."], 10.0, "unit")
-    )
+    before = from_lines(["....", ".#..", "..##", "...."], 10.0, "unit")
+    other = found.problems["0_15"]._replace(name="before", workspace=before)
     found = found._replace(problems=found.problems | {"before": other})
-    frame = paths.data(found, options_of(paths, pick=LOWEST, changed_from="before"))
-    changed = {
-        part: own[["x", "y"]].to_numpy().tolist()
-        for part, own in frame.groupby("part")
-        if part in ("appeared", "vanished")
+    places = parts(of_run(found, changed_from="before"))
+    now = found.problems["0_15"].workspace.occupied
+    cells = {
+        part: [before.cell_of(*at) for at in places[part]] for part in ("appeared", "vanished")
     }
-    now, before = found.problems["0_15"].workspace.occupied, other.workspace.occupied
-    assert {part: len(cells) for part, cells in changed.items()} == {
-        "appeared": (now & ~before).sum(),
-        "vanished": (before & ~now).sum(),
-    }
-    for part, cells in changed.items():
-        for cell in cells:
-            at = other.workspace.cell_of(*cell)
-            assert now[at] == (part == "appeared") != before[at]
-    figure = drawn(found, [panels()[0] | {"changed_from": "before"}], 1, tmp_path)
-    assert {"occupied since the change", "free since the change"} <= set(words(figure))
-    with pytest.raises(ValueError, match="changed_from: gone: not a problem of the experiment"):
-        paths.data(found, options_of(paths, pick=LOWEST, changed_from="gone"))
+    assert sorted(cells["appeared"]) == list(zip(*np.nonzero(now & ~before.occupied)))
+    assert sorted(cells["vanished"]) == list(zip(*np.nonzero(before.occupied & ~now)))
+    figure = drawn(found, {"kind": "paths", **RUN, "changed_from": "before"})
+    assert "occupied since the change" in words(figure)
 
 
-def test_the_shortest_path_from_cell_to_cell_has_the_length_of_the_optimum(tmp_path):
-    found = results()
-    frame = paths.data(found, options_of(paths, pick=LOWEST, cell_optimum=True))
-    way = frame.loc[frame["part"] == "optimum", ["x", "y"]].to_numpy()
-    np.testing.assert_array_equal(way[[0, -1]], [[5, 5], [35, 35]])
-    least = ground.least_energy(grid(), 1.0, False, 0, 15)
-    assert np.hypot(*np.diff(way, axis=0).T).sum() == pytest.approx(10 * least), "cells of 10 units"
-    note = f"shortest between cell centres {10 * least:.2f}, at any angle"
-    panel = panels()[0] | {"cell_optimum": True}
-    assert any(note in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path)))
-
-
-def test_a_path_stands_beside_the_shortest_one_printed(tmp_path):
+def test_a_path_stands_beside_the_shortest_one_printed():
     numbers = {
         "table": ["table1", "table1", "table2"],
         "method": "smooth",
@@ -457,49 +379,58 @@ def test_a_path_stands_beside_the_shortest_one_printed(tmp_path):
         "statistic": ["min", "max", "min"],
     }
     found = results()._replace(published=pd.DataFrame({**numbers, "value": [44.125, 70.0, 1.0]}))
-    panel = panels()[0] | {"printed": "table1"}
-    assert set(paths.data(found, options_of(paths, pick=LOWEST, printed="table1"))["printed"]) == {
-        44.125
-    }
-    assert any(
-        "shortest printed 44.12 units" in text for text in words(drawn(found, [panel], 1, tmp_path))
+    assert set(of_run(found, printed="table1")["printed"]) == {44.125}
+    panel = {"kind": "paths", **RUN, "printed": "table1"}
+    assert "shortest printed 44.12 unit" in words(drawn(found, panel))
+
+
+@pytest.mark.parametrize(
+    ("change", "pick", "said"),
+    [
+        ({"feasible": False}, LOWEST, "no feasible run among 3"),
+        ({}, {"repeat": 7}, "no such run among 3"),
+        ({}, {"repeat": 2}, "smooth/2 (not feasible)"),
+        ({"path_curve": ""}, {"repeat": 0}, "no path"),
+        ({"path_points": [[5.0] * 10] * 3}, {"repeat": 0}, "the curve is a single point"),
+    ],
+)
+def test_what_there_is_not_is_said(change, pick, said):
+    found = results()
+    found = found._replace(runs=found.runs.assign(**change))
+    own = [{"kind": "paths", **RUN, "pick": pick}, CURVATURE | {"pick": pick}]
+    assert said in words(drawn(found, *own, columns=2))
+
+
+@pytest.mark.parametrize("column", ["problem", "method"])
+def test_one_run_needs_one_problem_and_one_method(column):
+    found = results()
+    found.runs.loc[0, column] = "another"
+    with pytest.raises(ValueError, match=f"exactly one {column}"):
+        of_run(found)
+
+
+def test_curvature_leaves_out_where_the_curve_stands_still():
+    frame = along_path.data(results(), panels_of([CURVATURE])[0])
+    still = frame.loc[frame["value"].isna(), "t"]
+    assert frame["value"].abs().max() == 0, "it is straight"
+    assert len(still) > 0
+    assert still.between(0.66, 0.67).all(), (
+        "two equal control points stop the curve where its second piece ends"
     )
+    assert f"{len(still)} of {len(frame)} samples left out" in words(sheet_of("run"))
 
 
-def test_large_fields_are_drawn_by_their_circles():
-    circles = Circles((0.0, 40.0, 0.0, 40.0), np.array([[10.0, 20.0]]), np.array([3.0]), "cell")
-    small = workspace.parts(random_field.from_circles(circles))
-    assert small["part"].value_counts().to_dict() == {
-        "free": 1681 - 29,
-        "occupied": 29,
-        "corner": 2,
-        "circle": 1,
-    }
-    large = workspace.parts(
-        random_field.from_circles(replace(circles, bounds=(0.0, 100.0, 0.0, 100.0)))
-    )
-    assert large["part"].tolist() == ["corner", "corner", "circle"]
-    assert large["x"].tolist() == [-0.5, 100.5, 10.0]
+def test_peak_far_above_the_limit_is_cut_and_said():
+    found = results()
+    found.runs["path_points"] = [[5, 5, 35, 5, 5, 5.1, 5, 35, 35, 35.0]] * 3
+    highest = along_path.data(found, panels_of([CURVATURE])[0])["value"].max()
+    assert highest > 1
+    figure = drawn(found, CURVATURE)
+    assert figure.axes[0].get_ylim()[1] == pytest.approx(0.4)
+    assert f"largest {highest:.3g} 1/unit" in words(figure)
 
 
-def test_functions_get_the_published_tables_that_they_ask_for():
-    def double(published):
-        return published["table1"].assign(value=2 * published["table1"]["value"])
-
-    published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
-    panel = {"kind": "lines", "data": "double", "published": True, "x": "k", "metric": "value"}
-    assert sheet.data(
-        panels_of([panel]), Sources(functions={"double": double}, published=published)
-    )["value"].tolist() == [6, 8]
-
-
-def test_paths_meet_the_corners_of_a_polyline():
-    frame = paths.data(results(curve="polyline"), options_of(paths, pick=LOWEST))
-    points = {
-        part: {tuple(point) for point in own[["x", "y"]].round(9).to_numpy()}
-        for part, own in frame.groupby("part")
-    }
-    assert points["control"] <= points["path"]
+# Groups of runs
 
 
 def test_convergence_prolongs_runs_that_stopped_early():
@@ -508,609 +439,138 @@ def test_convergence_prolongs_runs_that_stopped_early():
     assert list(frame["objective"]) == [90, 70, 59]
     assert frame["median"].iloc[2] == 60
     np.testing.assert_allclose(frame["quartile3"].iloc[2], np.quantile([60, 59, 70], 0.75))
+    for until, expected in ((4, [90, 70, 59, 59, 59]), (1, [90, 70, 59])):
+        own = options_of(convergence, pick=LOWEST, until=until)
+        assert list(convergence.data(results(), own)["objective"]) == expected, "no run is cut"
 
 
-def test_convergence_of_groups_holds_last_values():
-    frame = convergence.data(comparison(), options_of(convergence, hue="method"))
-    assert set(frame["method"]) == {"smooth", "coarse", "random"}
-    assert list(frame["problem"].unique()) == ["field"]
+def test_convergence_of_groups_holds_last_values_and_their_intervals():
+    frame = convergence.data(comparison(), options_of(convergence, hue="method", until=5))
     assert set(frame["runs"]) == {24}
     assert set(frame["feasible_runs"]) == {18}
     coarse = frame.loc[frame["method"] == "coarse", "objective"]
     middle = 20 + np.mean([2, 3, 5]) + np.mean(range(8))
-    np.testing.assert_allclose(coarse, [middle + 9, middle, middle])
-    median = convergence.data(
-        comparison(), options_of(convergence, hue="points", statistic="median")
-    )
-    np.testing.assert_allclose(median.loc[median["points"] == 3, "objective"].iloc[-1], 33 + 3.5)
-
-
-def test_convergence_goes_on_to_the_end_that_is_asked_for():
-    frame = convergence.data(comparison(), options_of(convergence, hue="method", until=5))
-    coarse = frame[frame["method"] == "coarse"]
-    assert list(coarse["generation"]) == [0, 1, 2, 3, 4, 5]
-    assert coarse["objective"].iloc[2:].nunique() == 1
-    assert list(
-        convergence.data(results(), options_of(convergence, pick=LOWEST, until=4))["objective"]
-    ) == [90, 70, 59, 59, 59]
-    assert list(
-        convergence.data(results(), options_of(convergence, pick=LOWEST, until=1))["generation"]
-    ) == [0, 1, 2], "no run is cut"
-
-
-def test_convergence_of_groups_has_the_interval_of_its_statistic():
-    frame = convergence.data(comparison(), options_of(convergence, hue="method", until=5))
+    np.testing.assert_allclose(coarse, [middle + 9, *[middle] * 5])
     assert (frame["low95"] < frame["objective"]).all()
     assert (frame["objective"] < frame["high95"]).all()
-    assert (
-        frame[frame["generation"] > 2]
-        .groupby("method")[["low95", "high95"]]
-        .nunique()
-        .eq(1)
-        .all(axis=None)
-    )
     # Histories differ by a constant from generation 0 to the last one, so do intervals from the
     # same draws.
     width = (frame["high95"] - frame["low95"]).groupby(frame["method"]).agg(["first", "last"])
     np.testing.assert_allclose(width["first"], width["last"])
+    own = options_of(convergence, hue="points", statistic="median")
+    median = convergence.data(comparison(), own)
+    assert median.loc[median["points"] == 3, "objective"].iloc[-1] == pytest.approx(36.5)
 
 
-def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
-    published = pd.concat(
-        [printed_means().assign(table="table3"), printed_means().assign(table="table4", value=1.0)],
-        ignore_index=True,
-    )
-    found = comparison(published[published["points"].isna()])
-    frame = convergence.data(
-        found, options_of(convergence, hue="method", until=5, printed="table3")
-    )
+def test_convergence_marks_the_printed_means_of_one_table():
+    printed = printed_means().assign(table="table3").query("points.isna()")
+    found = comparison(pd.concat([printed, printed.assign(table="table4", value=1.0)]))
+    panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
+    frame = convergence.data(found, panels_of([panel | {"until": 5}])[0])
     marked = frame[frame["printed"].notna()]
     assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
-    panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
-    figure = drawn(found, [panel], 1, tmp_path)
-    assert "published final mean" in words(figure)
-    (strip,) = figure.axes[0].child_axes
-    (mark,) = [line for line in strip.lines if line.get_label() == "published final mean"]
-    assert mark.get_ydata() == [36.5]
-    assert "printed" not in convergence.data(
-        comparison(), options_of(convergence, hue="method", printed="table3")
-    )
-
-
-def test_last_values_stand_beside_the_lines_with_their_intervals(tmp_path):
-    panel = comparing_panels()[0]
-    figure = drawn(comparison(), [panel], 1, tmp_path)
-    frame = (
-        convergence.data(comparison(), options_of(convergence, hue="method"))
-        .groupby("method")
-        .last()
-    )
-    (strip,) = figure.axes[0].child_axes
-    marks = [line for line in strip.lines if line.get_marker() not in ("", "None")]
-    assert [line.get_ydata()[0] for line in marks] == pytest.approx(
-        list(frame.loc[panel["where"]["method"], "objective"])
-    )
-    spans = [sorted(line.get_ydata()) for line in strip.lines if len(line.get_ydata()) == 2]
-    assert spans == [
-        pytest.approx(list(ends))
-        for ends in frame.loc[panel["where"]["method"], ["low95", "high95"]].to_numpy()
-    ]
-    assert strip.get_ylim() == figure.axes[0].get_ylim()
-
-
-def test_at_most_five_bands_lie_on_each_other():
-    runs = comparison().runs
-    many = pd.concat(
-        [
-            runs.assign(method=f"m{n}", objective=runs["objective"] + n, history=runs["history"])
-            for n in range(6)
-        ]
-    )
-    for count, banded in ((5, True), (6, False)):
-        own = comparison()._replace(
-            runs=many[many["method"].isin([f"m{n}" for n in range(count)])].reset_index(drop=True)
-        )
-        for kind, options in (
-            (convergence, {"hue": "method"}),
-            (lines, {"x": "points", "metric": "objective", "hue": "method"}),
-        ):
-            axes = Figure().subplots()
-            panel = options_of(kind, **options)
-            kind.draw(axes, kind.data(own, panel), sheet.Scene({}, {}, {}, "m"), panel)
-            bands = [each for each in axes.collections if isinstance(each, PolyCollection)]
-            assert len(bands) == (count if banded else 0)
-
-
-def test_lines_have_intervals_and_single_repeats():
-    frame = lines.data(
-        comparison(), options_of(lines, x="points", metric="length", hue="method", repeats=[1])
-    )
-    statistic = frame[frame["part"] == "statistic"]
-    assert len(statistic) == 9
-    assert set(statistic["n"]) == {6}, "lengths are of feasible runs"
-    assert (statistic["low95"] < statistic["value"]).all()
-    assert (statistic["value"] < statistic["high95"]).all()
-    coarse = frame[(frame["part"] == "repeat") & (frame["method"] == "coarse")]
-    assert list(coarse["value"]) == [23, 24, 26]
-    with pytest.raises(ValueError, match="equal points"):
-        lines.data(comparison(), options_of(lines, x="points", metric="length", repeats=[1]))
+    assert "published final mean" in words(drawn(found, panel))
 
 
 def test_order_of_runs_changes_no_bit():
     found = comparison()
     other = found._replace(runs=found.runs.sample(frac=1, random_state=1).reset_index(drop=True))
-    for kind, options in (
-        (lines, {"x": "points", "hue": "method"}),
-        (dots, {"x": "points", "hue": "method"}),
-        (boxes, {}),
+    hue = {"hue": "method"}
+    for panel in (
+        options_of(lines, metric="objective", x="points", **hue),
+        options_of(bars, metric="objective", x="points", **hue),
+        options_of(boxes, metric="objective"),
+        options_of(convergence, **hue),
     ):
-        panel = options_of(kind, metric="objective", **options)
-        pd.testing.assert_frame_equal(kind.data(found, panel), kind.data(other, panel))
-    panel = options_of(convergence, hue="method")
-    pd.testing.assert_frame_equal(convergence.data(found, panel), convergence.data(other, panel))
+        data = kinds_of_panel.kind_module(panel.kind).data
+        pd.testing.assert_frame_equal(data(found, panel), data(other, panel))
 
 
-def test_lines_draw_the_table_of_a_function(tmp_path):
-    own = [comparing_panels()[4] | {"where": {"map": name}} for name in ("short", "long")]
-    figure = drawn(comparison(), own, 2, tmp_path)
-    joined = [axes.lines[0].get_linestyle() for axes in figure.axes]
-    assert [len(axes.lines[0].get_xdata()) for axes in figure.axes] == [9, 300]
-    assert joined == ["-", "None"], "many points are not joined"
+@pytest.mark.parametrize("kind", [lines, bars])
+def test_statistics_have_intervals_and_what_the_paper_prints_where_it_belongs(kind):
+    keys = {"x": "points", "hue": "method", "printed": "table6"}
+    printed = printed_means().assign(table="table6").iloc[1:2]
+    found = comparison(pd.concat([printed, printed.assign(table="table7", value=1.0)]))
+    frame = kind.data(found, options_of(kind, metric="length", **keys))
+    own = frame[frame["part"] == "statistic"] if kind is lines else frame
+    assert len(own) == 9
+    assert set(own["n"]) == {6}, "lengths are of feasible runs"
+    assert (own["low95"] < own["value"]).all()
+    assert (own["value"] < own["high95"]).all()
+    frame = kind.data(found, options_of(kind, metric="objective", **keys))
+    if kind is lines:
+        frame = frame.query("part == 'published'").assign(published=frame["value"])
+    shown = frame[frame["published"].notna()]
+    assert shown[["method", "points", "published"]].to_numpy().tolist() == [["smooth", 5, 38.0]]
 
 
-def test_few_points_of_a_table_are_marked_and_the_exact_path_looks_as_everywhere():
-    table = pd.DataFrame({"points": [1, 2, 3, 4] * 2, "value": [9.0, 8, 7.5, 7.2] + [7.1] * 4})
-    table["path"] = ["best found"] * 4 + ["exact shortest path"] * 4
-    panel = options_of(lines, data="any", x="points", metric="value", hue="path")
-    axes = Figure().subplots()
-    lines.draw(axes, lines.data(table, panel), scene(results()), panel)
-    looks = {line.get_label(): line for line in axes.lines}
-    assert looks["best found"].get_marker() == "s"
-    assert looks["exact shortest path"].get_marker() == ""
-    assert looks["exact shortest path"].get_color() == style.BOUND["color"]
-
-
-def test_axes_name_their_values_in_full():
-    """No offset such as +1.414e2 above the axis, on which the subtitle stands."""
-    with mpl.rc_context(style.SETTINGS):
-        figure = Figure()
-        axes = figure.add_subplot()
-        axes.plot([10, 100], [141.4213, 141.4685])
-        FigureCanvasAgg(figure).draw()
-    assert axes.yaxis.get_offset_text().get_text() == ""
-    assert all(label.get_text().startswith("141.4") for label in axes.get_yticklabels())
-
-
-def test_what_has_no_order_is_not_joined(tmp_path):
-    panel = {
-        "kind": "lines",
-        "experiment": "routes",
-        "x": "points",
-        "metric": "length",
-        "hue": "method",
-        "joined": False,
-    }
-    axes = drawn(comparison(), [panel], 1, tmp_path).axes[0]
-    marks = [
-        line
-        for line in axes.lines
-        if len(line.get_xdata()) == 3 and line.get_markerfacecolor() != style.FREE
-    ]
-    assert [line.get_linestyle() for line in marks] == ["None"] * 3
-    places = np.array([line.get_xdata() for line in marks])
-    np.testing.assert_allclose(places.mean(axis=0), [2, 3, 5])
-    assert (np.diff(places, axis=0) > 0.1).all(), "groups stand beside each other"
-    assert list(axes.get_xticks()) == [2, 3, 5]
-
-
-def test_what_has_no_order_can_be_sorted_by_a_number(tmp_path):
+def test_bars_have_the_bound_of_their_feasible_runs():
     found = comparison()
-    found.runs["bound"] = found.runs["points"].map({2: 18.0, 3: 19.0, 5: 17.0})
-    panel = {
-        "kind": "lines",
-        "experiment": "routes",
-        "x": "points",
-        "metric": "length",
-        "hue": "method",
-        "joined": False,
-        "sorted_by": "bound",
-    }
-    axes = drawn(found, [panel], 1, tmp_path).axes[0]
-    assert list(axes.get_xticks()) == [0, 1, 2]
-    assert [label.get_text() for label in axes.get_xticklabels()] == ["5", "2", "3"]
-    assert axes.get_xlabel() == "points, sorted by bound"
-    frame = lines.data(found, panels_of([panel])[0])
-    assert frame.groupby("points")["place"].unique().map(list).to_dict() == {2: [1], 3: [2], 5: [0]}
-
-
-def test_names_that_lines_join_are_not_sorted():
-    with pytest.raises(ValueError, match="sorted_by: needs experiment and joined: false"):
-        options_of(lines, x="points", metric="length", sorted_by="bound")
-
-
-@pytest.mark.parametrize(("metric", "hollow"), [("length", True), ("objective", False)])
-@pytest.mark.parametrize("joined", [True, False])
-def test_a_statistic_of_some_runs_has_an_open_mark(metric, hollow, joined, tmp_path):
-    """Of the comparison's runs three quarters are feasible, and only these have a length."""
-    panel = {"kind": "lines", "experiment": "routes", "x": "points", "metric": metric}
-    figure = drawn(comparison(), [panel | {"hue": "method", "joined": joined}], 1, tmp_path)
-    assert ("hollow: some runs are not feasible" in words(figure)) == hollow
-    opened = [
-        line
-        for line in figure.axes[0].lines
-        if line.get_markerfacecolor() == style.FREE and len(line.get_xdata())
-    ]
-    assert [len(line.get_xdata()) for line in opened] == ([3, 3, 3] if hollow else [])
-
-
-@pytest.mark.parametrize(("slowest", "unit"), [(0.02, "ms"), (2.0, "s")])
-def test_all_panels_of_a_figure_have_one_unit_of_time(slowest, unit, tmp_path):
-    found = comparison()
-    slow = found.runs["method"] == "random"
-    times = np.where(slow, slowest, 0.001)
-    found = found._replace(
-        runs=found.runs.assign(cpu_s=times, evaluations=100, condition="field", bound=24.0)
-    )
-    kinds = [
-        {"kind": "lines", "x": "points"},
-        {"kind": "boxes"},
-        {"kind": "dots", "x": "points", "hue": "method"},
-    ]
-    own = [
-        panel | {"experiment": "routes", "metric": "cpu_s", "where": {"method": methods}}
-        for panel in kinds
-        for methods in (["random"], ["coarse"])
-    ]
-    own += [
-        {"kind": "expected_running_time", "experiment": "routes", "cost": cost}
-        for cost in ("cpu_s", "evaluations")
-    ]
-    axes = drawn(found, own, 2, tmp_path).axes
-    measured = [each.get_ylabel() for each in axes[:2]] + [each.get_xlabel() for each in axes[2:7]]
-    assert all(label.endswith(f"({unit})") for label in measured), measured
-    assert axes[7].get_xlabel() == "expected evaluations"
-
-
-def test_boxes_show_published_ends_and_a_limit(tmp_path):
-    ends = pd.DataFrame(
-        {
-            "method": "smooth",
-            "metric": "objective",
-            "statistic": ["min", "max"],
-            "value": [31.0, 44.0],
-        }
-    )
-    frame = boxes.data(comparison(ends), options_of(boxes, metric="objective", limit=33.5))
-    assert frame.loc[frame["part"] == "published_end", ["method", "value"]].to_numpy().tolist() == [
-        ["smooth", 31.0],
-        ["smooth", 44.0],
-    ]
-    assert frame.loc[frame["part"] == "limit", "value"].tolist() == [33.5]
-    panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
-    figure = drawn(comparison(ends), [panel], 1, tmp_path)
-    assert {"published minimum and maximum", "published limit: 33.5 units"} <= set(words(figure))
-
-
-def test_boxes_of_feasible_runs_alone_say_how_many_there_are(tmp_path):
-    found = comparison()
-    found.runs.loc[found.runs["method"] == "coarse", "feasible"] = True
-    named = {}
-    for metric in ("length", "objective"):
-        panel = {"kind": "boxes", "experiment": "routes", "metric": metric}
-        axes = drawn(found, [panel], 1, tmp_path).axes[0]
-        named[metric] = [label.get_text() for label in axes.get_yticklabels()]
-    assert named["length"] == ["coarse", "random (75 %)", "smooth (quadratic pieces) (75 %)"]
-    assert named["objective"] == ["coarse", "random", "smooth (quadratic pieces)"]
-
-
-def test_a_share_is_not_rounded_up_to_all():
-    counts = pd.DataFrame({"runs": [1000, 1000, 10], "feasible_runs": [999, 1000, 0]})
-    assert boxes._partial_shares(counts) == {0: "99 %", 2: "0 %"}
-
-
-def test_intervals_on_a_logarithmic_axis_stay_within_the_panel(tmp_path):
-    found = comparison()
-    found.runs["length"] *= np.where(found.runs["method"] == "random", 1e3, 1)
-    found.runs.loc[found.runs["repeat"] == 1, "length"] *= 30
-    for kind in ("lines", "dots"):
-        panel = {"kind": kind, "experiment": "routes", "x": "points", "hue": "method"}
-        (panel,) = panels_of([panel | {"metric": "length"}])
-        frame = kinds_of_panel.kind_module(kind).data(found, panel)
-        axes = sheet.draw([panel], frame.assign(panel=0), scene(found), 1).axes[0]
-        scale, ends = (
-            (axes.get_yscale(), axes.get_ylim())
-            if kind == "lines"
-            else (axes.get_xscale(), axes.get_xlim())
-        )
-        assert scale == "log"
-        assert ends[0] < frame["low95"].min() < frame["high95"].max() < ends[1], kind
-
-
-def test_the_end_of_a_drive_says_whether_it_arrived():
-    drives = {"mine": [3.0, 2.0, 1.0], "other": [3.0, -1.0]}
-    frame = pd.concat(
-        pd.DataFrame(
-            {
-                "method": method,
-                "run": f"study/moving/field/{method}/0",
-                "step": range(1, len(clear) + 1),
-                "clearance": clear,
-                "arrived": method == "mine",
-            }
-        )
-        for method, clear in drives.items()
-    )
-    axes = Figure().subplots()
-    clearance.draw(axes, frame, scene(results()), options_of(clearance))
-    ends = [line for line in axes.lines if line.get_marker() != "" and len(line.get_xdata()) == 1]
-    assert [(*line.get_xydata()[0],) for line in ends] == [(3, 1), (2, -1)]
-    assert [line.get_markerfacecolor() == style.FREE for line in ends] == [False, True]
-    assert "hollow: ends without arrival" in axes.get_legend_handles_labels()[1]
+    found.runs.loc[found.runs["method"] == "random", "feasible"] = False
+    own = {"x": "points", "hue": "method"}
+    frame = bars.data(found, options_of(bars, metric="length", **own)).set_index("method")
+    assert set(frame["bound"].drop("random")) == {18.5}
+    assert frame.loc["random", ["bound", "value"]].isna().all(axis=None)
+    share = bars.data(found, options_of(bars, metric="feasible", statistic="share", **own))
+    assert share["bound"].isna().all(), "no length"
 
 
 def test_boxes_end_at_the_last_value_within_reach():
     found = comparison()
     values = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 90.0])
     found.runs["objective"] = np.tile(values, 9)
-    frame = boxes.data(found, options_of(boxes, metric="objective"))
-    parts = frame[frame["method"] == "smooth"].groupby("part")["value"].agg(list)
-    assert parts["quartile1"] == [pytest.approx(np.quantile(np.tile(values, 3), 0.25))]
-    assert (parts["low"], parts["high"], parts["beyond"]) == ([0], [6], [90] * 3)
-    assert parts["mean"] == [values.mean()]
+    found.runs["reference"] = 20.0
+    frame = boxes.data(found, options_of(boxes, metric="objective", context=True))
+    own = frame[frame["method"] == "smooth"].groupby("part")["value"].agg(list)
+    assert own["quartile1"] == [pytest.approx(np.quantile(np.tile(values, 3), 0.25))]
+    assert (own["low"], own["high"], own["beyond"]) == ([0], [6], [90] * 3)
+    assert own["mean"] == [values.mean()]
+    alone = frame[frame["method"].isna()]
+    assert dict(zip(alone["part"], alone["value"])) == {"reference": 20.0, "bound": 18.5}
 
 
-def test_boxes_show_the_published_means_of_their_runs(tmp_path):
-    found = comparison(printed_means())
-    frame = boxes.data(found, options_of(boxes, metric="objective"))
-    shown = frame.loc[frame["part"] == "published", ["method", "value"]].to_numpy().tolist()
-    assert shown == [["smooth", 36.5]], "not that of one of their conditions"
-    three = found._replace(runs=found.runs[found.runs["points"] == 3])
-    assert list(
-        boxes.data(three, options_of(boxes, metric="objective")).query("part == 'published'")[
-            "value"
-        ]
-    ) == [36.5]
-    assert "published" not in set(
-        boxes.data(comparison(), options_of(boxes, metric="objective"))["part"]
-    )
-    figure = drawn(found, comparing_panels()[7:], 1, tmp_path)
-    assert "published mean" in words(figure)
-
-
-def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
-    """One text for each row and edge: several would lie on each other."""
-    far = pd.DataFrame(
-        {
-            "method": ["smooth", "smooth", "smooth", "coarse", "random"],
-            "metric": "objective",
-            "statistic": "mean",
-            "n": 10,
-            "value": [150.0, 240.0, 180.0, 0.25, 200.0],
-        }
-    )
-    told = words(
-        drawn(
-            comparison(far),
-            [{"kind": "boxes", "experiment": "routes", "metric": "objective"}],
-            1,
-            tmp_path,
-        )
-    )
-    numbers = {"150 to 240", "0.25", "200", "150", "180", "240"}
-    assert sorted(text for text in told if text in numbers) == ["0.25", "150 to 240", "200"]
-    assert "published mean, off the scale" in told
-
-
-def test_dots_say_who_has_no_feasible_run_and_know_the_bound(tmp_path):
-    found = comparison()
-    found.runs.loc[found.runs["method"] == "random", "feasible"] = False
-    frame = dots.data(found, options_of(dots, x="points", hue="method", metric="length"))
-    assert len(frame) == 9
-    assert set(frame.loc[frame["method"] != "random", "bound"]) == {18.5}
-    assert frame.loc[frame["method"] == "random", "bound"].isna().all()
-    assert frame.loc[frame["method"] == "random", "value"].isna().all()
-    assert (
-        dots.data(
-            found, options_of(dots, x="points", hue="method", metric="feasible", statistic="share")
-        )["bound"]
-        .isna()
-        .all()
-    )
-    said = words(drawn(found, comparing_panels()[5:6], 1, tmp_path))
-    assert {"hollow: some runs are not feasible", "no feasible run"} <= set(said)
-    found.runs["feasible"] = True
-    assert not {"hollow: some runs are not feasible", "no feasible run"} & set(
-        words(drawn(found, comparing_panels()[5:6], 1, tmp_path))
+def test_boxes_show_the_published_means_of_their_runs():
+    printed = printed_means().assign(table="table3")
+    frame = boxes.data(
+        comparison(pd.concat([printed, printed.head(1).assign(statistic="max", value=50.0)])),
+        options_of(boxes, metric="objective", printed="table3"),
+    ).query("part.str.startswith('published')")
+    shown = frame[["method", "part", "value"]].to_numpy().tolist()
+    assert shown == [["smooth", "published", 36.5], ["smooth", "published_end", 50.0]], (
+        "not that of one of their conditions"
     )
 
 
-def test_dots_without_a_bound_name_none(tmp_path):
-    own = comparing_panels()[5] | {"metric": "feasible", "statistic": "share"}
-    assert "exact shortest path" not in words(drawn(comparison(), [own], 1, tmp_path))
+def test_a_statistic_of_some_runs_has_an_open_mark():
+    """Of the comparison's runs three quarters are feasible, and only these have a length."""
+    for metric, hollow in (("length", True), ("objective", False)):
+        panel = {"kind": "lines", **METHODS, "x": "points", "metric": metric, "hue": "method"}
+        assert (style.HOLLOW_LABEL in words(drawn(comparison(), panel))) == hollow
 
 
-def test_dots_show_what_the_paper_prints_of_their_runs():
-    frame = dots.data(
-        comparison(printed_means().iloc[1:]),
-        options_of(dots, x="points", hue="method", metric="objective"),
-    )
-    printed = frame.set_index(["method", "points"])["published"]
-    assert printed.dropna().to_dict() == {("smooth", 5): 38.0}
-
-
-def test_lines_show_what_the_paper_prints_where_it_belongs():
-    printed = printed_means().assign(table="table6").iloc[1:2]
-    options = {"x": "points", "metric": "objective", "hue": "method", "printed": "table6"}
-    frame = lines.data(
-        comparison(pd.concat([printed, printed.assign(table="table7", value=1.0)])),
-        options_of(lines, **options),
-    )
-    shown = frame[frame["part"] == "published"]
-    assert shown[["method", "points", "value"]].to_numpy().tolist() == [["smooth", 5, 38.0]]
-    axes = Figure().subplots()
-    lines.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(lines, **options))
-    (mark,) = [
-        line
-        for line in axes.lines
-        if line.get_marker() == style.PUBLISHED_MARK["marker"] and len(line.get_xdata()) == 1
-    ]
-    assert (mark.get_xdata().tolist(), mark.get_ydata().tolist()) == ([5], [38.0])
-
-
-def test_dots_and_lines_keep_the_order_of_where(tmp_path):
-    figure = drawn(comparison(), comparing_panels()[5:6], 1, tmp_path)
-    named = [
-        text for text in words(figure) if text in ("smooth (quadratic pieces)", "coarse", "random")
-    ]
-    assert named == ["smooth (quadratic pieces)", "coarse", "random"]
-
-
-def test_tangents_are_no_control_points(tmp_path):
-    found = results()
-    found.runs["path_curve"] = "ferguson"
-    found.runs["path_points"] = [[5, 5, 30, 0, 5, 25, 0, 30, 35, 35, 30, 0.0]] * 3
-    assert set(paths.data(found, options_of(paths, pick=LOWEST))["part"]) == {
-        "start",
-        "target",
-        "bound",
-        "path",
-    }
-    drawing = words(drawn(found, panels()[:1], 1, tmp_path))
-    assert not any("no path" in text or "distinct" in text for text in drawing)
-    assert "hull" not in set(
-        paths.data(results(curve="spline"), options_of(paths, pick=LOWEST))["part"]
+def test_lines_draw_the_table_of_a_function():
+    panel = {"kind": "lines", "data": "sequence", "x": "k", "metric": "value"}
+    own = [panel | {"where": {"map": name}} for name in ("short", "long")]
+    drawn_lines = [axes.lines[0] for axes in drawn(comparison(), *own, columns=2).axes]
+    assert [len(line.get_xdata()) for line in drawn_lines] == [9, 300]
+    assert [line.get_linestyle() == "None" for line in drawn_lines] == [False, True], (
+        "many points are not joined"
     )
 
 
-def test_control_points_alone_or_not_at_all():
-    parts = {
-        control: set(paths.data(results(), options_of(paths, pick=LOWEST, control=control))["part"])
-        for control in ("all", "points", "none")
-    }
-    assert parts["all"] - parts["none"] == {"control", "hull"}
-    assert parts["points"] - parts["none"] == {"points"}
+# Workspaces and drawings
 
 
-def test_explicit_path_needs_no_run(tmp_path):
-    frame = paths.data(
-        None, options_of(paths, explicit={"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]})
+def test_large_fields_are_drawn_by_their_circles():
+    circles = Circles((0.0, 40.0, 0.0, 40.0), np.array([[10.0, 20.0]]), np.array([3.0]), "cell")
+    small = workspace.parts(random_field.from_circles(circles))
+    counts = {"free": 1681 - 29, "occupied": 29, "corner": 2, "circle": 1}
+    assert small["part"].value_counts().to_dict() == counts
+    large = workspace.parts(
+        random_field.from_circles(replace(circles, bounds=(0.0, 100.0, 0.0, 100.0)))
     )
-    assert frame.loc[frame["part"] == "target", ["x", "y"]].to_numpy().tolist() == [[3, 0]]
-    figure = drawn(comparison(), comparing_panels()[6:7], 1, tmp_path)
-    assert figure.axes[0].get_xlabel() == "x (unit)"
-
-
-def test_view_cuts_what_is_drawn_but_not_what_is_listed(tmp_path):
-    figure = drawn(comparison(), gallery(1), 1, tmp_path)
-    assert (*figure.axes[0].get_xlim(), *figure.axes[0].get_ylim()) == (-9, 9, -4, 5)
-    assert all(line.get_clip_on() for line in figure.axes[0].lines)
-
-
-def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
-    figure = drawn(comparison(), gallery(10), 5, tmp_path)
-    assert words(figure).count("length 36.00 m") == 10, "a third line has room for it"
-    assert "(a), (b), (c)" in figure.get_label(), "what panels have in common is told once"
-    assert "run study/routes/field,points=3/smooth/03; " in figure.get_label()
-    assert [axes.get_ylabel() for axes in figure.axes] == [*["y (m)", "", "", "", ""] * 2]
-    assert [axes.get_xlabel() for axes in figure.axes] == [""] * 5 + ["x (m)"] * 5
-    assert figure.axes[0].get_title(loc="left") == "(a) n = 0, smooth\n(quadratic pieces)"
-
-
-@pytest.mark.parametrize(
-    ("own", "columns"),
-    [
-        (gallery(2), 1),
-        (gallery(3), 2),
-        (panels()[1:3], 1),
-        (comparing_panels()[:1] * 6, 1),
-        (comparing_panels()[2:3] * 4, 1),
-        (comparing_panels()[2:3] * 5, 2),
-        (panels()[1:2] * 6, 2),
-    ],
-)
-def test_a_narrow_sheet_is_no_longer_than_a_page_where_half_a_column_is_enough(own, columns):
-    assert sheet.narrow_columns(panels_of(own)) == columns
-
-
-def test_a_method_stands_on_a_line_of_its_own_if_one_line_is_too_short(tmp_path):
-    named = panels()[0] | {"title": "from 0 to 15"}
-    figure = drawn(results(), [named, panels()[1], panels()[1]], 3, tmp_path)
-    titles = [axes.get_title(loc="left") for axes in figure.axes[:2]]
-    assert titles[0] == "(a) from 0 to 15,\nsmooth (quadratic pieces)"
-
-
-def test_panels_of_one_metric_have_one_kind_of_axis(tmp_path):
-    """In one of them values differ by more than ten."""
-    found = comparison()
-    found.runs["length"] *= np.where(found.runs["method"] == "random", 1e3, 1)
-    own = [
-        {"kind": kind, "experiment": "routes", "x": "points", "hue": "method", "metric": metric}
-        | {"where": {"method": methods}}
-        for kind, metric, methods in (
-            ("dots", "length", ["smooth", "coarse"]),
-            ("dots", "length", ["smooth", "random"]),
-            ("dots", "objective", ["smooth", "coarse"]),
-        )
-    ]
-    figure = drawn(found, own, 3, tmp_path)
-    assert [axes.get_xscale() for axes in figure.axes] == ["log", "log", "linear"]
-    assert all(axes.get_xlabel() for axes in figure.axes), "also those that are drawn again"
-    assert [len(axes.get_yticks()) for axes in figure.axes] == [3, 3, 3]
-
-
-def test_boxes_that_reach_zero_are_seen_beside_large_ones(tmp_path):
-    found = comparison()
-    exact = found.runs["method"] == "random"
-    found.runs["length"] = np.where(exact, 18.5, 18.5 + 0.01 * 4.0 ** found.runs["repeat"])
-    panel = {"kind": "boxes", "experiment": "routes", "metric": "gap"}
-    figure = drawn(found, [panel], 1, tmp_path)
-    (axes,) = figure.axes
-    assert axes.get_xscale() == "symlog"
-    assert axes.get_xlim()[0] < 0 < axes.get_xlim()[1]
-    assert axes.get_xticks()[0] == 0
-    assert "the axis is linear up to the first number after 0" in figure.get_label()
-
-
-def test_a_row_without_a_box_says_why(tmp_path):
-    found = comparison()
-    found.runs["feasible"] &= found.runs["method"] != "random"
-    panel = {"kind": "boxes", "experiment": "routes", "metric": "length"}
-    (axes,) = drawn(found, [panel], 1, tmp_path).axes
-    assert [(*text.get_position(), text.get_text()) for text in axes.texts] == [
-        (0.5, 1, "no feasible run")
-    ]
-    assert axes.get_yticklabels()[1].get_text() == "random (0 %)"
-
-
-@pytest.mark.parametrize(
-    ("lines", "offset"),
-    [
-        ([[8.0, 0.5]], (5, 13)),
-        ([[0.5, 8.0]], (13, 5)),
-        ([[8.0, 0.2], [0.2, 8.0]], (11, 11)),
-        ([], (13, 5)),
-    ],
-)
-def test_a_letter_stands_aside_of_the_lines_that_end_there(lines, offset):
-    axes = Figure().subplots()
-    axes.set(xlim=(0, 40), ylim=(0, 40))
-    paths._write_letter(axes, np.zeros(2), "S", np.reshape(lines, (-1, 2)))
-    assert tuple(axes.texts[0].xyann) == offset
-
-
-def test_along_path_leaves_out_where_the_curve_stands_still(tmp_path):
-    found = results()
-    frame = along_path.data(
-        found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1)
-    )
-    still = frame.loc[frame["value"].isna(), "t"]
-    assert frame["value"].abs().max() == 0, "it is straight"
-    assert len(still) > 0
-    assert still.between(0.66, 0.67).all(), (
-        "two equal control points stop the curve where its second piece ends"
-    )
-    figure = drawn(found, panels()[2:3], 1, tmp_path)
-    assert any(f"{len(still)} of {len(frame)} samples left out" in text for text in words(figure))
+    assert large["part"].tolist() == ["corner", "corner", "circle"]
+    assert large["x"].tolist() == [-0.5, 100.5, 10.0]
 
 
 @pytest.mark.parametrize(("numbers", "printed"), [("all", 16), ("free", 13), ("none", 0)])
@@ -1122,22 +582,15 @@ def test_workspace_numbers(numbers, printed):
         assert (centre["x"].item(), centre["y"].item()) == grid().centre(7)
 
 
-@pytest.mark.parametrize(("heights", "named"), [([0, 1, 2, 3], 4), (range(12), 2)])
-def test_every_height_is_named_unless_there_are_many(heights, named):
-    from matplotlib.figure import Figure
-
-    cells = pd.DataFrame({"part": "free", "x": 0.5, "y": 0.5, "size": 1.0, "height": [*heights]})
-    axes = Figure().add_subplot()
-    workspace._draw_heights(axes, cells)
-    labels = [each.get_label() for each in axes.collections]
-    assert sum(label.startswith("height ") for label in labels) == named
-
-
-def test_wide_grids_number_every_third_column():
-    frame = workspace.data(
-        from_lines(["." * 16], 1.0, "cell"), options_of(workspace, numbers="all")
-    )
-    assert frame["number"].dropna().tolist() == [0, 3, 6, 9, 12, 15]
+def test_all_256_numbers_can_be_read_in_one_column():
+    home = from_lines(["." * 16] * 16, 10.0, "unit")
+    panel = options_of(workspace, workspace="map", numbers="all")
+    own = sheet.Scene({}, {"map": home}, {}, "unit")
+    figure = sheet.draw([panel], workspace.data(home, panel).assign(panel=0), own, 1, "one")
+    numbers = [text for text in figure.axes[0].texts if text.get_text()]
+    assert sorted(int(text.get_text()) for text in numbers) == list(range(256))
+    boxes_of_text = [text.get_window_extent() for text in numbers]
+    assert not any(a.overlaps(b) for a, b in itertools.pairwise(boxes_of_text))
 
 
 def test_embedding_marks_surplus_cells():
@@ -1148,176 +601,285 @@ def test_embedding_marks_surplus_cells():
 
 
 @pytest.mark.parametrize(
-    ("name", "parts"), [("circles", {"corner", "circle"}), ("polygons", {"corner", "ring"})]
+    ("name", "expected"), [("circles", {"corner", "circle"}), ("polygons", {"corner", "ring"})]
 )
-def test_workspaces_without_cells(name, parts, tmp_path):
-    assert set(workspace.data(other_workspaces()[name], options_of(workspace))["part"]) == parts
+def test_workspaces_without_cells(name, expected):
+    assert set(workspace.data(other_workspaces()[name], options_of(workspace))["part"]) == expected
     with pytest.raises(ValueError, match="kind grid"):
         workspace.data(other_workspaces()[name], options_of(workspace, embed=True))
-    figure = drawn(results(), [{"kind": "workspace", "workspace": name}], 1, tmp_path)
-    assert "x (m)" in words(figure)
 
 
-def test_holes_of_polygons_stay_open(tmp_path):
-    figure = drawn(results(), [{"kind": "workspace", "workspace": "polygons"}], 1, tmp_path)
+def test_holes_of_polygons_stay_open():
+    figure = drawn(results(), {"kind": "workspace", "workspace": "polygons"})
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     colours = np.asarray(canvas.buffer_rgba())
-    to_pixel = figure.axes[0].transData.transform
-    brightness = {}
-    for name, point in {"hole": (4, 2.5), "obstacle": (7, 2.5)}.items():
-        x, y = to_pixel(point).astype(int)
-        brightness[name] = colours[len(colours) - y, x, 0]
-    assert brightness["hole"] == 255
-    assert brightness["obstacle"] < 200
+    brightness = []
+    for point in ((4, 2.5), (7, 2.5)):
+        x, y = figure.axes[0].transData.transform(point).astype(int)
+        brightness.append(colours[len(colours) - y, x, 0])
+    assert brightness[0] == 255
+    assert brightness[1] < 200
 
 
-def test_no_feasible_run_is_said(tmp_path):
-    found = results(feasible=(False, False))
-    assert set(paths.data(found, options_of(paths, pick=LOWEST))["part"]) == {"start", "target"}
-    figure = drawn(found, panels()[:3], 2, tmp_path)
-    assert figure.get_label() == "(a), (b), (c) no feasible run among 2."
-
-
-def test_absent_repeat_is_said(tmp_path):
-    figure = drawn(results(), [panels()[1] | {"pick": {"repeat": 7}}], 1, tmp_path)
-    assert any("no such run among 3" in text for text in words(figure))
-
-
-def test_counts_stay_whole_beside_panels_without_runs(tmp_path):
-    assert any(
-        "2 of 3 runs are feasible" in text
-        for text in words(drawn(results(), panels(), 2, tmp_path))
-    )
-
-
-def test_picked_run_that_is_not_feasible_is_marked(tmp_path):
-    figure = drawn(results(), [panels()[0] | {"pick": {"repeat": 2}}, panels()[4]], 2, tmp_path)
-    assert any("smooth/2 (not feasible)" in text for text in words(figure))
-
-
-def test_run_without_a_path_is_said(tmp_path):
-    found = results(feasible=(False,))
-    found.runs["path_curve"] = ""
-    own = [panel | {"pick": {"repeat": 0}} for panel in panels()[:3:2]]
-    figure = drawn(found, own, 2, tmp_path)
-    assert sum("no path" in text for text in words(figure)) == 2
-
-
-def test_path_of_one_point_is_said(tmp_path):
-    found = results()
-    found.runs["path_points"] = [[5.0] * 10] * 3
-    figure = drawn(found, panels()[:3:2], 2, tmp_path)
-    assert any("the curve is a single point" in text for text in words(figure))
-
-
-@pytest.mark.parametrize("column", ["problem", "method"])
-def test_one_run_needs_one_problem_and_one_method(column):
-    found = results()
-    found.runs.loc[0, column] = "another"
-    with pytest.raises(ValueError, match=f"exactly one {column}"):
-        paths.data(found, options_of(paths, pick=LOWEST))
-
-
-def test_peak_far_above_the_limit_is_cut_and_said(tmp_path):
-    found = results()
-    found.runs["path_points"] = [[5, 5, 35, 5, 5, 5.1, 5, 35, 35, 35.0]] * 3
-    figure = drawn(found, panels()[2:3], 1, tmp_path)
-    highest = along_path.data(
-        found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1)
-    )["value"].max()
-    assert highest > 1
-    assert figure.axes[0].get_ylim()[1] == pytest.approx(0.4)
-    assert any(f"largest {highest:.3g} 1/unit" in text for text in words(figure))
-
-
-def ticks_beyond(axes):
-    """Labels of ticks outside of what an axis shows, which are not drawn."""
-    found = []
-    for axis in (axes.xaxis, axes.yaxis):
-        low, high = sorted(axis.get_view_interval())
-        found += [
-            tick.label1
-            for tick in axis.get_major_ticks()
-            if not low - 1e-9 <= tick.get_loc() <= high + 1e-9
-        ]
-    return found
-
-
-@pytest.mark.parametrize(
-    ("found", "own", "columns", "width"),
-    [
-        *(
-            (results(), panels(), columns, width)
-            for columns, width in ((1, 85), (2, 174), (3, 174))
-        ),
-        *(
-            (comparison(printed_means()), comparing_panels(), columns, width)
-            for columns, width in ((1, 85), (2, 174))
-        ),
-        *((comparison(), gallery(10), columns, 174) for columns in (4, 5)),
-    ],
-)
-def test_every_sheet_is_fit_for_print(found, own, columns, width, tmp_path):
-    figure = drawn(found, own, columns, tmp_path)
-    assert figure.get_figwidth() * 25.4 == pytest.approx(width)
-    figure.draw_without_rendering()
-    beyond = [label for axes in figure.axes for label in ticks_beyond(axes)]
-    seen = [
-        text
-        for text in figure.findobj(Text)
-        if text.get_text() and text.get_visible() and text not in beyond
-    ]
-    assert min(text.get_fontsize() for text in seen) >= style.SMALLEST_TEXT
-    for text in seen:
-        extent = text.get_window_extent()
-        assert 0 <= extent.x0 <= extent.x1 <= figure.bbox.width, text
-        assert 0 <= extent.y0 <= extent.y1 <= figure.bbox.height, text
-    boxes = [axes.get_tightbbox() for axes in figure.axes if axes.get_visible()]
-    assert not any(one.overlaps(other) for i, one in enumerate(boxes) for other in boxes[:i])
-
-
-def test_axes_have_units(tmp_path):
-    figure = drawn(results(), panels(), 2, tmp_path)
-    labels = [
-        label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label
-    ]
-    assert len(labels) == 8, "four panels with scales"
-    assert all(
-        label.endswith(("(unit)", "(1/unit)", "(m)"))
-        or label in ("generation", "curve parameter t")
-        for label in labels
-    )
-
-
-def test_panels_have_letters_and_the_interpretation_of_the_curve(tmp_path):
-    figure = drawn(results(), panels(), 2, tmp_path)
-    assert "(a) 0 to 15, smooth (quadratic pieces)" in [
-        axes.get_title(loc="left") for axes in figure.axes
-    ]
-    assert "(e) circles" in words(figure)
-
-
-def test_a_drawing_shows_the_marks_of_its_function_in_their_order(tmp_path):
-    figure = drawn(
-        results(), [{"kind": "drawing", "data": "marks", "workspace": "circles"}], 1, tmp_path
-    )
-    axes = figure.axes[0]
+def test_a_drawing_shows_the_marks_of_its_function_in_their_order():
+    axes = sheet_of("methods").axes[5]
     assert [text.get_text() for text in axes.texts if text.get_text()] == ["7"]
-    assert [line.get_label() for line in axes.lines][:1] == ["before"]
     np.testing.assert_allclose(axes.lines[0].get_xydata(), [[2.0, 2.5], [8.0, 4.5]])
     assert axes.get_xlabel() == "x (m)", "the workspace gives the scale"
 
 
-def test_a_mark_that_cannot_be_drawn_is_told():
-    with pytest.raises(ValueError, match="has no mark star; known: cell"):
-        drawing.data(pd.DataFrame({"mark": ["star"], "x": [0], "y": [0]}), options_of(drawing))
-    with pytest.raises(ValueError, match="mark circle needs radius"):
-        drawing.data(pd.DataFrame({"mark": ["circle"], "x": [0], "y": [0]}), options_of(drawing))
+# Functions
+
+
+def test_a_function_is_called_once_for_panels_that_draw_the_same_table():
+    calls = []
+
+    def table(*workspaces, first=0):
+        calls.append((len(workspaces), first))
+        return marks(*workspaces)
+
+    one = {"kind": "drawing", "data": "table"}
+    more = ({"title": "again"}, {"workspace": "circles"}, {"arguments": {"first": 1}})
+    own = panels_of([one, *(one | keys for keys in more)])
+    sheet.data(own, Sources(workspaces=other_workspaces(), functions={"table": table}))
+    assert calls == [(0, 0), (1, 0), (0, 1)]
+
+
+def test_functions_get_the_published_tables_that_they_ask_for():
+    published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
+    panel = {"kind": "lines", "data": "own", "published": True, "x": "k", "metric": "value"}
+    found = Sources(functions={"own": lambda tables: tables["table1"]}, published=published)
+    assert sheet.data(panels_of([panel]), found)["value"].tolist() == [3, 4]
+
+
+def test_a_panel_of_a_job_has_the_defaults_of_its_kind():
+    panel = kinds_of_panel.panel_of(
+        {"kind": "boxes", "experiment": "routes", "metric": "objective"}
+    )
+    assert (panel.by, panel.context, panel.limit) == ("method", False, None)
+    assert kinds_of_panel.panel_of(panel.plain()) == panel
+
+
+# What is drawn, number by number: small tables, every column unlike the others
+
+GRID = from_lines(["..", ".."], 1.0, "m")
+SCENE = sheet.Scene(
+    {"first": {"across": Problem("across", GRID, (0.5, 0.5), (1.5, 1.5))}}, {}, {}, "m"
+)
+COUNTS = {"runs": 10, "feasible_runs": 10, "n": 10}
+
+
+def axes_of(kind, frame, **keys):
+    axes = Figure().add_subplot()
+    kind.draw(axes, frame, SCENE, options_of(kind, experiment="first", **keys))
+    return axes
+
+
+def labelled(axes, label):
+    """x and y of the line of a label that has points."""
+    (line,) = [line for line in axes.lines if line.get_label() == label and len(line.get_xdata())]
+    return [np.asarray(each, dtype=float).tolist() for each in line.get_data()]
+
+
+def spans(axes):
+    """Ends of the vertical lines of collections."""
+    return [
+        path.vertices[:, 1].tolist() for drawn in axes.collections for path in drawn.get_paths()
+    ]
+
+
+def statistics(method):
+    numbers = np.array([[4, 1, 8], [5, 2, 9], [7, 3, 10]]) + {"a": 0.0, "b": 100.0}[method]
+    frame = pd.DataFrame(numbers, columns=["value", "low95", "high95"])
+    return frame.assign(points=[2, 3, 5], part="statistic", method=method, **COUNTS)
+
+
+BOTH = pd.concat(map(statistics, "ab"), ignore_index=True)
+
+
+def test_each_line_is_the_statistic_of_its_group_with_its_interval():
+    axes = axes_of(lines, BOTH, x="points", metric="length", hue="method")
+    assert [labelled(axes, method)[1] for method in "ab"] == [[4, 5, 7], [104, 105, 107]]
+    assert spans(axes)[:3] == [[1, 8], [2, 9], [3, 10]]
+
+
+def test_each_bar_is_as_high_as_its_statistic():
+    frame = BOTH.assign(bound=0.5, published=[np.nan] * 5 + [104.5])
+    axes = axes_of(bars, frame, x="points", hue="method", metric="length", context=True)
+    heights = [[bar.get_height() for bar in group] for group in axes.containers[:2]]
+    assert heights == [[4, 5, 7], [104, 105, 107]]
+    ends = sorted(
+        {tuple(sorted(set(line.get_ydata()))) for line in axes.lines if len(line.get_ydata())}
+    )
+    for low, high in [(1, 8), (2, 9), (3, 10), (101, 108), (102, 109), (103, 110)]:
+        assert (low, high) in ends
+    places = [at for drawn in axes.collections for at in np.ma.filled(drawn.get_offsets(), np.nan)]
+    assert next(at for at in places if at[1] == 104.5)[0] == pytest.approx(2.2), "on its bar"
+    assert [0.5, 0.5] in spans(axes)
+
+
+def history(**more):
+    columns = {
+        "objective": [9.0, 7.0, 6.0],
+        "median": [19.0, 17.0, 16.0],
+        "quartile1": [4.0, 3.0, 2.0],
+        "quartile3": [29.0, 28.0, 27.0],
+        "low95": [8.0, 6.5, 5.5],
+        "high95": [10.0, 7.5, 6.5],
+        "bound": 1.5,
+        "reference": 1.75,
+        "method": "a",
+        "run": "s/first/across/a/3",
+        "feasible": True,
+    }
+    return pd.DataFrame({"generation": [0, 1, 2], **columns, **COUNTS} | more)
+
+
+def band(axes):
+    """Lowest and highest y of the first filled band."""
+    corners = axes.collections[0].get_paths()[0].vertices
+    ends = [corners[corners[:, 0] == place, 1] for place in sorted(set(corners[:, 0]))]
+    return [each.min() for each in ends], [each.max() for each in ends]
+
+
+def test_convergence_shows_the_run_and_in_context_the_median_and_the_band():
+    axes = axes_of(convergence, history(), pick={"repeat": 3}, context=True)
+    assert labelled(axes, "run shown") == [[0, 1, 2], [9, 7, 6]]
+    assert labelled(axes, "median of all runs") == [[0, 1, 2], [19, 17, 16]]
+    assert band(axes) == ([4, 3, 2], [29, 28, 27])
+    assert labelled(axes, "exact shortest path")[1] == [1.5, 1.5]
+    assert labelled(axes, "best known path of the same kind")[1] == [1.75, 1.75]
+    alone = axes_of(convergence, history(), pick={"repeat": 3})
+    assert [line.get_label() for line in alone.lines] == ["run shown"]
+
+
+def test_convergence_of_groups_shows_their_objectives():
+    other = history(method="b", objective=[49.0, 48.0, 44.0])
+    axes = axes_of(convergence, pd.concat([history(), other]), hue="method")
+    assert [labelled(axes, method)[1] for method in "ab"] == [[9, 7, 6], [49, 48, 44]]
+    assert band(axes) == ([8, 6.5, 5.5], [10, 7.5, 6.5])
+
+
+def test_a_box_has_its_parts_where_they_lie():
+    own = {"low": 1.0, "quartile1": 3.0, "median": 4.0, "quartile3": 7.0, "high": 9.0}
+    own |= {"mean": 5.0, "beyond": 20.0, "published": 6.0, "limit": 11.0}
+    frame = pd.DataFrame({"method": "a", "part": own.keys(), "value": own.values(), **COUNTS})
+    axes = axes_of(boxes, frame, metric="objective", limit=11.0)
+    (box,) = axes.patches
+    assert sorted(set(box.get_path().vertices[:, 1].tolist())) == [3, 7]
+    level = {line.get_ydata()[0] for line in axes.lines if len(set(line.get_ydata())) == 1}
+    assert {1, 4, 9, 11} <= level
+    upright = {
+        tuple(sorted(line.get_ydata())) for line in axes.lines if len(set(line.get_ydata())) == 2
+    }
+    assert upright == {(1, 3), (7, 9)}
+    for label, value in (("mean", 5), ("published mean", 6), ("outlier", 20)):
+        assert labelled(axes, label) == [[0], [value]]
+
+
+def test_a_quantity_along_a_path_stands_over_the_parameter():
+    values = {"t": [0.0, 0.5, 1.0], "value": [0.25, 0.75, 0.5], "limit": 0.6, "pieces": 2}
+    frame = pd.DataFrame(values).assign(problem="across", run="r", feasible=True, **COUNTS)
+    axes = axes_of(along_path, frame, pick={"repeat": 3}, quantity="curvature", context=True)
+    assert labelled(axes, "path") == [[0, 0.5, 1], [0.25, 0.75, 0.5]]
+    assert labelled(axes, "largest magnitude") == [[0.5], [0.75]]
+    assert labelled(axes, "joint of two pieces")[0] == [0.5, 0.5]
+    assert labelled(axes, "published limit: 0.6 1/m")[1] == pytest.approx([0.6, 0.6])
+
+
+def test_the_end_of_a_drive_says_whether_it_arrived():
+    drives = {"mine": [3.0, 2.0, 1.0], "other": [3.0, -1.0]}
+    rows = [
+        (method, f"study/moving/field/{method}/0", step, distance, method == "mine")
+        for method, distances in drives.items()
+        for step, distance in enumerate(distances, 1)
+    ]
+    frame = pd.DataFrame(rows, columns=["method", "run", "step", "clearance", "arrived"])
+    axes = axes_of(clearance, frame)
+    ends = [line for line in axes.lines if line.get_marker() != "" and len(line.get_xdata()) == 1]
+    assert [(*line.get_xydata()[0],) for line in ends] == [(3, 1), (2, -1)]
+    assert [line.get_markerfacecolor() == style.FREE for line in ends] == [False, True]
+    assert "hollow: ends without arrival" in axes.get_legend_handles_labels()[1]
+
+
+# Print
+
+
+def visible(figure: Figure) -> list[Text]:
+    """Texts of a figure, without labels of ticks outside of what an axis shows."""
+    beyond = []
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            beyond += [
+                tick.label1
+                for tick in axis.get_major_ticks()
+                if not low - 1e-9 <= tick.get_loc() <= high + 1e-9 or not axes.axison
+            ]
+    return [
+        text
+        for text in figure.findobj(Text)
+        if text.get_text().strip() and text.get_visible() and text not in beyond
+    ]
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_every_sheet_is_fit_for_print(name):
+    figure = sheet_of(name)
+    assert figure.get_figwidth() * 25.4 == pytest.approx(170)
+    figure.draw_without_rendering()
+    texts = visible(figure)
+    assert min(text.get_fontsize() for text in texts) >= style.SMALLEST_TEXT
+    extents = [text.get_window_extent() for text in texts]
+    for text, box in zip(texts, extents):
+        assert -1 <= box.x0 <= box.x1 <= figure.bbox.width + 1, text
+        assert -1 <= box.y0 <= box.y1 <= figure.bbox.height + 1, text
+    for (one, a), (other, b) in itertools.combinations(zip(texts, extents), 2):
+        wide, high = min(a.x1, b.x1) - max(a.x0, b.x0), min(a.y1, b.y1) - max(a.y0, b.y0)
+        # A drawing's own numbers, and a tick at the corner of two axes, may touch by a hair.
+        assert wide <= 2 or high <= 2, (one.get_text(), other.get_text())
+
+
+def test_panels_have_letters_units_and_the_method_if_it_is_not_that_of_all():
+    figure = sheet_of("run")
+    assert "(a) 0 to 15 length" in words(figure)
+    panel = {"kind": "boxes", "experiment": "routes", "metric": "objective"}
+    own = [panel | {"where": {"method": method}} for method in ("smooth", "coarse")]
+    assert "(a) smooth (quadratic pieces)" in words(drawn(comparison(), *own, columns=2))
+    assert "(e) circles" in words(figure)
+    labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel())]
+    assert {label.split(" (")[-1] for label in filter(None, labels)} == {
+        "unit)",
+        "1/unit)",
+        "m)",
+        "generation",
+        "curve parameter t",
+    }
+    assert "run study/routes/0_15/smooth/1; 2 of 3 runs are feasible" in figure.get_label()
+
+
+def test_axes_that_all_panels_share_are_named_once_and_views_cut_what_is_drawn():
+    panels = sheet_of("gallery").axes
+    assert [bool(axes.get_ylabel()) for axes in panels] == [True, *[False] * 4] * 2
+    assert [bool(axes.get_xlabel()) for axes in panels] == [False] * 5 + [True] * 5
+    assert (*panels[0].get_xlim(), *panels[0].get_ylim()) == (-9, 9, -4, 5)
+    assert all(line.get_clip_on() for line in panels[0].lines)
+
+
+def test_axes_name_their_values_in_full():
+    """No offset such as +1.414e2 above the axis, on which the title stands."""
+    with mpl.rc_context(style.SETTINGS):
+        figure = Figure()
+        figure.add_subplot().plot([10, 100], [141.4213, 141.4685])
+        FigureCanvasAgg(figure).draw()
+    (axes,) = figure.axes
+    assert axes.yaxis.get_offset_text().get_text() == ""
 
 
 def save(folder: File) -> None:
-    figure = drawn(results(), panels()[1:4], 2, folder)
+    found, own, _ = SHEETS["run"]
+    figure = drawn(found, own[1])
     sheet.save(figure, *(str(folder / f"figure.{ending}") for ending in ("svg", "png", "pdf")))
 
 
@@ -1333,70 +895,51 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
     subprocess.run(
         [sys.executable, "-c", command, str(there)], check=True, cwd=File(__file__).parent
     )
-    for name in ("figure.svg", "figure.png", "figure.pdf", "figure.csv"):
+    for name in ("figure.svg", "figure.png", "figure.pdf"):
         assert (here / name).read_bytes() == (there / name).read_bytes(), name
     assert "generation" in (here / "figure.svg").read_text(), "words of a figure stay words"
-    assert (
-        "run study/routes/0_15/smooth/1; 2 of 3 runs are feasible"
-        in (here / "figure.svg").read_text()
-    ), "and it has its caption"
+    assert "runs are feasible" in (here / "figure.svg").read_text(), "and it has its caption"
 
 
-@pytest.mark.parametrize("kind", kinds_of_panel.kinds())
-def test_options_stand_in_the_options_of_a_kind_alone(kind):
-    """`data` and `draw` get them as they are read, and declare none."""
-    module = kinds_of_panel.kind_module(kind)
-    assert list(inspect.signature(module.data).parameters)[1:] == ["options"]
-    assert list(inspect.signature(module.draw).parameters) == ["axes", "frame", "scene", "options"]
+# What is plain to the eye, in words
 
 
-def test_a_panel_of_a_job_has_the_defaults_of_its_kind():
-    panel = kinds_of_panel.panel_of(
-        {"kind": "boxes", "experiment": "routes", "metric": "objective"}
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ({"a": 2.0, "b": 1.0, "c": 3.25}, "lowest median: b (1), highest: c (3.25)"),
+        ({"a": 2.0, "b": np.inf, "c": 3.0}, "lowest median: a (2), highest: c (3)"),
+        ({"a": 1.0, "b": 1.0, "c": 3.0}, "lowest median: a and b (1), highest: c (3)"),
+        ({"a": 1.0, "b": 1.0}, "median 1 of all"),
+        ({"a": 12345.6, "b": 0.00123456}, "lowest median: b (0.001235), highest: a (12,346)"),
+        ({"a": 2.0, "b": np.nan}, ""),
+    ],
+)
+def test_the_ends_of_several_values(values, expected):
+    frame = pd.DataFrame({"method": values.keys(), "value": values.values()})
+    assert glance.extremes("median", frame, "method", "value", {}) == expected
+
+
+def test_who_is_lowest_and_highest_in_most_places():
+    table = {"a": [1.0, 2, 3, np.nan], "b": [2.0, 1, 2, 7], "c": [3.0, 4, 2.5, np.nan]}
+    frame = pd.DataFrame(table).rename_axis("x").reset_index()
+    frame = frame.melt("x", var_name="method")
+
+    def mostly(places):
+        return glance.mostly("mean", frame[frame["x"].isin(places)], "x", "method", {})
+
+    assert mostly([0, 1, 2, 3]) == "lowest mean in 2 of 3: b, highest mean in 2 of 3: c"
+    assert mostly([0]) == "lowest mean: a (1), highest: c (3)"
+    assert mostly([3]) == ""
+
+
+def test_a_figure_says_in_the_last_line_of_its_caption_what_is_plain_to_the_eye():
+    caption, last = sheet_of("methods").get_label().split("\n")
+    assert "run" in caption
+    assert "lowest" not in caption
+    assert last.startswith(
+        "(a) lowest final mean: coarse (26.83), highest: random (46.83). (b), (d) "
     )
-    assert (panel.by, panel.limits, panel.limit) == ("method", False, None)
-    assert kinds_of_panel.panel_of(panel.plain()) == panel
-
-
-def test_a_function_is_called_once_for_panels_that_draw_the_same_table():
-    calls = []
-
-    def table(*workspaces, first=0):
-        calls.append((len(workspaces), first))
-        return marks(*workspaces)
-
-    one = {"kind": "drawing", "data": "table"}
-    given = [
-        one,
-        one | {"title": "again"},
-        one | {"workspace": "circles"},
-        one | {"arguments": {"first": 1}},
-    ]
-    sheet.data(panels_of(given), Sources(workspaces=other_workspaces(), functions={"table": table}))
-    assert calls == [(0, 0), (1, 0), (0, 1)]
-
-
-def test_a_band_around_occupied_cells_is_shaded_and_the_clearance_written(tmp_path):
-    found = results((True, True, True))
-    frame = paths.data(found, options_of(paths, pick=LOWEST, band=2.5))
-    clearance = frame["obstacle_clearance"].iloc[0]
-    assert clearance == pytest.approx(
-        metrics.values(found.runs, "obstacle_clearance", found.problems).iloc[-1]
-    )
-    figure = drawn(found, [panels()[0] | {"band": 2.5}], 1, tmp_path)
-    assert any(f"clearance {clearance:.3f}" in text for text in words(figure))
-    assert not any("clearance" in text for text in words(drawn(found, panels()[:1], 1, tmp_path)))
-    (axes, *_) = figure.axes
-    band = [patch for patch in axes.patches if patch.get_zorder() == 0.6]
-    (left, bottom), (right, top) = band[0].get_path().get_extents().get_points()
-    # The occupied cells fill 10 to 30 in x and in y.
-    assert (left, bottom, right, top) == pytest.approx((7.5, 7.5, 32.5, 32.5))
-
-
-def test_a_band_needs_occupied_cells():
-    found = comparison()
-    with pytest.raises(ValueError, match="band: field: not a grid"):
-        paths.data(
-            found._replace(runs=found.runs[found.runs["method"] == "smooth"]),
-            options_of(paths, pick=LOWEST, band=1.0),
-        )
+    assert "lowest mean length in 3 of 3: coarse, highest mean length in 3 of 3: random" in last
+    assert "(e) lowest median: coarse (27), highest: random (47)" in last
+    assert "\n" not in drawn(results(), CURVATURE).get_label(), "nothing is compared"

@@ -12,7 +12,6 @@ from studies import study
 
 from bezierplan.figures import sheet
 from bezierplan.figures.panels import Sources
-from bezierplan.figures.panels import spheres as panel
 from bezierplan.geometry import checker, curves, shortest_paths, spheres
 from bezierplan.geometry.region import region
 from bezierplan.planners import chaotic_pso
@@ -250,8 +249,3 @@ def test_the_figure_shows_what_its_runs_are():
     ]
     np.testing.assert_array_equal(drawn[0], control[:, [0, 1]])
     np.testing.assert_array_equal(drawn[1], control[:, [0, 2]])
-
-
-def test_a_wall_may_be_nearer_than_a_sphere():
-    places = np.array([[9.0, 0, 0], [0, 0, -10.5], [0, 3, 0]])
-    assert panel._clearance(places, among((0, 0, 0, 2))).tolist() == [1, -0.5, 1]

@@ -33,7 +33,7 @@ def draw(
     drawn |= {"bound": shortest, "start": [problem.start], "target": [problem.target]}
     if collision:
         drawn["collision"] = [collision]
-    paths.draw_parts(axes, paths.table(drawn), narrow=False, clip=True)
+    paths.draw_parts(axes, paths.table(drawn), clip=True)
 
 
 def save(file: File, drawn: Callable[[Axes], object]) -> None:
@@ -44,7 +44,7 @@ def save(file: File, drawn: Callable[[Axes], object]) -> None:
     from matplotlib.figure import Figure
 
     with mpl.rc_context(style.SETTINGS):
-        figure = Figure(figsize=(style.NARROW, style.NARROW), layout="constrained")
+        figure = Figure(figsize=2 * [style.WIDTHS["one"]], layout="constrained")
         axes = figure.add_subplot()
         drawn(axes)
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)

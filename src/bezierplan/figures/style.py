@@ -7,26 +7,28 @@ differ in line style, width or mark. A method has one look, in all figures of al
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-# Widths of one and of two text columns of a journal, in inches.
-NARROW, WIDE = 85 / 25.4, 174 / 25.4
+# Widths of sheets of one and of two text columns of a journal, in inches.
+WIDTHS = {"one": 85 / 25.4, "two": 170 / 25.4}
 
 SMALLEST_TEXT = 7  # points
-TITLE_TEXT = 8
 
 SETTINGS = {
     "font.family": "DejaVu Sans",  # ships with matplotlib, so it is the same everywhere
     "font.size": SMALLEST_TEXT,
     # So that a text is as wide in every file, whatever its dots per inch, as where it was laid out.
     "text.hinting": "no_hinting",
-    "axes.titlesize": TITLE_TEXT,
+    "axes.titlesize": SMALLEST_TEXT,
+    "axes.titlelocation": "left",
     "axes.labelsize": SMALLEST_TEXT,
     "xtick.labelsize": SMALLEST_TEXT,
     "ytick.labelsize": SMALLEST_TEXT,
@@ -36,9 +38,8 @@ SETTINGS = {
     "ytick.major.width": 0.6,
     "xtick.major.size": 2.5,
     "ytick.major.size": 2.5,
-    "axes.grid": False,
     "axes.axisbelow": True,
-    # An offset above the axis would stand in the subtitle, and hide what is shown.
+    # An offset above the axis would stand in the title, and hide what is shown.
     "axes.formatter.useoffset": False,
     "grid.color": "0.88",
     "grid.linewidth": 0.5,
@@ -109,49 +110,29 @@ LOOK_OF_PLANNER = {
 }
 # Numbers take their colours from a scale, the higher the lighter, without its lightest end, which
 # is invisible on paper.
-SCALE, _DARKEST, _LIGHTEST = "viridis", 0.0, 0.58
+SCALE, _LIGHTEST = "viridis", 0.58
 
-BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
 
 PUBLISHED_MARK = mark("D", 4.5, BLACK, markerfacecolor=FREE, markeredgewidth=0.9)
 
 # In the legend, an interval as a bar or as a band: of no method's colour, because all have one.
 INTERVAL = {"color": "0.35", "linewidth": 0.8, "label": "95 % interval"}
-INTERVAL_BAND = {
-    "facecolor": "0.88",
-    "edgecolor": "0.35",
-    "linewidth": 0.4,
-    "label": "95 % interval",
-}
 
 # In the legend, the mark of a statistic to which not all runs contribute.
 HOLLOW = mark("o", 3.5, BLACK, markerfacecolor=FREE)
+HOLLOW_LABEL = "hollow: some runs are not feasible"
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
-# A panel narrower than this, in inches, shows only the shortest notes, and names its axes only at
-# the edge of the sheet.
-NARROW_PANEL = 2.0
+# Height of a panel with two unlike axes, as a share of its width.
+PANEL_HEIGHT = 0.7
 
-# Intervals of more lines than this in one panel are drawn as bars at their points or at their ends:
-# more bands on top of each other hide the lines.
-MOST_BANDS = 5
+# An axis shows at least this share of its values: what differs by less looks equal.
+_LEAST_SPAN = 0.01
 
-# A figure all of whose lengths of time are shorter than this, in seconds, shows them in
-# milliseconds. Values that differ by more than this factor are drawn on a logarithmic axis. An axis
-# shows at least this share of its values.
-_SHORT, _WIDE_RANGE, _LEAST_SPAN = 0.1, 10.0, 0.01
-
-# An axis that is logarithmic down to near 0 shows so many decades below that of its largest value,
-# if its smallest one is less than this share of the largest.
-_DECADES, _NEAR_ZERO = 2, 1e-6
-
-# Height of a panel with two unlike axes, as a share of its width: by default, and if names beside
-# it need height and leave little width. Room between panels, in inches.
-PANEL_HEIGHT = 0.62
-HIGH_PANEL_HEIGHT = 0.9
-GAP = 0.1
+# Up to this size, values on a symmetric logarithmic axis are linear.
+_LINEAR = 1e-3
 
 
 def ground(share: float) -> str:
@@ -188,7 +169,7 @@ def looks_of(planners: Mapping[str, str], declared: Mapping[str, str]) -> dict[s
 
 
 def lines(
-    values: list[Any], looks: Mapping[str, str] = MappingProxyType({})
+    values: Sequence[Any], looks: Mapping[str, str] = MappingProxyType({})
 ) -> list[dict[str, Any]]:
     """Styles of lines for values side by side, one each: a colour scale for numbers; for methods
     their looks; else looks in order.
@@ -198,124 +179,99 @@ def lines(
     """
     import matplotlib as mpl
 
+    names: list[str] = []
+    for value in values:
+        own = looks.get(value)
+        free = [name for name in LOOKS if name not in names] or list(LOOKS)
+        names.append(own if own is not None and own not in names else free[0])
+    colours = [LOOKS[name][0] for name in names]
     if len(values) > 1 and not isinstance(values[0], str):
-        scale = mpl.colormaps[SCALE]
-        colours = [
-            mpl.colors.to_hex(scale(_DARKEST + (_LIGHTEST - _DARKEST) * i / (len(values) - 1)))
-            for i in range(len(values))
-        ]
-        parts = [
-            (colour, *list(LOOKS.values())[i % len(LOOKS)][1:]) for i, colour in enumerate(colours)
-        ]
-    else:
-        names: list[str] = []
-        for value in values:
-            own = looks.get(value)
-            free = [name for name in LOOKS if name not in names] or list(LOOKS)
-            names.append(own if own is not None and own not in names else free[0])
-        parts = [LOOKS[name] for name in names]
+        scale = mpl.colormaps[SCALE](np.linspace(0, _LIGHTEST, len(values)))
+        colours = [mpl.colors.to_hex(colour) for colour in scale]
     return [
-        {"color": colour, "linestyle": dashes, "marker": mark, "linewidth": 1.1, "markersize": 3.5}
-        for colour, dashes, mark in parts
+        {
+            "color": colour,
+            "linestyle": LOOKS[name][1],
+            "marker": LOOKS[name][2],
+            "linewidth": 1.1,
+            "markersize": 3.5,
+        }
+        for colour, name in zip(colours, names)
     ]
 
 
-def is_wide(values: Iterable[float]) -> bool:
-    """Whether values that an axis shows need a logarithmic scale: all positive, with a large ratio
-    of the largest to the smallest.
+def groups(
+    frame: pd.DataFrame, column: str, where: dict[str, Any], scene: Any
+) -> list[tuple[Any, pd.DataFrame, dict[str, Any]]]:
+    """The values of a column in the order in which a panel shows them, each with its rows and its
+    style, printed name included.
     """
-    import numpy as np
-
-    known = np.array([value for value in values if np.isfinite(value)])
-    return len(known) > 1 and bool(known.min() > 0 and known.max() > _WIDE_RANGE * known.min())
-
-
-def fit(
-    axis: Any,
-    values: Iterable[float],
-    middles: Iterable[float],
-    *,
-    near_zero: bool = False,
-    wide: bool = False,
-) -> None:
-    """Scale an axis of measured values: logarithmic, with plain numbers, if what is compared
-    differs widely; otherwise no closer than a hundredth of the values, so that what differs by less
-    looks equal.
-
-    middles: a typical value of each method or group that is compared. near_zero: whether a wide
-    axis of values that reach 0 is linear there and logarithmic beyond. wide: whether they count as
-    differing widely in any case.
-    """
-    import numpy as np
-    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter
-
-    known = np.array([value for value in values if np.isfinite(value)])
-    set_limits = axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim
-    set_scale = axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale
-    wide = len(known) > 0 and (wide or is_wide(middles))
-    if wide and near_zero and -_NEAR_ZERO < known.min() / known.max() < _NEAR_ZERO:
-        least = 10.0 ** (np.floor(np.log10(known.max())) - _DECADES)
-        set_scale("symlog", linthresh=least, linscale=0.6)
-        set_limits(-0.15 * least, known.max() * 1.5)
-        decades = least * 10.0 ** np.arange(_DECADES + 2)
-        axis.set_major_locator(FixedLocator([0.0, *decades[decades <= known.max() * 1.5]]))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
-        return
-    if wide and known.min() > 0:
-        set_scale("log")
-        set_limits(known.min() / 1.5, known.max() * 1.5)
-        axis.set_major_locator(
-            LogLocator(subs=(1.0,) if known.max() > 300 * known.min() else (1.0, 3.0))
+    values = in_order(frame[column], where)
+    return [
+        (
+            value,
+            frame[frame[column] == value],
+            look | {"label": printed(value, column, scene.labels)},
         )
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
-        axis.set_minor_formatter(NullFormatter())
-        return
+        for value, look in zip(values, lines(values, scene.looks))
+    ]
+
+
+def draw_parts(axes: Axes, frame: pd.DataFrame, looks: Mapping[str, dict], **more: Any) -> None:
+    """Draw the points of each part of a panel in its look, in the order of the looks."""
+    for part, look in looks.items():
+        own = frame[frame["part"] == part]
+        if len(own):
+            axes.plot(own["x"], own["y"], **more | look)
+
+
+def measure(axis: Any, scale: str = "linear", unit: str = "") -> None:
+    """Scale an axis of measured values, so that it shows at least a hundredth of them, with plain
+    numbers; lengths of time with their unit.
+    """
+    from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullFormatter
+
+    name = axis.axis_name
+    linear = {"linthresh": _LINEAR} if scale == "symlog" else {}
+    getattr(axis.axes, f"set_{name}scale")(scale, **linear)
     low, high = axis.get_view_interval()
-    least = _LEAST_SPAN * np.abs(known).max() if len(known) else 0.0
-    if high - low < least:
+    least = _LEAST_SPAN * max(abs(low), abs(high))
+    if scale == "linear" and high - low < least:
         middle = (low + high) / 2
-        set_limits(middle - least / 2, middle + least / 2)
+        getattr(axis.axes, f"set_{name}lim")(middle - least / 2, middle + least / 2)
+    if scale == "log":
+        decades = np.log10(high / low)
+        axis.set_major_locator(LogLocator(subs=(1.0,) if decades > 2 else (1.0, 2.0, 5.0)))
+        axis.set_minor_formatter(NullFormatter())
+    if unit == "s":
+        axis.set_major_formatter(EngFormatter(unit))
+    elif scale != "linear":
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
 
 
-def are_short(seconds: Iterable[float]) -> bool:
-    """Whether all lengths of time that are known are better printed in milliseconds."""
-    import numpy as np
-
-    known = [value for value in seconds if np.isfinite(value)]
-    return bool(known) and max(known) < _SHORT
-
-
-def in_milliseconds(axis: Any) -> None:
-    """Print an axis in milliseconds if it is one of seconds."""
-    from matplotlib.ticker import FuncFormatter
-
-    if axis.get_label_text().endswith("(s)"):
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{1000 * value:,.6g}"))
-        axis.set_label_text(f"{axis.get_label_text().removesuffix('(s)')}(ms)")
+def name_places(axes: Axes, names: Sequence[str], label: str) -> None:
+    """Name the axis of x and the places 0, 1, ... along it, in slanted words so that none touch."""
+    slant = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
+    axes.set_xticks(range(len(names)), names, **slant if max(map(len, names)) > 3 else {})
+    axes.tick_params(axis="x", length=0)
+    axes.set_xlabel(label)
+    axes.grid(visible=True, axis="y")
 
 
-def name_rows(axes: Axes, names: Sequence[str], room: float = 0.5) -> None:
-    """Name rows at heights 0, 1, ..., the first on top, with so much room beyond the outer ones."""
+def name_rows(axes: Axes, names: Sequence[str]) -> None:
+    """Name rows at heights 0, 1, ..., the first on top."""
     axes.set_yticks(range(len(names)), names)
-    axes.set_ylim(len(names) - 1 + room, -room)
+    axes.set_ylim(len(names) - 0.5, -0.5)
     axes.tick_params(axis="y", length=0)
     axes.grid(visible=True, axis="x")
-
-
-def separate_rows(axes: Axes, rows: int) -> None:
-    """Draw thin lines between rows at heights 0, 1, ..."""
-    import numpy as np
-
-    thin = {"color": "0.8", "linewidth": 0.5, "zorder": 0.5}
-    axes.hlines(np.arange(rows - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), **thin)
 
 
 def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
     """The distinct values of a column: those in a panel's `where`, in its order, then the others,
     sorted.
     """
-    wanted = where.get(values.name)
-    listed = wanted if isinstance(wanted, list) else []
+    first = where.get(values.name)
+    listed = first if isinstance(first, list) else []
     present = values.dropna().unique().tolist()
     return [value for value in listed if value in present] + sorted(set(present) - set(listed))
 

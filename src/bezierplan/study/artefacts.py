@@ -92,7 +92,14 @@ class Figure(Model):
 
     title: Line = Field(description="one line")
     columns: Literal[1, 2, 3, 4, 5] = Field(description="panels side by side, 1 to 5")
+    width: Literal["one", "two"] = Field(
+        "two", description="of the sheet, in columns of a journal: one (8.5 cm) or two (17 cm)"
+    )
     panels: Annotated[list[Panel], PlainValidator(_panels)] = Field(description="a list of panels")
+    mirrors: Line = Field(
+        None,
+        description="for the caption: what the paper's figure shows, and whether this one does",
+    )
 
 
 def _look(given: Any) -> str:

@@ -461,6 +461,8 @@ class Figure(Job):
 
     study: str
     columns: int
+    width: str
+    """Of the sheet, a key of `style.WIDTHS`."""
     panels: list[Panel]
     module: str | None
     """That of the study, with the functions that panels name."""
@@ -495,6 +497,7 @@ class Figure(Job):
         return cls(
             study=study,
             columns=spec.columns,
+            width=spec.width,
             panels=[_planned(own, panel) for panel in spec.panels],
             module=own.module() if any_method else None,
             labels=labels_of(own, figure),
@@ -555,7 +558,9 @@ class Figure(Job):
         scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks)
         sources = Sources(experiments, workspaces, functions, published, self.study)
         sheet.write_data(sheet.data(self.panels, sources), made.data)
-        figure = sheet.draw(self.panels, sheet.read_data(made.data), scene, self.columns)
+        figure = sheet.draw(
+            self.panels, sheet.read_data(made.data), scene, self.columns, self.width
+        )
         sheet.save(figure, made.svg, made.png, made.pdf)
         Path(made.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
 
@@ -575,7 +580,8 @@ def _planned(study: Study, panel: Panel) -> Panel:
 
 def caption(study: Study, artefact: str, scale: str) -> str:
     """The caption of a table or figure: title, and the methods, settings and repeats in force."""
-    sentences = [(study.tables.get(artefact) or study.figures[artefact]).title]
+    spec = study.tables.get(artefact) or study.figures[artefact]
+    sentences = [*filter(None, [spec.title, getattr(spec, "mirrors", None)])]
     for experiment in experiments_of(study, artefact):
         content = study.experiments[experiment]
         methods = [

@@ -25,7 +25,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -39,12 +39,11 @@ from bezierplan.schema.model import (
     Line,
     Metric,
     Model,
-    Number,
+    PrintedTable,
     Quantity,
     Repeat,
     Where,
     Workspace,
-    after,
     wrong,
 )
 
@@ -60,15 +59,14 @@ MOST_PANELS = 26
 class Note(NamedTuple):
     """What a panel says in words.
 
-    shown: a few words below its title, if two lines are enough for both. told: what belongs into
-    the figure's caption, such as the run that it shows and the runs that it counts, in clauses
-    joined by semicolons. seen: what a glance at it shows, such as the best method, for those who do
-    not see it.
+    heading: a few words below its title. caption: what belongs into the figure's caption, such as
+    the run that it shows and the runs that it counts, in clauses joined by semicolons. glance: what
+    is plain to the eye, such as the best method, for those who do not see the picture.
     """
 
-    shown: str = ""
-    told: str = ""
-    seen: str = ""
+    heading: str = ""
+    caption: str = ""
+    glance: str = ""
 
 
 EACH = (
@@ -107,32 +105,27 @@ class Sources:
         """
         call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
         if call not in self._tables:
-            given = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
-            given += [self.published] if panel.published else []
-            self._tables[call] = self.functions[panel.data](*given, **panel.arguments)
+            first = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
+            first += [self.published] if panel.published else []
+            self._tables[call] = self.functions[panel.data](*first, **panel.arguments)
         return self._tables[call]
 
 
 class Panel(Model, ABC):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
-    published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw
-    what no table keeps. plans: whether it plans by itself, with a method of the study. one: columns
-    of which the runs that it shows have one value. drives: whether these are drives. tracks:
-    whether their planner must have `track`. fewest_methods: how many methods it compares at least.
-    named_rows: whether names or last values stand beside it, which take the room of a second panel.
-    to_scale: whether it is as high as a map is, and can be drawn in half a text column.
+    rerun: whether runs are repeated to draw what no table keeps. plans: whether it plans by itself,
+    with a method of the study. one: columns of which the runs that it shows have one value. drives:
+    whether these are drives. tracks: whether their planner must have `track`. fewest_methods: how
+    many methods it compares at least.
     """
 
-    published_drawn: ClassVar[bool] = False
     rerun: ClassVar[bool] = False
     plans: ClassVar[bool] = False
     one: ClassVar[tuple[str, ...]] = ()
     drives: ClassVar[bool] = False
     tracks: ClassVar[bool] = False
     fewest_methods: ClassVar[int] = 1
-    named_rows: ClassVar[bool] = False
-    to_scale: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Label = Field(
@@ -147,14 +140,9 @@ class Panel(Model, ABC):
         """What it draws from, as `data` of its kind takes it."""
 
     @property
-    def measured(self) -> str | None:
-        """The metric whose numbers the column `value` of its data has, if they are of one."""
-        return None
-
-    @property
-    def timed(self) -> bool:
-        """Whether these are lengths of time, in seconds."""
-        return False
+    def published_drawn(self) -> bool:
+        """Whether published numbers are drawn: of the table that its key `printed` names."""
+        return getattr(self, "printed", None) is not None
 
     @property
     def place(self) -> str:
@@ -169,6 +157,12 @@ class RunsPanel(Panel):
     where: Where = Field(
         {},
         description="column of the runs table → value or list of values: the runs that are shown",
+    )
+    context: Flag = Field(
+        False,
+        description="whether what the paper does not show is drawn as well, true or false: the "
+        "exact shortest path or its length, the best known one of the same kind, where pieces of a "
+        "curve join, the spread of all runs",
     )
 
     def source(self, sources: Sources) -> Any:
@@ -200,15 +194,18 @@ class TablePanel(Panel):
         return select(sources.table(self), self.where).copy()
 
 
-class MayPrint:
-    """A panel that draws published numbers if its key `printed` names a table of them. It does not
-    declare the key: each kind describes its own.
-    """
+class MetricPanel(RunsPanel):
+    """A panel that shows the numbers of a metric."""
 
-    @property
-    def published_drawn(self) -> bool:
-        """Whether published numbers are drawn."""
-        return self.printed is not None
+    metric: Metric = Field(description="the name of a metric")
+    printed: PrintedTable = Field(
+        None, description="the name of a published table whose numbers are drawn as well"
+    )
+    scale: Literal["linear", "log", "symlog"] = Field(
+        "linear",
+        description="of the axis of the metric: linear (left out: this), log, or symlog, which is "
+        "linear up to 0.001 and logarithmic beyond",
+    )
 
 
 class Pick(Model):
@@ -246,27 +243,11 @@ PICK = (
 )
 
 
-def _check_view(view: list[float]) -> list[float]:
-    west, east, south, north = view
-    sides = sorted([east - west, north - south])
-    # Ticks of narrower ones do not tell their ends apart, and longer ones are no more than a line.
-    if not (sides[0] >= 1e-6 and sides[1] <= 100 * sides[0] and max(map(abs, view)) <= 1e6):
-        limits = (
-            "1e-6 apart at least, one side at most 100 times the other, numbers of at most "
-            "1e6 in absolute value"
-        )
-        raise wrong(f"{view}: expected [lowest x, highest x, lowest y, highest y], {limits}")
-    return view
-
-
-View = Annotated[list[Number], after(_check_view)]
-
-
 def exactly_one(panel: Model, *keys: str) -> None:
     """Raise the error of a panel that does not have exactly one of the keys."""
-    given = [key for key in keys if key in panel.model_fields_set]
-    if len(given) != 1:
-        raise wrong(f"{' and '.join(given) or 'neither'}: expected either {' or '.join(keys)}")
+    both = [key for key in keys if key in panel.model_fields_set]
+    if len(both) != 1:
+        raise wrong(f"{' and '.join(both) or 'neither'}: expected either {' or '.join(keys)}")
 
 
 def only(runs: pd.DataFrame, column: str) -> Any:
@@ -287,9 +268,9 @@ def kind_module(name: str) -> ModuleType:
     return importlib.import_module(f"{__name__}.{name}")
 
 
-def panel_of(given: dict[str, Any]) -> Panel:
+def panel_of(keys: dict[str, Any]) -> Panel:
     """The panel of a job, from its plain values."""
-    return kind_module(given["kind"]).Options.model_validate(given)
+    return kind_module(keys["kind"]).Options.model_validate(keys)
 
 
 @functools.cache

@@ -1,4 +1,4 @@
-"""A quantity along the path of one picked run, with the limit that the paper claims for it."""
+"""The curvature along the path of one picked run, with the limit that the paper claims for it."""
 
 from __future__ import annotations
 
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Those of the metric that claims judge.
-_SAMPLES = CURVATURE_SAMPLES
-
 # A peak higher than this many limits would flatten the curve onto the axis: then the scale ends
 # lower, and an arrow marks the peak.
 _HIGHEST_PEAK = 10
@@ -38,7 +35,7 @@ class Options(RunsPanel):
 
     pick: Pick = Field(description=PICK)
     quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")
-    limit: Number = Field(None, description="the published limit, a number")
+    limit: Number = Field(math.nan, description="the published limit, a number")
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
@@ -55,17 +52,14 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     from bezierplan.analysis.results import path_of
 
     run, names = picked(results, options.pick)
-    names |= {
-        "quantity": options.quantity,
-        "limit": math.nan if options.limit is None else options.limit,
-    }
+    names |= {"quantity": options.quantity, "limit": options.limit}
     path = None if run is None else path_of(run)
     if path is None:
         return pd.DataFrame([names | {"pieces": 0, "t": math.nan, "value": math.nan}])
-    values, _ = curves.curvature(path, _SAMPLES)
     names["pieces"] = len(curves.bezier_pieces(path))
-    frame = pd.DataFrame({"t": np.linspace(0, 1, _SAMPLES), "value": values}).assign(**names)
-    return frame[[*names, "t", "value"]]
+    samples = np.linspace(0, 1, CURVATURE_SAMPLES)
+    values, _ = curves.curvature(path, CURVATURE_SAMPLES)  # those of the metric that claims judge
+    return pd.DataFrame(names | {"t": samples, "value": values})
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -73,17 +67,16 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     unit = scene.problems[options.experiment][row["problem"]].workspace.unit
     axes.set_xlim(0, 1)
     axes.set_xlabel("curve parameter t")
-    axes.set_ylabel(f"signed {row['quantity']} (1/{unit})")
+    axes.set_ylabel(f"signed curvature (1/{unit})")
     axes.grid(visible=True)
-    if not math.isnan(row["limit"]):
-        label = f"published limit: {row['limit']:g} 1/{unit}, for turns to either side"
-        axes.axhline(row["limit"], label=label, zorder=3, **style.PUBLISHED)
-        axes.axhline(-row["limit"], zorder=3, **style.PUBLISHED)
+    for side, label in ((1, f"published limit: {row['limit']:g} 1/{unit}"), (-1, None)):
+        if np.isfinite(row["limit"]):
+            axes.axhline(side * row["limit"], label=label, zorder=3, **style.PUBLISHED)
     if frame["value"].isna().all():
         missing = "no path" if frame["t"].isna().all() else "the curve is a single point"
         return Note("", run_note(frame, missing))
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
-    for joint in range(1, int(row["pieces"])):
+    for joint in range(1, int(row["pieces"]) if options.context else 1):
         axes.axvline(joint / row["pieces"], label="joint of two pieces", zorder=2, **_JOINT)
     return _mark_highest(axes, frame, unit)
 
@@ -101,6 +94,8 @@ def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
     mark = style.mark(marker, 5, style.BLACK, label="largest magnitude")
     axes.plot(highest["t"], side * min(magnitude, top), clip_on=False, zorder=4, **mark)
     still = int(frame["value"].isna().sum())
-    shown = f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
     left_out = f"{still} of {len(frame)} samples left out, where the curve stands still"
-    return Note(shown, run_note(frame, *([left_out] if still else [])))
+    return Note(
+        f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}",
+        run_note(frame, *([left_out] if still else [])),
+    )

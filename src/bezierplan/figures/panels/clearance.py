@@ -57,14 +57,12 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    methods = style.in_order(frame["method"], options.where)
-    for method, look in zip(methods, style.lines(methods, scene.looks)):
-        own = frame[frame["method"] == method]
-        axes.plot(own["step"], own["clearance"], **look | {"marker": "", "linewidth": 1.0})
-        arrived = bool(own["arrived"].iloc[-1])
-        end = look | ({} if arrived else {"markerfacecolor": style.FREE}) | {"linestyle": ""}
-        axes.plot(own["step"].iloc[-1:], own["clearance"].iloc[-1:], zorder=4, **end)
-        axes.plot([], [], label=style.printed(method, "method", scene.labels), **look)
+    for _, own, look in style.groups(frame, "method", options.where, scene):
+        bare = look | {"marker": "", "linewidth": 1.0, "label": None}
+        axes.plot(own["step"], own["clearance"], **bare)
+        end, arrived = own[-1:], bool(own["arrived"].iloc[-1])
+        hollow = {} if arrived else {"markerfacecolor": style.FREE}
+        axes.plot(end["step"], end["clearance"], zorder=4, **look | hollow)
         if not arrived:
             axes.plot([], [], label="hollow: ends without arrival", **style.HOLLOW)
     axes.axhline(0.0, label="surface of an obstacle", **style.BOUND)

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from bezierplan.analysis import metrics, running_time
-from bezierplan.figures import seen, style
-from bezierplan.figures.panels import MayPrint, Note, RunsPanel
-from bezierplan.schema.model import Metric, PrintedTable
+from bezierplan.analysis import running_time
+from bezierplan.figures import glance, style
+from bezierplan.figures.groups import measured
+from bezierplan.figures.panels import MetricPanel, Note
+from bezierplan.schema.model import Metric
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,15 +32,11 @@ _LEVEL = 0.05
 _ROW = 0.085
 
 
-class Options(MayPrint, RunsPanel):
-    named_rows: ClassVar[bool] = True
+class Options(MetricPanel):
     fewest_methods: ClassVar[int] = 3
 
     metric: Metric = Field(
         "objective", description="what is ranked, the name of a metric; left out: objective"
-    )
-    printed: PrintedTable = Field(
-        None, description="the name of a published table whose mean ranks are shown as well"
     )
     unit: Literal["repeat", "problem"] = Field(
         "repeat",
@@ -62,72 +59,58 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     import pandas as pd
     from scipy import stats
 
-    metric, printed = options.metric, options.printed
-    runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
+    runs = measured(results, options.metric).runs
     if options.unit == "problem":
         table = running_time.by_problem(runs, runs["value"].to_numpy())
     else:
-        table = runs.pivot_table(
-            index=["condition", "repeat"], columns="method", values="value", dropna=False
-        )
+        table = runs.pivot(index=["condition", "repeat"], columns="method", values="value")
     units, methods = table.shape
     if methods < 3 or table.isna().any(axis=None):
         raise ValueError(
-            f"mean ranks need at least three methods with a {metric} in every repeat; found "
-            f"{methods} in {units}"
+            f"mean ranks need at least three methods with a {options.metric} in every repeat; "
+            f"found {methods} in {units}"
         )
-    ranks = pd.Series(
-        stats.rankdata(table.to_numpy(), axis=1).mean(axis=0), index=table.columns
-    ).sort_values(kind="stable")
-    difference = stats.studentized_range.ppf(1 - _LEVEL, methods, np.inf) * math.sqrt(
-        methods * (methods + 1) / (12 * units)
-    )
+    ranks = table.rank(axis=1).mean().sort_values(kind="stable")
     chi2, p_value = stats.friedmanchisquare(*table.to_numpy().T)
-    rows = [{"method": method, "part": "rank", "value": rank} for method, rank in ranks.items()]
-    if printed is not None and results.published is not None:
+    quantile = stats.studentized_range.ppf(1 - _LEVEL, methods, np.inf)
+    parts = [ranks.rename("value").reset_index().assign(part="rank")]
+    if options.printed is not None and results.published is not None:
         theirs = results.published.query(
-            "table == @printed and metric == 'rank' and method in @ranks.index"
+            "table == @options.printed and metric == 'rank' and method in @ranks.index"
         )
-        rows += [
-            {"method": row.method, "part": "published", "value": row.value}
-            for row in theirs.itertuples()
-        ]
-    columns = ["method", "part", "value"]
-    return (
-        pd.DataFrame(rows)
-        .reindex(columns=columns)
-        .assign(methods=methods, units=units, chi2=chi2, p_value=p_value, difference=difference)
+        parts.append(theirs[["method", "value"]].assign(part="published"))
+    return pd.concat(parts, ignore_index=True)[["method", "part", "value"]].assign(
+        methods=methods,
+        units=units,
+        chi2=chi2,
+        p_value=p_value,
+        difference=quantile * math.sqrt(methods * (methods + 1) / (12 * units)),
     )
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, the best method on top."""
-    tested = frame.iloc[0]
-    ranks, printed = (
-        frame[frame["part"] == "rank"],
-        frame[frame["part"] == "published"].set_index("method")["value"],
-    )
-    methods, half = list(ranks["method"]), tested["difference"] / 2
-    names = [scene.labels.get(method, method) for method in methods]
+    test = frame.iloc[0]
+    ranks = frame[frame["part"] == "rank"]
+    methods, half = list(ranks["method"]), test["difference"] / 2
     bar = {"color": "0.6", "linewidth": 2.2, "zorder": 2, "label": "critical difference"}
-    for row, (rank, look) in enumerate(zip(ranks["value"], style.lines(methods, scene.looks))):
-        axes.plot([rank - half, rank + half], [row, row], **bar)
-        axes.plot(rank, row, zorder=3, **look | {"markersize": 4.5})
-    if len(printed):
-        heights = [methods.index(method) for method in printed.index]
-        axes.plot(printed, heights, label="published mean rank", zorder=4, **style.PUBLISHED_MARK)
-    style.name_rows(axes, names)
+    axes.hlines(range(len(methods)), ranks["value"] - half, ranks["value"] + half, **bar)
+    for row, look in enumerate(style.lines(methods, scene.looks)):
+        axes.plot(ranks["value"].iloc[row], row, zorder=3, **look)
+    theirs = frame[frame["part"] == "published"]
+    if len(theirs):
+        label = "published mean rank"
+        heights = theirs["method"].map(methods.index)
+        axes.plot(theirs["value"], heights, label=label, zorder=4, **style.PUBLISHED_MARK)
+    style.name_rows(axes, [scene.labels.get(method, method) for method in methods])
     axes.set_xticks(range(1, len(methods) + 1))
     axes.set_box_aspect(0.1 + _ROW * len(methods))
     axes.set_xlabel("mean rank (1 is best)")
-    chance = f"p = {tested['p_value']:.2g}" if tested["p_value"] >= 1e-4 else "p below 0.0001"
-    units = "problems" if options.unit == "problem" else "repeats"
-    words = (
-        f"methods whose bars overlap cannot be distinguished: {tested['units']:g} {units}, "
-        f"Friedman's chi-squared {tested['chi2']:.1f}"
-    )
+    chance = f"p = {test['p_value']:.2g}" if test["p_value"] >= 1e-4 else "p below 0.0001"
     return Note(
         "",
-        f"{words}, {chance}; critical difference {tested['difference']:.2f}",
-        seen.extremes("mean rank", dict(zip(names, ranks["value"]))),
+        "methods whose bars overlap cannot be distinguished: "
+        f"{test['units']:g} {options.unit}s, Friedman's chi-squared {test['chi2']:.1f}, {chance}; "
+        f"critical difference {test['difference']:.2f}",
+        glance.extremes("mean rank", ranks, "method", "value", scene.labels),
     )

@@ -7,7 +7,6 @@ from __future__ import annotations
 import itertools
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
@@ -21,15 +20,6 @@ if TYPE_CHECKING:
 
 
 COLUMNS = ["mark", "group", "role", "x", "y", "width", "height", "radius", "text"]
-_NEEDED = {
-    "cell": ["width", "height"],
-    "circle": ["radius"],
-    "line": [],
-    "dots": [],
-    "arrow": [],
-    "text": ["text"],
-}
-
 # Colours of fills and lines, and marks of single points, by role. Neighbours differ in lightness or
 # in shape.
 _FILL = {
@@ -70,15 +60,7 @@ def data(marks: pd.DataFrame, options: Options) -> pd.DataFrame:
     and arrow (through the points of a group), dots (marks at x, y), text (at x, y). role: the
     style: obstacle, start, target, first, second, third, accent, muted or note. label: its entry in
     the legend; empty for none.
-
-    Raises ValueError for an unknown mark, and for one that lacks a required value.
     """
-    for mark, own in marks.groupby("mark"):
-        if mark not in _NEEDED:
-            raise ValueError(f"a drawing has no mark {mark}; known: {', '.join(_NEEDED)}")
-        for column in ["x", "y", *_NEEDED[mark]]:
-            if column not in own or own[column].isna().any():
-                raise ValueError(f"a drawing's mark {mark} needs {column}")
     columns = [*COLUMNS, "label"]
     return marks.reindex(columns=[*columns, *marks.columns.difference(columns, sort=False)])
 
@@ -86,7 +68,8 @@ def data(marks: pd.DataFrame, options: Options) -> pd.DataFrame:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data` to scale, over their workspace if the panel has one."""
     axes.set_aspect("equal")
-    if options.workspace is not None:
+    alone = options.workspace is None
+    if not alone:
         home = scene.workspaces[options.workspace]
         workspaces.shade(axes, workspaces.parts(home))
         workspaces.scale(axes, home.unit)
@@ -95,16 +78,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     changed = (names != names.shift()).cumsum()
     for level, (_, own) in enumerate(frame.groupby(changed, sort=True)):
         _draw_marks(axes, own, 3 + level / 1000)
-    if options.workspace is None:
+    if alone:
         _fit(axes, frame)
     labels = {"x": options.x_label, "y": options.y_label}
     for name, label in labels.items():
         if label is not None:
             axes.set(**{f"{name}label": label})
-        elif options.workspace is None:
+        elif alone:
             axes.set(**{f"{name}ticks": []})
-    if options.workspace is None and not any(labels.values()):
-        axes.set_frame_on(False)
+    axes.set_frame_on(not alone or any(labels.values()))
     return Note()
 
 
@@ -114,27 +96,26 @@ def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Circle, Rectangle
 
-    mark, role = rows["mark"].iloc[0], rows["role"].iloc[0]
-    label = {} if pd.isna(rows["label"].iloc[0]) else {"label": rows["label"].iloc[0]}
-    points = rows[["x", "y"]].to_numpy()
+    mark, role, label = rows[["mark", "role", "label"]].iloc[0]
+    more = {"zorder": zorder} | ({} if pd.isna(label) else {"label": label})
+    points, line = rows[["x", "y"]].to_numpy(), _LINE.get(role, _LINE["note"])
     if mark in ("cell", "circle"):
         shapes = [
-            Circle(at, each.radius)
+            Circle((row.x, row.y), row.radius)
             if mark == "circle"
-            else Rectangle(at - np.array([each.width, each.height]) / 2, each.width, each.height)
-            for at, each in zip(points, rows.itertuples())
+            else Rectangle((row.x - row.width / 2, row.y - row.height / 2), row.width, row.height)
+            for row in rows.itertuples()
         ]
-        look = _FILL.get(role, _NO_FILL)
-        axes.add_collection(PatchCollection(shapes, linewidth=0.5, zorder=zorder, **look, **label))
+        look = _FILL.get(role, _NO_FILL) | more
+        axes.add_collection(PatchCollection(shapes, linewidth=0.5, **look))
     elif mark == "line":
-        axes.plot(*points.T, zorder=zorder, **_LINE.get(role, _LINE["note"]), **label)
+        axes.plot(*points.T, **line, **more)
     elif mark == "arrow":
-        look = _LINE.get(role, _LINE["note"])
-        shape = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7, **look}
+        shape = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7, **line}
         for tail, head in itertools.pairwise(points):
             axes.annotate("", xy=head, xytext=tail, arrowprops=shape, zorder=zorder)
     elif mark == "dots":
-        axes.plot(*points.T, zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label)
+        axes.plot(*points.T, **_DOTS.get(role, _DOTS["third"]), **more)
     else:
         look = {"ha": "center", "va": "center_baseline", "zorder": zorder + 1, "in_layout": False}
         for at, words in zip(points, rows["text"]):
@@ -144,9 +125,9 @@ def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
 
 def _fit(axes: Axes, frame: pd.DataFrame) -> None:
     """Show everything, with a small margin around it."""
-    places, reach = frame[["x", "y"]].to_numpy(), frame["radius"].fillna(0).to_numpy()[:, None]
+    reach = frame["radius"].fillna(0).to_numpy()[:, None]
     half = frame[["width", "height"]].fillna(0).to_numpy() / 2 + reach
+    places = frame[["x", "y"]].to_numpy()
     low, high = (places - half).min(axis=0), (places + half).max(axis=0)
     room = 0.04 * max(high - low)
-    axes.set_xlim(low[0] - room, high[0] + room)
-    axes.set_ylim(low[1] - room, high[1] + room)
+    axes.set(xlim=(low[0] - room, high[0] + room), ylim=(low[1] - room, high[1] + room))

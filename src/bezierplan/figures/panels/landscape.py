@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 # Steps from the lowest to the highest value, equal on a logarithmic scale.
 _STEPS = 16
-# Numbers next to the colour scale, between the lowest and the highest value.
-_NUMBERS = (1, 2, 5)
 
 _LOOK = {
     "minimum": style.HOLLOW | {"label": "local minimum"},
@@ -31,13 +29,11 @@ _LOOK = {
     "fixed": style.mark(
         "o", 4.5, style.BLUE, markerfacecolor=style.FREE, label="fixed control point"
     ),
-    "start": workspaces.START,
-    "target": workspaces.TARGET,
+    **workspaces.ENDS,
 }
 
 
 class Options(RunsPanel):
-    to_scale: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem",)
 
     data: Function = Field(
@@ -65,8 +61,7 @@ def data(source: tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame
     results, table = source
     problem = results.problems[only(results.runs, "problem")]
     drawn = pd.concat([table, workspaces.ends(problem)], ignore_index=True)
-    drawn["problem"] = problem.name
-    return drawn[["problem", "part", "x", "y", "objective"]]
+    return drawn.assign(problem=problem.name)[["problem", "part", "x", "y", "objective"]]
 
 
 def nodes(frame: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -77,49 +72,40 @@ def nodes(frame: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def scale_of(values: np.ndarray) -> ScalarMappable:
     """Colours of values, the higher the lighter, on a logarithmic scale."""
-    import matplotlib as mpl
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LogNorm
 
-    return ScalarMappable(LogNorm(values.min(), values.max()), mpl.colormaps[style.SCALE])
+    return ScalarMappable(LogNorm(values.min(), values.max()), style.SCALE)
 
 
-def round_numbers(values: np.ndarray) -> list[float]:
-    """Round numbers between the lowest and the highest of positive values."""
-    powers = range(int(np.log10(values.min())) - 1, int(np.log10(values.max())) + 1)
-    return [
-        n * 10.0**power
-        for power in powers
-        for n in _NUMBERS
-        if values.min() <= n * 10.0**power <= values.max()
-    ]
+def round_numbers(values: np.ndarray) -> np.ndarray:
+    """Numbers 1, 2, 5, 10, ... between the lowest and the highest of positive values."""
+    powers = np.arange(np.floor(np.log10(values.min())), np.log10(values.max()))
+    numbers = np.outer(10.0**powers, [1, 2, 5]).ravel()
+    return numbers[(numbers >= values.min()) & (numbers <= values.max())]
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    workspace = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
     x, y, values = nodes(frame)
     colours = scale_of(values)
     levels = np.geomspace(values.min(), values.max(), _STEPS)
     axes.contourf(x, y, values, levels=levels, norm=colours.norm, cmap=colours.cmap)
     axes.contour(x, y, values, levels=levels, colors="#FFFFFF", linewidths=0.3)
-    workspaces.shade(axes, workspaces.parts(workspace), outlines=True)
-    workspaces.scale(axes, workspace.unit)
-    for part, look in _LOOK.items():
-        places = frame[frame["part"] == part]
-        if not places.empty:
-            axes.plot(places["x"], places["y"], clip_on=False, **{"zorder": 4} | look)
+    workspaces.draw_home(axes, frame, scene, options, outlines=True)
+    style.draw_parts(axes, frame, _LOOK, clip_on=False, zorder=4)
     bar = axes.figure.colorbar(colours, cax=axes.inset_axes([1.04, 0, 0.05, 1]))
-    bar.set_ticks(round_numbers(values), labels=[f"{number:g}" for number in round_numbers(values)])
+    numbers = round_numbers(values)
+    bar.set_ticks(numbers, labels=[f"{number:g}" for number in numbers])
     bar.minorticks_off()
     bar.set_label(f"objective ({scene.unit})")
-    return Note("", minima_note(frame, scene.unit))
+    return minima_note(frame, scene.unit)
 
 
-def minima_note(frame: pd.DataFrame, unit: str) -> str:
+def minima_note(frame: pd.DataFrame, unit: str) -> Note:
     """The range of the objective, and its number of local minima."""
     values = frame.loc[frame["part"] == "node", "objective"]
-    count = int((frame["part"] == "minimum").sum())
-    return (
-        f"{values.min():.2f} to {values.max():.0f} {unit}; {count} local "
-        f"minim{'um' if count == 1 else 'a'}, {len(values)} nodes"
+    return Note(
+        "",
+        f"{values.min():.2f} to {values.max():.0f} {unit}; local minima: "
+        f"{(frame['part'] == 'minimum').sum()}, nodes: {len(values)}",
     )

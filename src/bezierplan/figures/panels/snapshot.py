@@ -12,7 +12,6 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, only
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.figures.panels.paths import NARROW_MARK
 from bezierplan.schema.model import is_number, value
 
 if TYPE_CHECKING:
@@ -34,8 +33,24 @@ _LONGEST_ARROW = 0.1
 _FINE = 0.005
 
 
+_DROPPED = {"color": "0.7", "linewidth": 0.5, "zorder": 2.5, "label": "discarded plan"}
+_LOOK: dict[str, dict[str, Any]] = {
+    "plan": {
+        "color": style.BLUE,
+        "linewidth": 1.2,
+        "linestyle": (0, (5, 1.5)),
+        "zorder": 3,
+        "label": "current plan",
+        "clip_on": True,
+    },
+    "way": style.RUN_SHOWN | {"zorder": 3.5, "label": "path driven"},
+    **workspaces.ENDS,
+    "robot": style.mark("o", 5, style.RED, zorder=5, label="robot"),
+    "collision": style.mark("x", 8, style.BLACK, zorder=6, label="first collision"),
+}
+
+
 class Options(RunsPanel):
-    to_scale: ClassVar[bool] = True
     rerun: ClassVar[bool] = True
     one: ClassVar[tuple[str, ...]] = ("problem", "method")
     drives: ClassVar[bool] = True
@@ -86,50 +101,40 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
         step = int(time)
         now, after = world.at(step), world.at(step + 1)
         velocity = after - now
-        x, y = (now + (time - step) * velocity).T
-        circles = {
-            "part": "circle",
-            "x": x,
-            "y": y,
-            "size": world.radii,
-            "obstacle": range(len(now)),
-            "x_velocity": velocity[:, 0],
-            "y_velocity": velocity[:, 1],
-        }
-        corners = {"part": "corner", "x": world.bounds[:2], "y": world.bounds[2:]}
-        parts = [pd.DataFrame(corners), pd.DataFrame(circles)]
-        width = world.bounds[1] - world.bounds[0]
+        circles = pd.DataFrame(now + (time - step) * velocity, columns=["x", "y"])
+        circles = circles.assign(part="circle", size=world.radii, obstacle=range(len(now)))
+        circles[["x_velocity", "y_velocity"]] = velocity
+        bounds = world.bounds
+        corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
+        parts = [corners, circles]
     else:
         grid = world.workspace(time)
-        parts, width = [workspaces.parts(grid)], grid.bounds[1] - grid.bounds[0]
+        parts, bounds = [workspaces.parts(grid)], grid.bounds
     driven = between(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
-    parts.append(pd.DataFrame(driven, columns=["x", "y"]).assign(part="way"))
-    parts.append(pd.DataFrame(driven[-1:], columns=["x", "y"]).assign(part="robot"))
-    made = [plan for plan in ride.plans if plan.time <= time and plan.path]
-    for number, plan in enumerate(made):
-        points = pd.DataFrame(polyline(plan.path, _FINE * width), columns=["x", "y"])
-        parts.append(
-            points.assign(part="plan" if number == len(made) - 1 else "dropped", number=number)
-        )
+    places = [("way", driven), ("robot", driven[-1:])]
+    plans = [plan for plan in ride.plans if plan.time <= time and plan.path]
+    for number, plan in enumerate(plans):
+        line = polyline(plan.path, _FINE * (bounds[1] - bounds[0]))
+        places.append(("plan" if number == len(plans) - 1 else "dropped", line))
     if verdict.collision_at <= time:
         hit = between(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
-        parts.append(pd.DataFrame(hit, columns=["x", "y"]).assign(part="collision"))
+        places.append(("collision", hit))
+    for number, (part, points) in enumerate(places):
+        own = pd.DataFrame(points, columns=["x", "y"]).assign(part=part)
+        parts.append(own.assign(number=number - 2) if part in ("plan", "dropped") else own)
     return pd.concat([*parts, workspaces.ends(problem)], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
-    problem = scene.problems[options.experiment][frame["problem"].iloc[0]]
+    unit = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace.unit
     workspaces.shade(axes, frame)
-    workspaces.scale(axes, problem.workspace.unit)
-    show(axes, frame, narrow=scene.narrow)
-    if scene.narrow:
-        axes.locator_params(nbins=4, integer=True)
-    dropped = frame.loc[frame["part"] == "dropped", "number"].nunique()
-    plans = f"{dropped or 'no'} plan{'s' if dropped > 1 else ''} discarded"
-    return Note(f"step {frame['time'].iloc[0]:.0f}, {plans}", f"run {frame['run'].iloc[0]}")
+    workspaces.scale(axes, unit)
+    show(axes, frame)
+    row, dropped = frame.iloc[0], frame.loc[frame["part"] == "dropped", "number"].nunique()
+    return Note(f"step {row['time']:.0f}, plans discarded: {dropped}", f"run {row['run']}")
 
 
-def show(axes: Axes, frame: pd.DataFrame, *, narrow: bool = False) -> None:
+def show(axes: Axes, frame: pd.DataFrame) -> None:
     """Draw the rows of a moment over its obstacles."""
     circles = frame[frame["part"] == "circle"]
     if len(circles):
@@ -137,38 +142,9 @@ def show(axes: Axes, frame: pd.DataFrame, *, narrow: bool = False) -> None:
         longest = np.hypot(*arrows.T).max()
         reach = _LONGEST_ARROW * np.diff(axes.get_xlim())[0]
         arrows *= min(1.0, reach / longest) if longest > 0 else 1.0
-        look = {
-            "angles": "xy",
-            "scale_units": "xy",
-            "scale": 1,
-            "color": style.BLACK,
-            "width": 0.005,
-            "zorder": 2.6,
-        }
-        axes.quiver(circles["x"], circles["y"], *arrows.T, **look)
+        units = {"angles": "xy", "scale_units": "xy", "scale": 1, "width": 0.005}
+        axes.quiver(circles["x"], circles["y"], *arrows.T, zorder=2.6, **units)
         axes.plot([], [], label="velocity", **style.mark(r"$\rightarrow$", 8, style.BLACK))
-    for _, rows in frame[frame["part"] == "dropped"].groupby("number"):
-        axes.plot(
-            rows["x"], rows["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan"
-        )
-    looks: dict[str, dict[str, Any]] = {
-        "plan": {
-            "color": style.BLUE,
-            "linewidth": 1.2,
-            "linestyle": (0, (5, 1.5)),
-            "zorder": 3,
-            "label": "current plan",
-        },
-        "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "path driven"},
-        "start": workspaces.START,
-        "target": workspaces.TARGET,
-        "robot": style.mark("o", 5, style.RED, zorder=5, label="robot"),
-        "collision": style.mark("x", 8, style.BLACK, zorder=6, label="first collision"),
-    }
-    for part, look in looks.items():
-        rows = frame[frame["part"] == part]
-        if len(rows):
-            if narrow and "marker" in look:
-                look = look | {"markersize": NARROW_MARK * look["markersize"]}
-            # A mark at the edge is seen whole.
-            axes.plot(rows["x"], rows["y"], clip_on="marker" not in look, **look)
+    for _, plan in frame[frame["part"] == "dropped"].groupby("number"):
+        axes.plot(plan["x"], plan["y"], **_DROPPED)
+    style.draw_parts(axes, frame, _LOOK, clip_on=False)

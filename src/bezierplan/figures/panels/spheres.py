@@ -8,14 +8,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, Panel, Sources, exactly_one
+from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
-from bezierplan.schema.model import Count, Flag, Name, Number, Setting, wrong
+from bezierplan.schema.model import Count, Name, Number, Setting
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.schema.words import amount
 from bezierplan.workspaces.kinds import of_length
@@ -32,23 +32,15 @@ PLANNER = "chaotic_pso"
 
 _STEPS = 200
 
-# Room around what is drawn, as a share of its extent.
-_MARGIN = 0.05
-
 _LOOK = {
     "line": {**style.REFERENCE, "label": "straight line", "zorder": 4},
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 5},
     "control": {
-        "color": style.BLUE,
-        "marker": "o",
-        "markersize": 4,
+        **style.mark("o", 4, style.BLUE, label="control points", zorder=4.2),
         "linewidth": 0.7,
         "linestyle": (0, (4, 2)),
-        "label": "control points",
-        "zorder": 4.2,
     },
-    "start": workspaces.START,
-    "target": workspaces.TARGET,
+    **workspaces.ENDS,
 }
 
 Place = Annotated[list[Number], of_length(3, "[x, y, z]")]
@@ -69,20 +61,10 @@ class Options(Panel):
         "the shortest free path is drawn"
     )
     plane: Literal["xy", "xz", "yz"] = Field(
-        None, description="the plane on which it is projected: xy, xz or yz"
+        None,
+        description="the plane on which it is projected: xy, xz or yz; left out: its distance to "
+        "the nearest sphere or wall, which no projection shows",
     )
-    clearance: Flag = Field(
-        False,
-        description="in place of plane, true: its distance to the nearest sphere or wall, which no "
-        "projection shows",
-    )
-
-    @model_validator(mode="after")
-    def _check_shown(self) -> Options:
-        exactly_one(self, "plane", "clearance")
-        if self.plane is None and not self.clearance:
-            raise wrong("clearance: false; expected true, or a plane in its place")
-        return self
 
     def source(self, sources: Sources) -> tuple[Spheres, str]:
         """The workspace, and the name of the study."""
@@ -129,35 +111,33 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
         pieces = curves.bezier_pieces(plan.path)
         length, feasible = exact.length(pieces), exact.is_free(pieces, workspace)
         if feasible and length < bound * (1 - 1e-9) - 1e-7:
-            raise ValueError(
-                f"run {run}: a free path of length {length:.12g}, below the bound {bound:.12g}"
-            )
-        claimed = plan.claimed_feasible
-        rows.append(("run", run, length, claimed, feasible))
+            raise ValueError(f"run {run}: a free path of length {length}, below the bound {bound}")
+        rows.append(("run", run, length, plan.claimed_feasible, feasible))
         paths[run] = plan.path
     of_runs = ["run", "length", "claimed_feasible", "feasible"]
     table = pd.DataFrame(rows, columns=["part", *of_runs])
-    parts = [
-        _places("corner", np.reshape(workspace.bounds, (3, 2)).T),
-        _places("sphere", workspace.centres).assign(
-            size=workspace.radii, obstacle=range(len(workspace.radii))
-        ),
-        _places("start", np.array([start])),
-        _places("target", np.array([target])),
-        _places("line", np.array([start, target])),
-        table,
-    ]
+    places = {
+        "corner": np.reshape(workspace.bounds, (3, 2)).T,
+        "sphere": workspace.centres,
+        "start": [start],
+        "target": [target],
+        "line": [start, target],
+    }
+    parts = [_places(part, points) for part, points in places.items()]
+    parts[1] = parts[1].assign(size=workspace.radii, obstacle=range(len(workspace.radii)))
     free = table[table["feasible"]]
     if len(free):
         best = free.loc[free["length"].idxmin(), "run"]
         path = paths[best]
         samples = curves.sample_matrix(path.curve, len(path.points), _STEPS + 1) @ path.points
-        parts += [
-            _places("path", samples).assign(
-                run=best, along=_along(samples), clearance=_clearance(samples, workspace)
-            ),
-            _places("control", path.points).assign(run=best),
-        ]
+        chords = np.linalg.norm(np.diff(samples, axis=0, prepend=samples[:1]), axis=1).cumsum()
+        low, high = places["corner"]
+        to_centres = np.linalg.norm(samples[:, None] - workspace.centres, axis=2)
+        room = np.hstack([to_centres - workspace.radii, samples - low, high - samples]).min(axis=1)
+        own = _places("path", samples).assign(along=chords / chords[-1], clearance=room)
+        parts += [table, own.assign(run=best), _places("control", path.points).assign(run=best)]
+    else:
+        parts.append(table)
     columns = ["part", "x", "y", "z", "size", "obstacle", *of_runs, "along", "clearance"]
     drawn = pd.concat(parts, ignore_index=True).reindex(columns=columns)
     return drawn.assign(
@@ -165,86 +145,38 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
     )
 
 
-def _places(part: str, points: np.ndarray) -> pd.DataFrame:
+def _places(part: str, points: Any) -> pd.DataFrame:
     import pandas as pd
 
     return pd.DataFrame(points, columns=["x", "y", "z"]).assign(part=part)
 
 
-def _along(points: np.ndarray) -> np.ndarray:
-    """The length of chords up to each of points (n, 3), as a share of that of all: (n,)."""
-    lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
-    return lengths / lengths[-1]
-
-
-def _clearance(points: np.ndarray, workspace: Spheres) -> np.ndarray:
-    """The distance of points (n, 3) to the nearest sphere or wall, negative beyond it: (n,)."""
-    low, high = np.reshape(workspace.bounds, (3, 2)).T
-    to_centres = np.linalg.norm(points[:, None] - workspace.centres, axis=2)
-    return np.hstack([to_centres - workspace.radii, points - low, high - points]).min(axis=1)
-
-
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     unit = scene.workspaces[options.workspace].unit
-    if options.clearance:
+    if options.plane is None:
         return _draw_clearance(axes, frame[frame["part"] == "path"], unit)
-    _draw_projection(axes, frame, unit, options.plane)
-    return _runs_note(frame, unit)
+    across, up = options.plane
+    flat = frame.assign(
+        part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up]
+    )
+    workspaces.shade(axes, flat)
+    axes.set_xlabel(f"{across} ({unit})")
+    axes.set_ylabel(f"{up} ({unit})")
+    style.draw_parts(axes, flat, _LOOK)
+    runs, row = frame[frame["part"] == "run"], frame.iloc[0]
+    free, claimed = runs[runs["feasible"].astype(bool)], runs["claimed_feasible"].astype(bool).sum()
+    return Note(
+        f"shortest free path: {free['length'].min():.3f} {unit}",
+        f"{len(free)} of {len(runs)} runs are free, {claimed} by their own test; "
+        f"straight line {row['straight_line']:.3f}, lower bound {row['bound']:.3f} {unit}",
+    )
 
 
 def _draw_clearance(axes: Axes, path: pd.DataFrame, unit: str) -> Note:
     axes.plot(path["along"], path["clearance"], **_LOOK["path"])
     axes.axhline(0.0, label="surface of a sphere", **style.BOUND)
     axes.set_xlim(0, 1)
-    low, high = min(0.0, path["clearance"].min()), path["clearance"].max()
-    axes.set_ylim(bottom=low - _MARGIN * (high - low))  # the line of the surfaces stays visible
     axes.set_xlabel("share of the path's length")
     axes.set_ylabel(f"clearance ({unit})")
     axes.grid(visible=True)
-    if path.empty:
-        return Note("no free path")
     return Note(f"least clearance {amount(format(path['clearance'].min(), '.3g'), unit)}")
-
-
-def _draw_projection(axes: Axes, frame: pd.DataFrame, unit: str, plane: str) -> None:
-    across, up = plane
-    flat = frame.assign(
-        part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up]
-    )
-    workspaces.shade(axes, flat)
-    _look_closer(axes, flat)
-    workspaces.scale(axes, unit)
-    axes.set_xlabel(f"{across} ({unit})")
-    axes.set_ylabel(f"{up} ({unit})")
-    for part, look in _LOOK.items():
-        own = flat[flat["part"] == part]
-        if len(own):
-            axes.plot(own["x"], own["y"], **look)
-
-
-def _runs_note(frame: pd.DataFrame, unit: str) -> Note:
-    """The length of the shortest free path, and how many runs are free."""
-    runs, row = frame[frame["part"] == "run"], frame.iloc[0]
-    free, claimed = runs[runs["feasible"].astype(bool)], runs["claimed_feasible"].astype(bool).sum()
-    shortest = amount(f"{free['length'].min():.3f}", unit) if len(free) else "none"
-    straight, bound = (amount(f"{row[name]:.3f}", unit) for name in ("straight_line", "bound"))
-    return Note(
-        f"shortest free path: {shortest}",
-        f"{len(free)} of {len(runs)} runs are free, {claimed} by their own test; "
-        f"straight line {straight}, lower bound {bound}",
-    )
-
-
-def _look_closer(axes: Axes, flat: pd.DataFrame) -> None:
-    """Show what is drawn with a margin, up to the walls of the box."""
-    corners, drawn = (
-        flat[flat["part"] == "corner"],
-        flat[(flat["part"] != "corner") & flat["x"].notna()],
-    )
-    reach = drawn["size"].fillna(0) + _MARGIN * max(np.ptp(drawn["x"]), np.ptp(drawn["y"]))
-    for column, limit in (("x", axes.set_xlim), ("y", axes.set_ylim)):
-        wall = corners[column]
-        limit(
-            max((drawn[column] - reach).min(), wall.min()),
-            min((drawn[column] + reach).max(), wall.max()),
-        )

@@ -18,9 +18,6 @@ if TYPE_CHECKING:
 # The kind of axes that a panel needs.
 PROJECTION = "3d"
 
-# Viewing angles, in degrees.
-_VIEW = {"elev": 45, "azim": -60}
-
 
 def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the nodes of `data` at a logarithmic height."""
@@ -31,14 +28,12 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Not
     # time.
     look = {"rstride": 2, "cstride": 2, "linewidth": 0, "antialiased": False, "rasterized": True}
     axes.plot_surface(*np.meshgrid(x, y), np.log10(values), facecolors=colours, **look)
-    axes.view_init(**_VIEW)
-    axes.set_box_aspect((1, 1, 0.7), zoom=1.0)
+    axes.view_init(elev=45, azim=-60)
+    axes.set_box_aspect((1, 1, 0.7), zoom=0.8)
     axes.set_xlabel(f"x ({unit})", labelpad=-6)
     axes.set_ylabel(f"y ({unit})", labelpad=-6)
     axes.set_zlabel(f"objective ({scene.unit})", labelpad=-6)
     numbers = landscape.round_numbers(values)
     axes.set_zticks(np.log10(numbers), [f"{number:g}" for number in numbers])
-    axes.locator_params(axis="x", nbins=5)
-    axes.locator_params(axis="y", nbins=5)
     axes.tick_params(pad=-3)
-    return Note("", landscape.minima_note(frame, scene.unit))
+    return landscape.minima_note(frame, scene.unit)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, Panel, Sources
+from bezierplan.figures.panels import Note, Panel, RunsPanel, Sources
 from bezierplan.schema.model import Flag
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.schema.words import amount
@@ -46,32 +46,26 @@ _OUTLINE = {
 
 START = style.mark("s", 7, style.BLACK, label="start", zorder=4.5)
 TARGET = style.mark("*", 12, style.BLACK, label="target", zorder=4.5)
+ENDS = {"start": START, "target": TARGET}
 
 # A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes
 # suffice.
 _MOST_CELLS = 2500
 
-# A grid of more cells than this is drawn as an image, from its occupied cells: outlines of cells
-# would hide what they surround.
+# A grid of more cells than this is drawn by its occupied cells alone.
 _MOST_OUTLINES = 10_000
 
 # Up to so many heights are named in the legend.
 _MOST_HEIGHTS = 5
 
-# Of a grid with more columns only every third shows its numbers, the last one among them: more
-# would not be legible on a sheet of one text column.
-_MOST_COLUMNS = 12
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
 class Options(Panel):
-    to_scale: ClassVar[bool] = True
-
     workspace: Described = Field(description="the name of a workspace")
     numbers: Literal["all", "free", "none"] = Field(
         "none",
-        description="which cells show their number, of a wide grid in every third column: all, "
-        "free or none (left out: this)",
+        description="which cells show their number: all, free or none (left out: this)",
     )
     embed: Flag = Field(
         False,
@@ -111,15 +105,12 @@ def data(workspace: Workspace, options: Options) -> pd.DataFrame:
 
 def parts(workspace: Workspace) -> pd.DataFrame:
     """What is drawn of a workspace itself, without numbers: rows as in `data`."""
+    shapes, cells = workspace, []
     if isinstance(workspace, Grid):
-        source = workspace.drawn
-        cells = (
-            []
-            if source and workspace.occupied.size > _MOST_CELLS
-            else [_cells(workspace, workspace, "none")]
-        )
-        return _table(workspace.bounds, *cells, *([_shapes(source)] if source else []))
-    return _table(workspace.bounds, _shapes(workspace))
+        shapes = workspace.drawn
+        if not shapes or workspace.occupied.size <= _MOST_CELLS:
+            cells = [_cells(workspace, workspace, "none")]
+    return _table(workspace.bounds, *cells, *([_shapes(shapes)] if shapes else []))
 
 
 def ends(problem: Problem) -> pd.DataFrame:
@@ -131,16 +122,18 @@ def ends(problem: Problem) -> pd.DataFrame:
 
 
 def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
-    return _discs(workspace) if isinstance(workspace, Circles) else _rings(workspace)
-
-
-def _discs(circles: Circles) -> pd.DataFrame:
     import pandas as pd
 
-    x, y = circles.centres.T
-    return pd.DataFrame(
-        {"part": "circle", "x": x, "y": y, "size": circles.radii, "obstacle": range(len(x))}
-    )
+    if isinstance(workspace, Circles):
+        x, y = workspace.centres.T
+        of_circles = {"part": "circle", "x": x, "y": y, "size": workspace.radii}
+        return pd.DataFrame(of_circles | {"obstacle": range(len(x))})
+    rings = [
+        pd.DataFrame(points, columns=["x", "y"]).assign(part="ring", obstacle=obstacle, ring=ring)
+        for obstacle, outline in enumerate(workspace.obstacles)
+        for ring, points in enumerate(outline)
+    ]
+    return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
 
 
 def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
@@ -158,36 +151,18 @@ def _cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
     """Cells of a grid; those beyond its own part are surplus."""
     import pandas as pd
 
-    own_rows, own_columns = grid.occupied.shape
-    left_out = (
-        ~whole.occupied
-        if numbers == "none" and whole.heights is None and whole.occupied.size > _MOST_OUTLINES
-        else False
-    )
-    row, column = np.nonzero(~np.broadcast_to(left_out, whole.occupied.shape))
-    surplus = (row >= own_rows) | (column >= own_columns)
+    rows, columns = whole.occupied.shape
+    hidden = numbers == "none" and whole.heights is None and rows * columns > _MOST_OUTLINES
+    row, column = np.nonzero(whole.occupied | (not hidden))
+    surplus = (row >= grid.occupied.shape[0]) | (column >= grid.occupied.shape[1])
     part = np.where(surplus, "surplus", np.where(whole.occupied[row, column], "occupied", "free"))
-    shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
+    shown = (part == numbers) | (numbers == "all")
     x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
     cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
-    columns = whole.occupied.shape[1]
-    if columns > _MOST_COLUMNS:
-        shown &= (columns - 1 - column) % 3 == 0
     cells["number"] = pd.Series(row * columns + column, dtype="Int64").where(shown)
     if whole.heights is not None and whole is grid:
         cells["height"] = whole.heights.ravel()
     return cells
-
-
-def _rings(workspace: Polygons) -> pd.DataFrame:
-    import pandas as pd
-
-    rings = [
-        pd.DataFrame(points, columns=["x", "y"]).assign(part="ring", obstacle=obstacle, ring=ring)
-        for obstacle, outline in enumerate(workspace.obstacles)
-        for ring, points in enumerate(outline)
-    ]
-    return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
@@ -204,12 +179,19 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if numbered.empty:
         scale(axes, unit)
         return Note()
-    axes.set_xticks([])
-    axes.set_yticks([])
-    side = numbered["size"].iloc[0]
-    if (side, unit) == (1, "cell"):
-        return Note()
-    return Note(f"cells of {side:g} x {amount(f'{side:g}', unit)}")
+    axes.set(xticks=[], yticks=[])
+    side = f"{numbered['size'].iloc[0]:g}"
+    return Note("" if (side, unit) == ("1", "cell") else f"cells of {side} x {amount(side, unit)}")
+
+
+def draw_home(
+    axes: Axes, frame: pd.DataFrame, scene: Any, options: RunsPanel, **more: bool
+) -> Workspace:
+    """Draw the workspace of the runs that a panel shows, with its scale, and return it."""
+    home = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
+    shade(axes, parts(home), **more)
+    scale(axes, home.unit)
+    return home
 
 
 def scale(axes: Axes, unit: str) -> None:
@@ -228,26 +210,33 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     outlines of circles and polygons if something else fills the panel, such as the cells of a grid
     drawn from them.
     """
+    from matplotlib.collections import PatchCollection
+
     corners = frame[frame["part"] == "corner"]
     axes.set_xlim(corners["x"].min(), corners["x"].max())
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
     cells = frame[frame["part"].isin(_CELLS)]
+    # Outlines of small cells would hide what they surround.
     area = np.ptp(corners["x"]) * np.ptp(corners["y"])
-    are_many = len(cells) and area > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
-    if are_many and "height" not in frame:
-        _draw_image(axes, cells, corners)
-    else:
-        for part, look in _CELLS.items():
-            _draw_cells(axes, cells[cells["part"] == part], look)
+    dense = len(cells) and area > _MOST_OUTLINES * cells["size"].iloc[0] ** 2
+    bare = {"edgecolor": "face", "rasterized": True} if dense else {}
+    for part, own in cells.groupby("part"):
+        draw_cells(axes, own, _CELLS[part] | bare)
     if "height" in frame:
         _draw_heights(axes, frame[frame["part"] == "free"])
-    look = _OUTLINE if outlines or frame["part"].isin(_CELLS).any() else _OBSTACLE
-    _draw_obstacles(axes, _circles(frame[frame["part"] == "circle"]), look)
-    _draw_obstacles(axes, _polygons(frame[frame["part"] == "ring"]), look)
+    look = _OUTLINE if outlines or len(cells) else _OBSTACLE
+    shapes = [
+        *_circles(frame[frame["part"] == "circle"]),
+        *_polygons(frame[frame["part"] == "ring"]),
+    ]
+    if shapes:
+        obstacles = PatchCollection(shapes, label="obstacle", **look)
+        axes.add_collection(obstacles, autolim=False)
 
 
-def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
+def draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
+    """Draw cells about x, y of a size, in a look."""
     from matplotlib.collections import PolyCollection
 
     if cells.empty:
@@ -256,28 +245,8 @@ def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
     corners = (
         cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
     )
-    shapes = PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look)
-    axes.add_collection(shapes, autolim=False)
-
-
-def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
-    """Draw cells as an image of one pixel each. Cells that are not listed are free."""
-    from matplotlib.collections import PolyCollection
-    from matplotlib.colors import to_rgb
-
-    side = cells["size"].iloc[0]
-    (left, right), (bottom, top) = corners["x"], corners["y"]
-    shape = round((top - bottom) / side), round((right - left) / side), 3
-    image = np.full(shape, to_rgb(_CELLS["free"]["facecolor"]))
-    for part in ("occupied", "surplus"):
-        own = cells[cells["part"] == part]
-        row, column = ((own["y"] - bottom) // side), ((own["x"] - left) // side)
-        image[row.astype(int), column.astype(int)] = to_rgb(_CELLS[part]["facecolor"])
-        if len(own):
-            legend = PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part])
-            axes.add_collection(legend, autolim=False)
-    extent = left, right, bottom, top
-    axes.imshow(image, extent=extent, origin="lower", aspect="equal", zorder=0.5)
+    plain = {"edgecolor": style.CELL_LINE, "linewidth": 0.4, "zorder": 0.5}
+    axes.add_collection(PolyCollection(corners, **plain | look), autolim=False)
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
@@ -288,7 +257,7 @@ def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
     named = (low, high) if cells["height"].nunique() > _MOST_HEIGHTS else cells["height"].unique()
     for height, own in cells.groupby("height"):
         look = {"facecolor": style.ground((height - low) / (high - low) if high > low else 0.0)}
-        _draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in named else {}))
+        draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in named else {}))
 
 
 def _circles(circles: pd.DataFrame) -> list[Circle]:
@@ -300,33 +269,11 @@ def _circles(circles: pd.DataFrame) -> list[Circle]:
 
 
 def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Outline
+    import shapely
+    from shapely.plotting import patch_from_polygon
 
     outlines = [
-        Outline.make_compound_path(
-            *(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in _oriented(obstacle))
-        )
+        [ring[["x", "y"]].to_numpy() for _, ring in obstacle.groupby("ring")]
         for _, obstacle in rings.groupby("obstacle")
     ]
-    return [PathPatch(outline) for outline in outlines]
-
-
-def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
-    """The rings (n, 2) of an obstacle, the outer one counterclockwise and its holes clockwise: only
-    then do holes stay open.
-    """
-    rings = []
-    for number, ring in obstacle.groupby("ring"):
-        points = ring[["x", "y"]].to_numpy()
-        x, y = points.T
-        counterclockwise = x @ np.roll(y, -1) > y @ np.roll(x, -1)
-        rings.append(points if counterclockwise == (number == 0) else points[::-1])
-    return rings
-
-
-def _draw_obstacles(axes: Axes, shapes: list, look: dict) -> None:
-    from matplotlib.collections import PatchCollection
-
-    if shapes:
-        axes.add_collection(PatchCollection(shapes, label="obstacle", **look), autolim=False)
+    return [patch_from_polygon(shapely.Polygon(outer, holes)) for outer, *holes in outlines]

@@ -1,0 +1,151 @@
+"""Groups of runs as rows of what is drawn: one way for all kinds of panel that compare them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bezierplan.analysis import metrics, statistics
+from bezierplan.figures import style
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from bezierplan.analysis.results import Results
+
+# Reference lines: the exact shortest length, and the best known path of the methods' own kind.
+LIMITS = {
+    "reference": {**style.REFERENCE, "label": "best known path of the same kind"},
+    "bound": {**style.BOUND, "label": "exact shortest path"},
+}
+
+# Columns of published numbers that do not distinguish runs.
+_PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
+
+
+def grouped(
+    results: Results,
+    keys: list[str],
+    rows: Callable[[Results], Iterable[dict[str, Any]]],
+) -> pd.DataFrame:
+    """The rows of each group of runs with equal keys, with what says which runs these are.
+
+    Columns: those of `constants`; the keys; runs and feasible_runs (counts); those of the rows.
+    Runs are in the order of their ids, so that no sum depends on the order in which chunks were
+    read.
+    """
+    import pandas as pd
+
+    runs = results.runs.sort_values("id")
+    return pd.DataFrame(
+        constants(runs) | dict(zip(keys, key)) | counts(own) | row
+        for key, own in runs.groupby(keys)
+        for row in rows(results._replace(runs=own))
+    )
+
+
+def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
+    """A statistic of a metric for each group of runs with equal keys.
+
+    Columns: those of `grouped`; n (runs that have the metric), value, low95 and high95 (its 95 %
+    bootstrap interval), in the metric's unit.
+    """
+
+    def rows(group: Results) -> Iterable[dict[str, Any]]:
+        numbers = values(group)
+        key = [f"{column}={group.runs[column].iloc[0]}" for column in keys]
+        low, high = np.nan, np.nan
+        if not metrics.METRICS[metric].of_group:
+            rng = generator("/".join([metric, statistic, *key]))
+            low, high = statistics.interval(statistic, numbers, rng)
+        value = statistics.statistic(statistic, numbers)
+        yield {"n": len(numbers), "value": value, "low95": low, "high95": high}
+
+    return grouped(measured(results, metric), keys, rows)
+
+
+def measured(results: Results, metric: str) -> Results:
+    """Results with a metric in the column value. Raises KeyError for an unknown metric."""
+    numbers = metrics.values(results.runs, metric, results.problems)
+    return results._replace(runs=results.runs.assign(value=numbers))
+
+
+def values(group: Results) -> np.ndarray:
+    """The sorted numbers (n,) of the runs that have the metric of `measured`."""
+    return np.sort(group.runs["value"].dropna().to_numpy())
+
+
+def constants(runs: pd.DataFrame) -> dict[str, Any]:
+    """Problem and method of runs, where they share one."""
+    return {
+        column: runs[column].iloc[0]
+        for column in ("problem", "method")
+        if runs[column].nunique() == 1
+    }
+
+
+def counts(runs: pd.DataFrame) -> dict[str, int]:
+    """How many runs there are, and how many of them are feasible."""
+    return {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
+
+
+def limits(runs: pd.DataFrame) -> dict[str, float]:
+    """Values of `LIMITS` that all runs share, by name."""
+    return {
+        name: runs[name].iloc[0]
+        for name in LIMITS
+        if name in runs and runs[name].notna().all() and runs[name].nunique() == 1
+    }
+
+
+def published(
+    results: Results, metric: str, table: str | None, statistic: str = "mean"
+) -> list[float]:
+    """Values of a metric's statistic that a table of the paper prints for the problem, method and
+    settings of runs; a row's empty keys match all runs. None without a table.
+
+    A number that is of a part of the runs only, such as one of several problems, is none of theirs.
+    """
+    numbers, runs = results.published, results.runs
+    if numbers is None or table is None:
+        return []
+    numbers = numbers.query("table == @table and metric == @metric and statistic == @statistic")
+    for column in numbers.columns.difference(_PRINTED):
+        own = runs[column].unique() if column in runs else []
+        fits = numbers[column].isin(own if len(own) == 1 else [])
+        numbers = numbers[numbers[column].isna() | fits]
+    return sorted(numbers["value"].unique())
+
+
+def axis_label(column: str, scene: Any, statistic: str = "") -> str:
+    """Name and unit of what an axis shows; a column other than a metric has its unit in its label,
+    or is a count, or has no unit. Lengths of time have theirs in their numbers.
+    """
+    unit = unit_of(column, scene)
+    beside = "" if unit in ("-", "s", "") else f" ({unit})"
+    return f"{statistic} {style.column_name(column, scene.labels)}{beside}".lstrip()
+
+
+def unit_of(column: str, scene: Any) -> str:
+    """The unit of a metric; none for another column."""
+    return metrics.unit(column, scene.unit) if column in metrics.METRICS else ""
+
+
+def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
+    """The number of runs behind a statistic, from the columns of `summary`, and the share of them
+    that is feasible.
+    """
+    share = (100 * frame["feasible_runs"] / frame["runs"]).round()
+    counted = _range(frame["runs"])
+    if "n" in frame and (frame["n"] < frame["feasible_runs"]).any():
+        counted = f"{_range(frame['n'])} of {counted}"
+    return f"{statistic} of {counted} runs per {where}, {_range(share)} % feasible"
+
+
+def _range(numbers: pd.Series) -> str:
+    """The range of whole numbers, as printed."""
+    low, high = numbers.min(), numbers.max()
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"

@@ -1,0 +1,176 @@
+"""Looks in print: faint colours, methods that look alike or change their look; and what panels that
+compare all planners say.
+"""
+
+import itertools
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from studies import study
+
+from bezierplan.figures import sheet, style
+from bezierplan.figures.panels import kind_module, panel_of
+from bezierplan.study import jobs
+
+STUDIES = {
+    name: study(name) for name in ("song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje")
+}
+
+# Contrasts that the Web Content Accessibility Guidelines 2.1 ask for, of marks and of small text
+# (criteria 1.4.11 and 1.4.3).
+MARK, TEXT = 3.0, 4.5
+
+
+def luminance(colour) -> float:
+    channels = np.array(to_rgb(colour))
+    linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+def contrast(colour, ground="#FFFFFF") -> float:
+    """The contrast ratio of WCAG 2.1."""
+    light, dark = sorted([luminance(colour), luminance(ground)], reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+def test_marks_and_words_stand_out_from_paper():
+    for name, (colour, *_) in style.LOOKS.items():
+        assert contrast(colour) >= MARK, name
+    for look in style.lines([float(number) for number in range(10)]):
+        assert contrast(look["color"]) >= MARK, look
+    for colour in (style.RED, style.BLUE, style.BLACK):
+        assert contrast(colour) >= TEXT - 0.5, colour
+    assert contrast(style.BLACK, style.OCCUPIED) >= MARK, "words on occupied cells"
+
+
+# What eyes without the pigment for long and for medium waves see of linear red, green and blue
+# (Machado, Oliveira and Fernandes 2009).
+BLIND = {
+    "protanopia": [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    "deuteranopia": [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+}
+
+
+def lab(colour, eyes=None) -> np.ndarray:
+    """A colour in CIELAB as some eyes see it."""
+    channels = np.array(to_rgb(colour))
+    linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
+    if eyes:
+        linear = np.clip(np.array(BLIND[eyes]) @ linear, 0, 1)
+    xyz = (
+        np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+        @ linear
+        / [0.9505, 1.0, 1.089]
+    )
+    f = np.where(xyz > 216 / 24389, np.cbrt(xyz), (24389 / 27 * xyz + 16) / 116)
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+@pytest.mark.parametrize("eyes", [None, *BLIND])
+def test_looks_differ_in_colour_or_in_mark_and_dashes_for_all_eyes(eyes):
+    marks = [mark for _, _, mark in style.LOOKS.values()]
+    assert len(set(marks)) == len(marks)
+    for (one, a), (other, b) in itertools.combinations(style.LOOKS.items(), 2):
+        apart = float(np.linalg.norm(lab(a[0], eyes) - lab(b[0], eyes)))
+        assert apart >= 10 or a[1] != b[1], (
+            f"{one} and {other} are {apart:.0f} apart, and both lines have the same dashes"
+        )
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_methods_side_by_side_look_different(name):
+    looks = jobs.looks(STUDIES[name])
+    for key, figure in STUDIES[name].figures.items():
+        for panel in figure.panels:
+            where = getattr(panel, "where", None) or {}
+            methods = where.get("method")
+            if isinstance(methods, list):
+                own = [looks[method] for method in methods]
+                assert len(set(own)) == len(own), (key, dict(zip(methods, own)))
+
+
+def test_a_method_looks_alike_in_all_studies():
+    """Methods of one name, such as baselines and rivals, and methods of another study that one
+    borrows.
+    """
+    looks = {name: jobs.looks(study) for name, study in STUDIES.items()}
+    for one, other in itertools.combinations(looks.values(), 2):
+        for method in one.keys() & other.keys():
+            assert one[method] == other[method], method
+    for method in ("song2016_smooth", "ma2020_bca", "meledje_proposed"):
+        paper, _, own = method.partition("_")
+        assert looks["elhoseny2017"][method] == looks[paper][own]
+
+
+def test_looks_are_declared_once_or_follow_the_planner():
+    planners = {
+        "mine": "mine.py",
+        "other": "other.py",
+        "rounded": "rounded_shortest_path",
+        "declared": "prm",
+    }
+    looks = style.looks_of(planners, {"declared": "sky"})
+    assert looks["rounded"] == "black"
+    assert looks["declared"] == "sky"
+    assert len(set(looks.values())) == 4, (
+        "two without a declaration get looks that no other method has"
+    )
+    twice = style.lines(["a", "b"], {"a": "blue", "b": "blue"})
+    assert twice[0]["color"] != twice[1]["color"], "two lines in one panel are never alike"
+
+
+METHODS = ["smooth", "coarse", "random"]
+RANKS = pd.DataFrame({"method": METHODS, "part": "rank", "value": [1.2, 1.9, 2.9]}).assign(
+    methods=3, units=12, chi2=8.0, p_value=0.02, difference=0.96
+)
+TIMES = pd.DataFrame(itertools.product(METHODS, (0.01, 0.1)), columns=["method", "within"]).assign(
+    value=[np.inf, 9000.0, np.inf, 4e5, np.inf, np.inf], problems=6, runs=60
+)
+PROFILE = pd.DataFrame(
+    {"method": METHODS, "ratio": [1.0, 1.3, 1.0], "share": [1.0, 0.5, 0.0]}
+).assign(problems=6, solved=6)
+
+
+def note(kind, frame, **keys):
+    """Axes on which a kind has drawn a table, and what it says."""
+    axes = Figure().subplots()
+    panel = panel_of({"kind": kind, "experiment": "all", **keys})
+    return axes, kind_module(kind).draw(axes, frame, sheet.Scene({}, {}, {}, "m"), panel)
+
+
+def test_kinds_of_comparison_say_in_the_caption_how_to_read_them():
+    _, ranks = note("critical_difference", RANKS)
+    assert ranks.caption.startswith("methods whose bars overlap cannot be distinguished")
+    assert ranks.glance == "lowest mean rank: smooth (1.2), highest: random (2.9)"
+    ends = {"low95": TIMES["value"] / 2, "high95": TIMES["value"] * 3}
+    axes, times = note("expected_running_time", TIMES.assign(**ends), cost="evaluations")
+    assert "never: at least half of them are not solved" in times.caption
+    assert times.glance.startswith("lowest expected work to 10 %: smooth (9000), highest: coarse")
+    assert axes.get_xlim()[1] > 6 * 3 * 4e5, "intervals stay within the panel"
+    _, profile = note("performance_profile", PROFILE, cost="length")
+    assert profile.caption == "6 problems; solved by the median run of any method: 6"
+    assert "on which it is the best: coarse and random (0), highest: smooth (1)" in profile.glance
+
+
+def test_marks_of_profiles_lie_on_their_lines():
+    """Not before the last step, where the line is lower."""
+    late = pd.concat([PROFILE, PROFILE.head(1).assign(ratio=1.31, share=0.9)])
+    axes, _ = note("performance_profile", late, cost="length")
+    marks = [line for line in axes.lines if len(line.get_xdata()) == 1]
+    lines = [line for line in axes.lines if len(line.get_xdata()) > 1]
+    assert len(marks) == len(lines) == 3
+    for mark, line in zip(marks, lines):
+        (at,), (height,) = mark.get_xdata(), mark.get_ydata()
+        step = np.searchsorted(line.get_xdata(), at, side="right") - 1
+        assert line.get_ydata()[step] == height
