@@ -34,8 +34,8 @@ _MODULES = [
         "yaml",
     ),
 ]
-# pyarrow, which pandas imports, would start a thread: see `bezierplan.running.forks`, which is not
-# imported, for a tree has its own.
+# pyarrow, which pandas imports, would start a thread: see `bezierplan.running.jobs.forks`, which is
+# not imported, for a tree has its own.
 _ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 # On Linux and macOS; elsewhere each start imports anew, with the same result.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"

@@ -14,7 +14,7 @@ import pytest
 import starts
 from snakemake.iocontainers import OutputFiles
 
-from bezierplan.running import log
+from bezierplan.running.jobs import log
 
 ROOT = Path(__file__).parents[1]
 
@@ -34,7 +34,7 @@ import sys
 from types import SimpleNamespace
 from pathlib import Path
 from snakemake.iocontainers import OutputFiles
-from bezierplan.running import log
+from bezierplan.running.jobs import log
 log.end_with_parent = lambda: None
 folder = sys.argv[1]
 output = OutputFiles(fromdict={"one": folder + "/one.csv"})

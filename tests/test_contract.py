@@ -12,7 +12,9 @@ from studies import studies
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import known_planners
-from bezierplan.running import contract, execution, interface, watchdog
+from bezierplan.running import execution
+from bezierplan.running.guard import contract, interface
+from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault
 from bezierplan.study.jobs import job
 

@@ -108,7 +108,7 @@ def test_modules_beside_an_own_planner_count(tree, tmp_path):
 
 def test_how_a_job_is_logged_does_not_count(tree):
     before = digest(tree, "bezierplan.running.execution")
-    for name in ("running/log", "machine/digest", "machine/kernel_cache"):
+    for name in ("running/jobs/log", "machine/digest", "machine/kernel_cache"):
         append(tree / "bezierplan" / f"{name}.py", "\nNEW = 1\n")
     assert digest(tree, "bezierplan.running.execution") == before
 

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import pytest
 from snakemake.script import script
 
-from bezierplan.running.forks import FIRST, LATER, Forks
+from bezierplan.running.jobs.forks import FIRST, LATER, Forks
 
 # Nothing to test elsewhere: a fork of a process that has loaded libraries of macOS may crash, so
 # `Forks.script` makes none there.
@@ -67,7 +67,7 @@ def test_script_prints_into_nothing_where_the_stream_is_closed(tmp_path):
     """The next file that is opened has the number of the closed stream."""
     (tmp_path / "start.py").write_text(
         "import sys\n"
-        "from bezierplan.running.forks import Forks\n"
+        "from bezierplan.running.jobs.forks import Forks\n"
         "victim = open('victim', 'w')\n"
         "assert sys.stdout is None and victim.fileno() == 1\n"
         "assert Forks(sys.executable, open).succeeds('prints.py', 'print(1, flush=True)', None)\n"
@@ -126,7 +126,9 @@ def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks,
         assert forks.succeeds("good.py", "pass", None)
 
 
-UNDER_WAY = "from bezierplan.running import watchdog; watchdog.begin({}, 'run a: planner b'); {}"
+UNDER_WAY = (
+    "from bezierplan.running.jobs import watchdog; watchdog.begin({}, 'run a: planner b'); {}"
+)
 ENDS = {
     "import os; os._exit(7)": "its process ended itself with exit status 7, before it was done",
     "import ctypes; ctypes.string_at(0)": "its process was ended by signal SIGSEGV",
@@ -192,13 +194,13 @@ def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):
     told = tmp_path / "told"
     job = """
 import os, time
-from bezierplan.running.log import end_with_parent
+from bezierplan.running.jobs.log import end_with_parent
 end_with_parent()
 open(snakemake, "w").write(str(os.getpid()))
 time.sleep(600)
 """
     workflow = (
-        f"from bezierplan.running.forks import Forks; Forks({sys.executable!r}, "
+        f"from bezierplan.running.jobs.forks import Forks; Forks({sys.executable!r}, "
         f"print).succeeds('long.py', {job!r}, {str(told)!r})"
     )
     with subprocess.Popen([sys.executable, "-c", workflow]) as process:

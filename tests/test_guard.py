@@ -14,8 +14,10 @@ import pytest
 
 from bezierplan.commands.digest import row_text
 from bezierplan.planners import planner_module
-from bezierplan.running import execution, guard, interface, watchdog, worker
+from bezierplan.running import execution
 from bezierplan.running.chunk import Chunk
+from bezierplan.running.guard import interface, process, worker
+from bezierplan.running.jobs import watchdog
 from bezierplan.schema import checked
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
@@ -106,7 +108,7 @@ def test_runs_are_those_of_this_process_and_print_into_the_log(tmp_path, monkeyp
     runs, times = execution.run_chunk({"disc": PROBLEM}, guarded)
     assert min(times["cpu_s"].to_pylist()) > 0
     assert "aaa... (" in caplog.text
-    assert len(caplog.text) < 2 * guard.MOST_PRINTED
+    assert len(caplog.text) < 2 * process.MOST_PRINTED
     monkeypatch.setattr(worker, "planner_module", lambda planner: here)
     monkeypatch.setattr(execution, "is_file", lambda planner: False)
     again, _ = execution.run_chunk({"disc": PROBLEM}, given)
@@ -134,7 +136,7 @@ def test_lines_that_are_none_of_ours_are_told(lines, tmp_path):
     file = tmp_path / "lines"
     file.write_text(lines)
     with pytest.raises(watchdog.PlannerFailure, match=r"^it: its process (does not|took 50)"):
-        guard._read(file, "it", "", 50.0)
+        process._read(file, "it", "", 50.0)
 
 
 SOUND = "def plan(problem, rng, *, tries: int):\n    return None\n"

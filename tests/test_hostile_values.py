@@ -14,7 +14,7 @@ import pytest
 from bezierplan.analysis import headline, metrics, statistics, summary
 from bezierplan.figures import sheet
 from bezierplan.machine import digest
-from bezierplan.running import watchdog
+from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading, targets
 

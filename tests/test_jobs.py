@@ -15,8 +15,8 @@ from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
 from studies import studies, study
 
-from bezierplan.running import log
 from bezierplan.running.inputs import BEYOND, PAPER
+from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
 from bezierplan.study import design, jobs, page, reading
 

@@ -41,7 +41,7 @@ from pathlib import Path
 from bezierplan.machine import digest
 digest.KERNELS = Path("kernels").resolve()
 import kernels_of_mine as mine
-from bezierplan.running.forks import compile_first
+from bezierplan.running.jobs.forks import compile_first
 from numba.core import event
 compile_first()
 Path(f"ready-{os.getpid()}").touch()

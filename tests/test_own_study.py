@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 import starts
 
-from bezierplan.running import recheck
+from bezierplan.running.judge import recheck
 
 ROOT = Path(__file__).parents[1]
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from bezierplan.commands.digest import row_text
-from bezierplan.running import execution, interface, worker
+from bezierplan.running import execution
 from bezierplan.running.chunk import Chunk
+from bezierplan.running.guard import interface, worker
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 

@@ -523,7 +523,7 @@ def written(tree):
     }
 
 
-# The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no
+# The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `jobs.log`); macOS has no
 # such call, and no /proc to look into.
 @pytest.mark.skipif(
     sys.platform != "linux",

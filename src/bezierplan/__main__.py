@@ -13,7 +13,7 @@ from pathlib import Path
 import bezierplan
 from bezierplan.commands import arguments
 from bezierplan.places import EXTRA, PACKAGE
-from bezierplan.running import watchdog
+from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault, closest
 
 PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m bezierplan"

@@ -20,10 +20,11 @@ import bezierplan
 from bezierplan.geometry import checker, curves, path_files, samples, shortest_paths
 from bezierplan.places import STUDIES
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
-from bezierplan.running import answer as answers
-from bezierplan.running import interface, planning, problems
+from bezierplan.running import planning, problems
+from bezierplan.running.guard import interface
+from bezierplan.running.jobs.watchdog import PlannerFailure
+from bezierplan.running.judge import answer as answers
 from bezierplan.running.problems import Regions
-from bezierplan.running.watchdog import PlannerFailure
 from bezierplan.schema.checked import closest
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles

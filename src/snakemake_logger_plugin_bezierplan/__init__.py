@@ -20,7 +20,7 @@ __all__ = ["LogHandler"]
 
 REASON = "CRITICAL "
 """What comes, in a job's log, before the line that says why the job failed
-(`bezierplan.running.log`).
+(`bezierplan.running.jobs.log`).
 """
 LOCKED = (
     "LockException: {}: another Snakemake works in this folder, or was killed here; if none "

@@ -14,7 +14,7 @@ os.environ.update(
     PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1"
 )
 
-from bezierplan.running import forks
+from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema.checked import Fault
 from bezierplan.study import alternatives, experiments, jobs, page, reading

@@ -1,6 +1,6 @@
 """Do the work of a job (`bezierplan.study.jobs`): the script of all rules."""
 
-from bezierplan.running import log
+from bezierplan.running.jobs import log
 
 with log.job(snakemake) as output:
     snakemake.params.job.run(snakemake.input, output, snakemake.threads)

@@ -4,7 +4,7 @@ import sys
 
 from bezierplan import api
 from bezierplan.commands.arguments import Settings
-from bezierplan.running import contract
+from bezierplan.running.guard import contract
 
 
 def main(method: str, *, settings: Settings | None = None) -> None:

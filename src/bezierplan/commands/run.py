@@ -11,7 +11,7 @@ from pathlib import Path
 
 from bezierplan.commands import SNAKEMAKE
 from bezierplan.places import TREE
-from bezierplan.running import forks
+from bezierplan.running.jobs import forks
 from bezierplan.schema.checked import Fault
 
 

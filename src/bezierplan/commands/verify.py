@@ -48,7 +48,7 @@ def main(folder: Path, *, cores: int = cores(), outcome: bool = False) -> None:
 
 def from_points(folder: Path, processes: int) -> tuple[list[str], bool]:
     """What is to be said of results that are judged again, and whether they are sound."""
-    from bezierplan.running import recheck
+    from bezierplan.running.judge import recheck
 
     def progress(line: str) -> None:
         print(line, file=sys.stderr, flush=True)

@@ -31,7 +31,7 @@ NEUTRAL = {
         "places",
         "machine.digest",
         "machine.kernel_cache",
-        "running.log",
+        "running.jobs.log",
     )
 }
 

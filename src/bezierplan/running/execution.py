@@ -12,10 +12,12 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import Plan, is_file, planner_module
-from bezierplan.running import answer, guard, interface, rows, worker
+from bezierplan.running import rows
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
-from bezierplan.running.watchdog import PlannerFailure, begin, executing
+from bezierplan.running.guard import interface, process, worker
+from bezierplan.running.jobs.watchdog import PlannerFailure, begin, executing
+from bezierplan.running.judge import answer
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 
@@ -82,7 +84,7 @@ def plans(
     if not is_file(chunk.planner):
         begins = partial(begin, chunk.time_limit)
         return worker.plans(chunk.planner, problems, tasks, again, begins)
-    return guard.plans(chunk.planner, problems, tasks, again, told_chunk(chunk), chunk.time_limit)
+    return process.plans(chunk.planner, problems, tasks, again, told_chunk(chunk), chunk.time_limit)
 
 
 def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> Plan:
@@ -106,7 +108,10 @@ def track(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> 
         "task": run_task,
     }
     return list(
-        map(np.array, guard.answers("worker.tracked", given, run_task.name, chunk.time_limit))
+        map(
+            np.array,
+            process.answers("guard.worker.tracked", given, run_task.name, chunk.time_limit),
+        )
     )
 
 

@@ -12,10 +12,12 @@ import numpy as np
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
-from bezierplan.running import answer, guard, problems, worker
+from bezierplan.running import problems
 from bezierplan.running.columns import TAKEN
+from bezierplan.running.guard import process, worker
+from bezierplan.running.jobs.watchdog import PlannerFailure
+from bezierplan.running.judge import answer
 from bezierplan.running.problems import Regions
-from bezierplan.running.watchdog import PlannerFailure
 from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
@@ -91,7 +93,7 @@ def planned(
     if file:
         problems = {str(number): part for number, part in enumerate(parts)}
         tasks = [worker.Task(name, each, seed, settings) for each in problems]
-        made = [*guard.plans(file, problems, tasks, None, name)]
+        made = [*process.plans(file, problems, tasks, None, name)]
         answers, seconds = [each.plan for each in made], sum(each.cpu for each in made)
     else:
         answers, seconds, _ = worker.timed(

@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 
 from bezierplan.planners import Plan, is_file, planner_module
-from bezierplan.running import answer, execution, guard, rows, worker
+from bezierplan.running import execution, rows
 from bezierplan.running import problems as problem_files
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import (
@@ -28,11 +28,13 @@ from bezierplan.running.columns import (
     Planned,
     Times,
 )
+from bezierplan.running.guard import process, worker
+from bezierplan.running.jobs.watchdog import PlannerFailure, begin, executing
+from bezierplan.running.judge import answer
 from bezierplan.running.simulation import bounds, cells, motion_check, robot, ways
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride
-from bezierplan.running.watchdog import PlannerFailure, begin, executing
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_json
 
@@ -142,9 +144,9 @@ def run(
         "runs": tasks,
     }
     name = execution.told_chunk(chunk)
-    for ride, cpu, wall in guard.answers("rides.plain_drives", given, name, chunk.time_limit):
-        with guard.plain_values(name):
-            yield _unpacked(*ride), guard.seconds(cpu), guard.seconds(wall)
+    for ride, cpu, wall in process.answers("rides.plain_drives", given, name, chunk.time_limit):
+        with process.plain_values(name):
+            yield _unpacked(*ride), process.seconds(cpu), process.seconds(wall)
 
 
 def row(

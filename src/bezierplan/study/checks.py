@@ -20,11 +20,12 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
 from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import planner_module
-from bezierplan.running import columns, interface, problems, worlds
+from bezierplan.running import columns, problems, worlds
 from bezierplan.running.chunk import conditions
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
-from bezierplan.running.interface import check_settings
+from bezierplan.running.guard import interface
+from bezierplan.running.guard.interface import check_settings
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list, parsed
 from bezierplan.study import published

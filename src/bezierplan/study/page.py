@@ -79,7 +79,8 @@ class Verified(Job):
 
     def run(self, given, made, threads):
         """Judge all again."""
-        from bezierplan.running import inputs, recheck
+        from bezierplan.running import inputs
+        from bezierplan.running.judge import recheck
 
         tasks = []
         for files in inputs.experiments(self.shows, given).values():

@@ -3,8 +3,8 @@
 from types import ModuleType
 
 from bezierplan.planners import is_file, known_planners, planner_settings
-from bezierplan.running import interface
 from bezierplan.running.columns import TAKEN
+from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.study.definition import Study
 from bezierplan.study.files import inside

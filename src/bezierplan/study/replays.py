@@ -6,7 +6,7 @@ from bezierplan.analysis import results
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems, rides, worlds
 from bezierplan.running.chunk import Chunk, Condition
-from bezierplan.running.watchdog import PlannerFailure
+from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job, problems_job

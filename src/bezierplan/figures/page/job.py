@@ -17,7 +17,7 @@ from bezierplan import places
 from bezierplan.analysis import headline
 from bezierplan.figures.page import answer, build, content, gather, outcome, runs
 from bezierplan.figures.page.page_job import ExperimentShown, PageJob, StudyShown
-from bezierplan.running.watchdog import end_with_parent
+from bezierplan.running.jobs.watchdog import end_with_parent
 
 
 def page(
@@ -31,7 +31,7 @@ def page(
 
     folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
     baseline_comparison.csv, if the scale has them. processes: how many look for runs, if more than
-    one beside this one. verified: the file of the check of these runs (`running.recheck`), if there
+    one beside this one. verified: the file of the check of these runs (`judge.recheck`), if there
     is one.
     """
     experiments = [

@@ -9,6 +9,7 @@ import numpy as np
 
 from bezierplan.geometry.region import blocks
 from bezierplan.planners import Plan
+from bezierplan.running.jobs.watchdog import cpu_time
 from bezierplan.running.simulation import cells, circles
 from bezierplan.running.simulation.circles import ARRIVED, STOPPED
 from bezierplan.running.simulation.evasion import refuge
@@ -16,7 +17,6 @@ from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.regions import region_of
 from bezierplan.running.simulation.ways import Way, drivable, way
-from bezierplan.running.watchdog import cpu_time
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World

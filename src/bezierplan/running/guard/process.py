@@ -22,8 +22,9 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.places import PACKAGE
-from bezierplan.running import answer, worker
-from bezierplan.running.watchdog import PlannerFailure, how_ended
+from bezierplan.running.guard import worker
+from bezierplan.running.jobs.watchdog import PlannerFailure, how_ended
+from bezierplan.running.judge import answer
 from bezierplan.workspaces.problem import Problem
 
 logger = logging.getLogger(__name__)
@@ -55,7 +56,7 @@ def plans(
         "tasks": list(tasks),
         "again": again,
     }
-    for number, plan, cpu, wall in answers("worker.plain_plans", given, name, limit):
+    for number, plan, cpu, wall in answers("guard.worker.plain_plans", given, name, limit):
         with plain_values(name):
             yield worker.Made(number, answer.unpacked(plan), seconds(cpu), seconds(wall))
 

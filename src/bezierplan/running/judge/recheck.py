@@ -28,9 +28,10 @@ import pyarrow as pa
 from bezierplan.geometry import curves
 from bezierplan.geometry.region import Region, walled
 from bezierplan.machine.digest import COMPUTING, library_version
-from bezierplan.running import answer, columns, problems, rides, rows, worlds
+from bezierplan.running import columns, problems, rides, rows, worlds
 from bezierplan.running.chunk import chunk_files
-from bezierplan.running.watchdog import end_with_parent
+from bezierplan.running.jobs.watchdog import end_with_parent
+from bezierplan.running.judge import answer
 from bezierplan.schema.words import plain
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem

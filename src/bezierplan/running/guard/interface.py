@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 from bezierplan.planners import is_file, planner_module, planner_settings, setting_fault
 from bezierplan.planners.parts.settings import setting
-from bezierplan.running import guard
-from bezierplan.running.watchdog import PlannerFailure
+from bezierplan.running.guard import process
+from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.words import LONGEST, plain, told
 from bezierplan.workspaces.circles import Circles
@@ -89,7 +89,7 @@ def traits(planner: str) -> Traits:
 def _described(planner: str) -> Traits:
     """The traits of a planner's file. Raises PlannerFailure unless it has the interface of one."""
     given = {"planner": str(Path(planner).resolve())}
-    (said,) = guard.answers("interface.described", given, "when it is imported", LIMIT)
+    (said,) = process.answers("guard.interface.described", given, "when it is imported", LIMIT)
     if isinstance(said, str):
         raise PlannerFailure(said)
     return Traits(*said)

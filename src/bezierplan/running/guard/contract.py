@@ -19,9 +19,10 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import region
 from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, is_file, known_planners, planner_module
-from bezierplan.running import answer, guard, interface, worker
 from bezierplan.running.columns import TAKEN
-from bezierplan.running.watchdog import PlannerFailure
+from bezierplan.running.guard import interface, process, worker
+from bezierplan.running.jobs.watchdog import PlannerFailure
+from bezierplan.running.judge import answer
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.words import told
 from bezierplan.workspaces.circles import Circles
@@ -176,7 +177,7 @@ def _elsewhere(
     """`answered` in a process of its own. Raises PlannerFailure."""
     file = str(Path(planner).resolve()) if is_file(planner) else planner
     given = {"planner": file, "settings": settings, "seeds": seeds}
-    return guard.answers("contract.answered", given, f"planner {planner}", LIMIT, hashing)
+    return process.answers("guard.contract.answered", given, f"planner {planner}", LIMIT, hashing)
 
 
 # --------------------------------------------------------------------------------------------------

@@ -17,15 +17,15 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from bezierplan.planners import planner_module
-from bezierplan.running import answer
-from bezierplan.running.log import account
-from bezierplan.running.watchdog import (
+from bezierplan.running.jobs.log import account
+from bezierplan.running.jobs.watchdog import (
     LEFT,
     PlannerFailure,
     cpu_time,
     end_with_parent,
     executing,
 )
+from bezierplan.running.judge import answer
 from bezierplan.schema.words import told
 from bezierplan.workspaces import files, seeds
 from bezierplan.workspaces.problem import Problem

@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running.watchdog import PlannerFailure, end_with_parent
+from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
 from bezierplan.schema.words import plain, told
 
 FULL = (errno.ENOSPC, errno.EDQUOT)

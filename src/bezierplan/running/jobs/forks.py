@@ -23,8 +23,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, TextIO
 
-from bezierplan.running import log
-from bezierplan.running.watchdog import UNDER_WAY, end_with_parent, how_ended
+from bezierplan.running.jobs import log
+from bezierplan.running.jobs.watchdog import UNDER_WAY, end_with_parent, how_ended
 
 # What the first jobs of a workflow import, which wait for it: each on its own would take as long,
 # and more time of all cores.

@@ -1,0 +1,1 @@
+"""What is judged: answers of planners, and stored results once more."""
