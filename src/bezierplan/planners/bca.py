@@ -20,13 +20,13 @@ from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
+    breed,
     check_curve,
     check_pairs,
     copy,
     flip_bit,
     redraw_gene,
-    roulette,
-    swap_tails,
+    same,
 )
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
@@ -44,12 +44,9 @@ Fitness = IntEnum(
     "Fitness", "length repaired literal_weights hard_safety reciprocal_literal as_printed", start=0
 )
 FitnessFeasible = IntEnum("FitnessFeasible", "collision_free clearance", start=0)
-Cut = IntEnum("Cut", "gene bit", start=0)
 Mutation = IntEnum("Mutation", "bit_flip cell per_gene", start=0)
 
-# Maximum number of draws of a cut until the two genes that it goes through are free cells (after
-# that, the chromosomes stay as they are), and of a chromosome until its curve is free.
-_CUT_TRIES = 50
+# Maximum number of draws of a chromosome until its curve is free.
 _FEASIBLE_TRIES = 200
 # If a chord crosses two grid lines at parameters that differ by less than this, it crosses them at
 # their common corner.
@@ -103,14 +100,6 @@ class Settings(NamedTuple):
         float,
         Range(0, 1),
         About("of a pair of parents", PAPER + ", Section 4"),
-    ]
-    cut: Annotated[
-        Cut,
-        About(
-            "the crossover point lies between two genes, or before any bit such that the genes "
-            "stay free cells",
-            PAPER + ", Section 3.4",
-        ),
     ]
     mutation_probability: Annotated[
         float,
@@ -312,7 +301,7 @@ def _search(rng, codes, cells, curve, rules):
 
     codes: (population, control points), the first generation; overwritten.
     """
-    population, genes = codes.shape
+    population = len(codes)
     bits = int(np.log2(len(cells.legal)) + 0.5)
     cost, parent_cost = np.empty(population), np.empty(population)
     # The first generation inherits nothing.
@@ -326,9 +315,9 @@ def _search(rng, codes, cells, curve, rules):
         for i in range(population):
             # A child equal to one of its parents takes over its cost, which changes no result.
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
-            if generation > 0 and _same(codes[i], parents[mother]):
+            if generation > 0 and same(codes[i], parents[mother]):
                 cost[i] = parent_cost[mother]
-            elif generation > 0 and _same(codes[i], parents[father]):
+            elif generation > 0 and same(codes[i], parents[father]):
                 cost[i] = parent_cost[father]
             else:
                 cost[i] = _cost(codes[i], cells, curve, rules, scratch)
@@ -341,12 +330,7 @@ def _search(rng, codes, cells, curve, rules):
 
         parents, codes = codes, parents
         parent_cost, cost = cost, parent_cost
-        drawn = roulette(rng, 1.0 / parent_cost, population)
-        for i in range(population):
-            copy(parents[drawn[i]], codes[i])
-        for i in range(0, population, 2):
-            if rng.random() < rules.crossover_probability and genes > 1:
-                _cross(rng, codes[i], codes[i + 1], bits, cells.legal, rules.cut)
+        drawn = breed(rng, parents, parent_cost, codes, 0, rules.crossover_probability, bits, bits)
         for i in range(population):
             _mutate(rng, codes[i], bits, cells, rules)
         if rules.elitism:
@@ -364,26 +348,6 @@ def _redraw(rng, codes, cells, curve):
                 break
             for gene in range(codes.shape[1]):
                 codes[i, gene] = cells.free[integer(rng, 0, len(cells.free))]
-
-
-@allocation_free
-def _cross(rng, mother, father, bits, legal, cut):
-    """Exchange the tails of two chromosomes, in place, behind a random point (ma2020, Section 3.4).
-
-    A cut inside a gene makes two new genes of bits of both parents; one that leaves the free cells
-    is redrawn.
-    """
-    genes = len(mother)
-    if cut == Cut.gene:
-        swap_tails(mother, father, bits * integer(rng, 1, genes), bits)
-        return
-    for _ in range(_CUT_TRIES):
-        point = integer(rng, 1, bits * genes)
-        swap_tails(mother, father, point, bits)
-        if legal[mother[point // bits]] and legal[father[point // bits]]:
-            return
-        # Exchanged again, they are as before.
-        swap_tails(mother, father, point, bits)
 
 
 @allocation_free
@@ -533,12 +497,3 @@ def _clearance(x, y, cells):
             dy = max(row - y[s], 0.0, y[s] - row - 1)
             least = min(least, dx * dx + dy * dy)
     return np.sqrt(least)
-
-
-@allocation_free
-def _same(one, other):
-    """Whether two chromosomes are equal."""
-    for k in range(len(one)):
-        if one[k] != other[k]:
-            return False
-    return True

@@ -20,12 +20,12 @@ from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
+    breed,
     check_curve,
     check_pairs,
     complement_bit,
     copy,
-    roulette,
-    swap_tails,
+    same,
 )
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
@@ -217,8 +217,7 @@ def _search(rng, cells, occupied, places, curve, rules):
     cells: (population, control points) numbers of cells. places: (cells + 2, 2) the cells' centres,
     then start and target, in cells.
     """
-    population, points = cells.shape
-    genes = points - 2
+    population = len(cells)
     basis, stretches = curve.basis, curve.stretches
     bits = int(np.log2(occupied.size) + 0.5)
     lengths = np.empty((population, len(stretches)))
@@ -249,11 +248,11 @@ def _search(rng, cells, occupied, places, curve, rules):
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
             length, count, entered = 0.0, 0, 0
             for k in range(len(stretches)):
-                first, last = stretches[k, 0], stretches[k, 1]
-                if _same(cells[i], parents[mother], first, last):
+                first, last = stretches[k, 0], stretches[k, 1] + 1
+                if same(cells[i, first:last], parents[mother, first:last]):
                     lengths[i, k], bad[i, k] = parent_lengths[mother, k], parent_bad[mother, k]
                     entries[i, k] = parent_entries[mother, k]
-                elif _same(cells[i], parents[father], first, last):
+                elif same(cells[i, first:last], parents[father, first:last]):
                     lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
                     entries[i, k] = parent_entries[father, k]
                 elif curve.by_arc_length:
@@ -294,17 +293,8 @@ def _search(rng, cells, occupied, places, curve, rules):
         parent_lengths, lengths = lengths, parent_lengths
         parent_bad, bad = bad, parent_bad
         parent_entries, entries = entries, parent_entries
-        drawn = roulette(rng, 1.0 / objective, population)
-        for i in range(population):
-            copy(parents[drawn[i]], cells[i])
-        for i in range(0, population, 2):
-            if rng.random() < rules.crossover_probability:
-                cut = (
-                    bits * integer(rng, 1, genes)
-                    if rules.cut == Cut.gene
-                    else integer(rng, 1, bits * genes)
-                )
-                swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], cut, bits)
+        unit = bits if rules.cut == Cut.gene else 1
+        drawn = breed(rng, parents, objective, cells, 1, rules.crossover_probability, unit, bits)
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
         if rules.elitism:
@@ -322,15 +312,6 @@ def _penalties(bad, entries, penalty_for):
     if penalty_for == PenaltyFor.per_cell:
         return entries
     return min(bad, 1)
-
-
-@allocation_free
-def _same(cells, others, first, last):
-    """Whether two chromosomes have the same control points first .. last."""
-    for p in range(first, last + 1):
-        if cells[p] != others[p]:
-            return False
-    return True
 
 
 @allocation_free

@@ -17,11 +17,10 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import (
+    breed,
     check_pairs,
     flip_bit,
     redraw_gene,
-    roulette,
-    swap_tails,
 )
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import with_settings
@@ -168,12 +167,7 @@ def _search(rng, lattice, free, cells, rules):
             break
 
         cells, parents = parents, cells
-        drawn = roulette(rng, 1.0 / lengths, population)
-        for i in range(population):
-            cell_paths.put(parents[drawn[i]], cells[i], 0)
-        for i in range(0, population, 2):
-            if genes > 1 and rng.random() < rules.crossover_probability:
-                swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], bits * integer(rng, 1, genes), bits)
+        breed(rng, parents, lengths, cells, 1, rules.crossover_probability, bits, bits)
         for i in range(population):
             if genes and rng.random() < rules.mutation_probability:
                 _mutate(rng, cells[i, 1:-1], bits, free, legal, rules.mutation)

@@ -31,7 +31,7 @@ from bezierplan.planners.parts.gene_curves import (
     validate,
 )
 from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
-from bezierplan.planners.parts.genetic import check_pairs
+from bezierplan.planners.parts.genetic import check_pairs, same
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.prm import roadmap
@@ -497,7 +497,7 @@ def _is_too_alike(ones, cost, pool, filled, eta, field, rules):
     """Whether a diversity rule rejects a child (Section 3.3)."""
     if rules.diversity == Diversity.unique:
         for i in range(filled):
-            if cost == pool.cost[i] and gene_lists.same(ones, pool.ones[i, : pool.count[i]]):
+            if cost == pool.cost[i] and same(ones, pool.ones[i, : pool.count[i]]):
                 return True
     if rules.diversity == Diversity.relaxing:
         total = 0.0

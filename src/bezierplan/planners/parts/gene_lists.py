@@ -10,6 +10,7 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.diversity import q_statistic, shared
+from bezierplan.planners.parts.genetic import same
 from bezierplan.planners.parts.sorting import sort
 
 
@@ -110,17 +111,6 @@ def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
             child[count] = pool.ones[tail, i]
             count += 1
     return count
-
-
-@allocation_free
-def same(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two lists are equal."""
-    if len(one) != len(other):
-        return False
-    for i in range(len(one)):
-        if one[i] != other[i]:
-            return False
-    return True
 
 
 @allocation_free

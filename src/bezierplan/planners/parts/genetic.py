@@ -78,6 +78,45 @@ def swap_tails(first: np.ndarray, second: np.ndarray, cut: int, bits: int) -> No
         first[later], second[later] = second[later], first[later]
 
 
+@compiled
+def breed(
+    rng: np.random.Generator,
+    parents: np.ndarray,
+    cost: np.ndarray,
+    children: np.ndarray,
+    margin: int,
+    probability: float,
+    unit: int,
+    bits: int,
+) -> np.ndarray:
+    """Write as many children as there are parents (n, genes + 2 margin): copies of parents drawn by
+    the reciprocal of their cost (n,), of which pairs exchange their tails with a probability.
+    Returns the indices (n,) of the parents drawn.
+
+    margin: number of fixed genes at both ends. unit: number of bits whose multiples are cut.
+    """
+    drawn = roulette(rng, 1.0 / cost, len(cost))
+    for i in range(len(drawn)):
+        copy(parents[drawn[i]], children[i])
+    inner = children[:, margin : children.shape[1] - margin]
+    cuts = bits * inner.shape[1] // unit
+    for i in range(0, len(drawn), 2):
+        if rng.random() < probability and cuts > 1:
+            swap_tails(inner[i], inner[i + 1], unit * integer(rng, 1, cuts), bits)
+    return drawn
+
+
+@allocation_free
+def same(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two chromosomes, or lists of genes, are equal."""
+    if len(one) != len(other):
+        return False
+    for k in range(len(one)):
+        if one[k] != other[k]:
+            return False
+    return True
+
+
 @allocation_free
 def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
     """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section
