@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from bezierplan.planners.parts.genetic import (
+    breed,
     complement_bit,
     flip_bit,
     redraw_gene,
@@ -49,6 +50,27 @@ def test_no_operator_leaves_the_range_of_cell_numbers(one, other, cut, position)
     complement_bit(one, position, BITS)
     assert min(one.min(), other.min()) >= 0
     assert max(one.max(), other.max()) <= 255
+
+
+@pytest.mark.parametrize(
+    ("unit", "places"), [(BITS, range(BITS, 4 * BITS, BITS)), (1, range(1, 4 * BITS))]
+)
+def test_children_are_parents_whose_tails_are_exchanged_at_multiples_of_a_unit(unit, places):
+    """Of parents that differ in every bit, so that the cut is known; outer genes never change."""
+    parents = np.full((2, 6), 9)
+    parents[0, 1:-1], parents[1, 1:-1] = 0, 2**BITS - 1
+    cuts = set()
+    for seed in range(1000):
+        children, rng = np.zeros_like(parents), np.random.default_rng(seed)
+        drawn = breed(rng, parents, np.ones(2), children, 1, 1.0, unit, BITS)
+        assert (children[:, [0, -1]] == 9).all()
+        if drawn[0] != drawn[1]:
+            one, other = bits_of(children[0, 1:-1]), bits_of(children[1, 1:-1])
+            assert all(a != b for a, b in zip(one, other, strict=True))
+            cuts.add(len(one) - len(one.lstrip(one[0])))
+        else:
+            assert np.array_equal(children, parents[drawn])
+    assert cuts == set(places)
 
 
 def test_roulette_draws_in_proportion_to_fitness():

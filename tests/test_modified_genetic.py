@@ -37,9 +37,6 @@ SETTINGS = {
     "gene_lattice": "coarse",
     "point_order": "projection",
     "first_population": "random",
-    "most_roadmaps": 0,
-    "roadmap_nodes": 250,
-    "roadmap_neighbours": 8,
     "first_points": 5,
     "first_draws": 400,
     "replacements": 1,
@@ -719,7 +716,7 @@ def test_points_are_joined_by_their_distance_over_free_cells():
 def test_first_population_from_roadmaps_holds_free_points_that_lead_through_the_maze():
     grid, maze_field = maze()
     task = Problem("maze", grid, (0.5, 0.5), (8.5, 8.5))
-    settings = rules(population=5, first_population="roadmaps", most_roadmaps=50, roadmap_nodes=60)
+    settings = rules(population=5, first_population="roadmaps")
     first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, settings)
     assert len(first) == len(counts) > 0
     for ones, count in zip(first, counts):
@@ -730,14 +727,6 @@ def test_first_population_from_roadmaps_holds_free_points_that_lead_through_the_
         points = maze_field.points[genes]
         assert ((points[:, 0] >= 6) & (points[:, 1] < 7)).any()
         assert ((points[:, 0] <= 3) & (points[:, 1] > 2)).any()
-
-
-def test_no_roadmap_gives_no_chromosome():
-    grid, maze_field = maze()
-    task = Problem("maze", grid, (0.5, 0.5), (8.5, 8.5))
-    settings = rules(population=5, first_population="roadmaps", most_roadmaps=0, roadmap_nodes=60)
-    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, settings)
-    assert first.shape[0] == len(counts) == 0
 
 
 def test_a_change_removes_adds_or_shifts_one_point_each_as_often():

@@ -12,7 +12,7 @@ from fields import assert_path_fits, drawn
 from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
-from bezierplan.planners import planner_settings, prm, setting_fault
+from bezierplan.planners import prm
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -218,22 +218,3 @@ def test_a_sealed_target_on_a_grid():
 def test_a_grid_has_no_distance_to_keep():
     with pytest.raises(ValueError, match=r"d_min: 0\.5; on a grid expected 0"):
         plan(drawn(0), d_min=0.5)
-
-
-def test_nearest_points_in_order_and_the_first_of_equally_near_ones():
-    points = np.random.default_rng(0).integers(0, 6, (40, 2)).astype(float)
-    found = prm._nearest(points, 7)
-    for i in range(len(points)):
-        others = [j for j in range(len(points)) if j != i]
-        assert (
-            found[i].tolist()
-            == sorted(others, key=lambda j: ((points[j] - points[i]) ** 2).sum())[:7]
-        )
-
-
-def test_settings():
-    kinds = planner_settings(prm)
-    assert not any(setting_fault(kinds[name], value) for name, value in SETTINGS.items())
-    assert setting_fault(kinds["nodes"], -1)
-    assert setting_fault(kinds["neighbours"], 0)
-    assert setting_fault(kinds["d_min"], math.nan)

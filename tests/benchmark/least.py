@@ -20,7 +20,7 @@ from numba import njit
 from numba.core.dispatcher import Dispatcher
 
 from bezierplan.geometry import cell_length
-from bezierplan.planners import Plan, abc_ep, ant_colony, bca, binary_genetic, grid_genetic, prm
+from bezierplan.planners import Plan, abc_ep, ant_colony, bca, binary_genetic, grid_genetic
 from bezierplan.planners.parts import cell_paths, gene_curves, penalised
 from bezierplan.workspaces import ground
 
@@ -204,7 +204,6 @@ COUNTS: dict[Dispatcher, Count] = {
     grid_genetic._cost: lambda _, path, count, *__: {"cells": count},
     ground.obstacles_met: lambda *_: {"cells": 1},
     ground.edge_energy: lambda *_: {"cells": 1},
-    prm._nearest: lambda _, points, neighbours: {"obstacles": len(points) ** 2},
 }
 
 

@@ -24,6 +24,7 @@ from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import chaotic_maps, penalised
+from bezierplan.planners.parts.genetic import copy
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
 from bezierplan.planners.parts.settings import UNITS, filled, with_settings
 from bezierplan.workspaces.problem import Path, Problem
@@ -381,7 +382,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
 
     for t in range(iterations + 1):
         before = max(t - 1, 0)
-        _copy(g[before], g[t])
+        copy(g[before], g[t])
         g_fitness[t] = g_fitness[before]
         for i in range(particles):
             if t > 0:
@@ -411,10 +412,10 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
             colliding_samples += colliding
             fitness = penalised.fitness(length, violation, objective)
             if fitness < p_fitness[i]:
-                _copy(x[i], p[i])
+                copy(x[i], p[i])
                 p_fitness[i] = fitness
             if fitness < g_fitness[t]:
-                _copy(x[i], g[t])
+                copy(x[i], g[t])
                 g_fitness[t] = fitness
                 g_violation, g_colliding = violation, colliding
                 improved_at = t
@@ -433,12 +434,6 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
         best_colliding_samples,
         best_infeasible,
     )
-
-
-@allocation_free
-def _copy(source, target):
-    for d in range(len(source)):
-        target[d] = source[d]
 
 
 @compiled

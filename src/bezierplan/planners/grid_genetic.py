@@ -17,6 +17,7 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
+from bezierplan.planners.parts.cell_paths import put
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import with_settings
@@ -183,7 +184,7 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
             if moves_rng.random() < rules.crossover_probability:
                 count = _join(moves_rng, head, tail, index, common, walk)
             if count == 0:
-                count = _copy(head, 0, len(head), walk, 0)
+                count = put(head, walk, 0)
             count = _cut_loops(walk, count, last_visit)
             if moves_rng.random() < rules.mutation_probability and count > 1:
                 count = _walk_anew(moves_rng, walker, walk, count, last_visit)
@@ -331,8 +332,8 @@ def _join(rng, head, tail, index, common, walk):
     count = 0
     if shared > 0:
         cut = common[integer(rng, 0, shared)]
-        count = _copy(head, 0, index[tail[cut]], walk, 0)
-        count = _copy(tail, cut, len(tail), walk, count)
+        count = put(head[: index[tail[cut]]], walk, 0)
+        count = put(tail[cut:], walk, count)
     for k in range(1, len(head) - 1):
         index[head[k]] = -1
     return count
@@ -353,16 +354,8 @@ def _walk_anew(rng, walker, path, count, last_visit):
     end = _extend(rng, walker, path, count + 1, path[last])
     if end == 0:
         return count
-    end = _copy(path, last + 1, count, path, end)
-    return _cut_loops(path, _copy(path, count + 1, end, path, first + 1), last_visit)
-
-
-@allocation_free
-def _copy(source, first, last, target, place):
-    """Copy cells first .. last - 1 of a path to a place in another. Returns the place behind."""
-    for k in range(first, last):
-        target[place + k - first] = source[k]
-    return place + last - first
+    end = put(path[last + 1 : count], path, end)
+    return _cut_loops(path, put(path[count + 1 : end], path, first + 1), last_visit)
 
 
 @allocation_free

@@ -56,6 +56,10 @@ GeneLattice = IntEnum("GeneLattice", "coarse cell", start=0)
 PointOrder = IntEnum("PointOrder", "projection index geodesic", start=0)
 FirstPopulation = IntEnum("FirstPopulation", "random roadmaps", start=0)
 
+# Most roadmaps for the first population, their random nodes, and nearest nodes that a node may be
+# linked with.
+_ROADMAPS, _NODES, _NEIGHBOURS = 180, 250, 8
+
 # A shift moves a control point by at most this share of the lattice points of a side.
 _SHIFT_REACH = 0.1
 
@@ -113,11 +117,6 @@ class Settings(NamedTuple):
             "random chromosomes, or before them the inner nodes of paths through roadmaps",
             PAPER + ", Section 3.2.1, the random one",
         ),
-    ]
-    most_roadmaps: Annotated[int, Range(0), About("most roadmaps for the first population")]
-    roadmap_nodes: Annotated[int, Range(1, 2000), About("random nodes of a roadmap")]
-    roadmap_neighbours: Annotated[
-        int, Range(1), About("nearest nodes that a node of a roadmap may be linked with")
     ]
     first_points: Annotated[int, Range(1), About("most control points of a random chromosome")]
     first_draws: Annotated[int, Range(1), About("draws for each member of the first population")]
@@ -274,12 +273,10 @@ def _from_roadmaps(
     their numbers of ones; straight and too long paths are left out. Every cell is a gene.
     """
     ones, counts = np.zeros((settings.population, _ROOM), dtype=np.int64), []
-    for _ in range(
-        settings.most_roadmaps if settings.first_population == FirstPopulation.roadmaps else 0
-    ):
+    for _ in range(_ROADMAPS if settings.first_population == FirstPopulation.roadmaps else 0):
         if len(counts) == settings.population:
             break
-        _, way, _ = roadmap(problem, rng, settings.roadmap_nodes, settings.roadmap_neighbours)
+        _, way, _ = roadmap(problem, rng, _NODES, _NEIGHBOURS)
         column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
         genes = np.unique(column * field.places[0] + row)
         genes = genes[field.settable[genes]]

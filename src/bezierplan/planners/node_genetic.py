@@ -14,7 +14,7 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.genetic import check_pairs, roulette
+from bezierplan.planners.parts.genetic import check_pairs, copy, roulette
 from bezierplan.planners.parts.node_mutation import (
     Mutation,
     ObstacleNode,
@@ -323,7 +323,7 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             if len(best) < lengths[first]:
                 best = np.empty(paths.shape[1], dtype=np.int64)
             best_length, best_objective, best_met = lengths[first], objective[first], met[first]
-            _copy(paths[first], best, best_length)
+            copy(paths[first, :best_length], best)
             improved = generation
         history[generation] = best_objective
         stalled = generation - improved >= rules.stall
@@ -368,7 +368,7 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
                     feasible += was_feasible
                     spoiled += was_feasible and path_met(path, ground) > 0
         if rules.elitism:
-            _copy(best, paths[0], best_length)
+            copy(best[:best_length], paths[0])
             lengths[0] = best_length
 
     if rules.result == Result.last_generation:
@@ -390,12 +390,6 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
 
 
 @allocation_free
-def _copy(source, target, length):
-    for k in range(length):
-        target[k] = source[k]
-
-
-@allocation_free
 def join(
     head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_length: int, child: np.ndarray
 ) -> int:
@@ -404,10 +398,8 @@ def join(
 
     Returns its length. Cuts after the last node leave the head unchanged.
     """
-    for k in range(cut):
-        child[k] = head[k]
-    for k in range(tail_cut, tail_length):
-        child[cut + k - tail_cut] = tail[k]
+    copy(head[:cut], child)
+    copy(tail[tail_cut:tail_length], child[cut:])
     return cut + tail_length - tail_cut
 
 

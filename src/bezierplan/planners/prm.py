@@ -196,58 +196,13 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
     count = len(points)
     if neighbours is None or neighbours >= count - 1:
         return np.triu_indices(count, 1)
-    return np.divmod(_marked(_nearest(points, neighbours)), count)
+    from scipy.spatial import KDTree
 
-
-@compiled
-def _marked(nearest):
-    """Numbers count i + j, ascending, of the pairs i < j of which one is among the nearest (count,
-    neighbours) of the other.
-    """
-    count, neighbours = nearest.shape
-    marks = np.zeros(count * count, dtype=np.bool_)
-    for i in range(count):
-        for k in range(neighbours):
-            j = nearest[i, k]
-            marks[min(i, j) * count + max(i, j)] = True
-    return np.flatnonzero(marks)
-
-
-@compiled
-def _nearest(points, neighbours):
-    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties
-    in their original order.
-
-    From each point to both sides, in the order of x, until one is too far away by x alone.
-    """
-    order = np.argsort(points[:, 0])
-    nearest = np.empty((len(points), neighbours), dtype=np.int64)
-    square = np.empty(neighbours)  # of the distance to each of them
-    for rank in range(len(points)):
-        i, count, most = order[rank], 0, np.inf
-        for side in range(-1, 2, 2):
-            other = rank + side
-            while 0 <= other < len(points):
-                j = order[other]
-                other += side
-                across = (points[j, 0] - points[i, 0]) ** 2
-                if across > most:
-                    break
-                distance = across + (points[j, 1] - points[i, 1]) ** 2
-                if distance > most or (distance == most and j > nearest[i, -1]):
-                    continue
-                count = min(count + 1, neighbours)
-                slot = count - 1
-                while slot > 0 and (
-                    square[slot - 1] > distance
-                    or (square[slot - 1] == distance and nearest[i, slot - 1] > j)
-                ):
-                    square[slot], nearest[i, slot] = square[slot - 1], nearest[i, slot - 1]
-                    slot -= 1
-                square[slot], nearest[i, slot] = distance, j
-                if count == neighbours:
-                    most = square[-1]
-    return nearest
+    # Every node is the nearest to itself.
+    nearest = KDTree(points).query(points, neighbours + 1)[1]
+    linked = np.zeros((count, count), dtype=bool)
+    linked[np.arange(count)[:, None], nearest] = True
+    return np.nonzero(np.triu(linked | linked.T, 1))
 
 
 def _visible(
@@ -273,52 +228,13 @@ def _shortest_way(
     """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and
     empty if they are not connected.
     """
-    return _dijkstra(len(points), one, other, np.hypot(*(points[one] - points[other]).T))
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
 
-
-@compiled
-def _dijkstra(count, starts, targets, lengths):
-    """`_shortest_way` by Dijkstra's algorithm, over `count` nodes and the lengths (links,) of links
-    between two of them each.
-    """
-    first = np.zeros(count + 2, dtype=np.int64)  # where the links of each node begin
-    for k in range(len(starts)):
-        first[starts[k] + 2] += 1
-        first[targets[k] + 2] += 1
-    first = np.cumsum(first)
-    ends, steps = np.empty(2 * len(starts), dtype=np.int64), np.empty(2 * len(starts))
-    for k in range(len(starts)):
-        for node, end in ((starts[k], targets[k]), (targets[k], starts[k])):
-            slot = first[node + 1]
-            ends[slot], steps[slot] = end, lengths[k]
-            first[node + 1] += 1
-
-    far, before = np.full(count, np.inf), np.full(count, -1)
-    # Nodes that are reached and not settled: few, so they need no heap.
-    waiting = np.empty(count, dtype=np.int64)
-    waits = 1
-    waiting[0], far[0] = 0, 0.0
-    while waits > 0:
-        slot = 0
-        for k in range(1, waits):
-            if far[waiting[k]] < far[waiting[slot]]:
-                slot = k
-        node = waiting[slot]
-        if node == 1:
-            break
-        waits -= 1
-        waiting[slot] = waiting[waits]
-        for k in range(first[node], first[node + 1]):
-            length = far[node] + steps[k]
-            if length < far[ends[k]]:
-                if far[ends[k]] == np.inf:
-                    waiting[waits] = ends[k]
-                    waits += 1
-                far[ends[k]], before[ends[k]] = length, node
-    way, slot = waiting, count
-    node = 1 if far[1] < np.inf else -1
-    while node >= 0:
-        slot -= 1
-        way[slot] = node
-        node = before[node]
-    return far[1], way[slot:]
+    lengths = np.hypot(*(points[one] - points[other]).T)
+    links = csr_array((lengths, (one, other)), shape=2 * (len(points),))
+    far, before = dijkstra(links, directed=False, indices=0, return_predecessors=True)
+    way = [1] if far[1] < np.inf else []
+    while way and way[-1]:
+        way.append(before[way[-1]])
+    return float(far[1]), np.array(way[::-1], dtype=int)

@@ -18,7 +18,7 @@ import sys
 import typing
 from collections.abc import Callable
 from enum import EnumMeta
-from functools import cache, lru_cache, wraps
+from functools import cache, wraps
 from typing import Any, NamedTuple, TypeVar
 
 ASSUMED = "assumed"
@@ -63,24 +63,19 @@ class Setting(NamedTuple):
         Accepted values of a number.
     about : About or None
         Meaning, source and unit; None in a planner that does not tell.
-    optional : bool
-        Whether None is accepted as well.
     """
 
     kind: type
     words: tuple
     limits: Range
     about: About | None
-    optional: bool = False
 
     def __str__(self) -> str:
         """The accepted values."""
         if self.words:
             return "one of " + ", ".join(map(str, self.words))
         number = {bool: "true or false", int: "a whole number", float: "a number"}[self.kind]
-        return (number if self.limits == Range() else f"{number} {self.limits}") + (
-            ", or null" if self.optional else ""
-        )
+        return number if self.limits == Range() else f"{number} {self.limits}"
 
     @property
     def meaning(self) -> str:
@@ -89,27 +84,21 @@ class Setting(NamedTuple):
         return text + (f" [{unit}]" if unit else "") + (f" ({source})" if source else "")
 
     def number(self, value: Any) -> Any:
-        """A value for kernels: a choice as its number; None as nan; a decimal never as an integer,
+        """A value for kernels: a choice as its number; a decimal never as an integer,
         which would compile kernels again.
         """
         if isinstance(self.kind, EnumMeta):
             return int(self.kind[value])
-        return float(math.nan if value is None else value) if self.kind is float else value
+        return float(value) if self.kind is float else value
 
 
 def setting(annotation: Any) -> Setting:
     """The setting that an annotation declares. Raises TypeError unless it is `bool`, `int`,
-    `float`, a `Literal` or an `IntEnum`, or one of these `Annotated` with a `Range` and an `About`;
-    None may be allowed as well.
+    `float`, a `Literal` or an `IntEnum`, or one of these `Annotated` with a `Range` and an `About`.
     """
     notes: tuple = ()
     if typing.get_origin(annotation) is typing.Annotated:
         annotation, *notes = typing.get_args(annotation)
-    if annotation == float | None:
-        return setting(typing.Annotated[float, *notes])._replace(optional=True)
-    if type(None) in typing.get_args(annotation):
-        annotation = next(part for part in typing.get_args(annotation) if part is not type(None))
-        return setting(typing.Annotated[annotation, *notes] if notes else annotation)
     limits = next((note for note in notes if isinstance(note, Range)), Range())
     about = next((note for note in notes if isinstance(note, About)), None)
     if typing.get_origin(annotation) is typing.Literal:
@@ -125,8 +114,6 @@ def setting(annotation: Any) -> Setting:
 
 def setting_fault(declared: Setting, value: Any) -> str | None:
     """What is expected instead of a setting's value, or None if the value is valid."""
-    if value is None and declared.optional:
-        return None
     if declared.words:
         return None if value in declared.words else str(declared)
     accepted = (int, float) if declared.kind is float else declared.kind
@@ -159,17 +146,11 @@ def _declared(settings: type) -> dict[str, Setting]:
 
 def filled(settings: type[T], values: dict[str, Any]) -> T:
     """A class of settings with values by name. Raises TypeError for a missing or unknown name."""
-    return _filled(settings, tuple(values.items()), tuple(map(type, values.values())))
-
-
-@lru_cache(maxsize=256)
-def _filled(settings: type[T], values: tuple[tuple[str, Any], ...], types: tuple[type, ...]) -> T:
-    """`filled`, once for all runs with the same settings. types: tells 1, 1.0 and true apart."""
     declared = _declared(settings)
     return settings(
         **{
             name: declared[name].number(value) if name in declared else value
-            for name, value in values
+            for name, value in values.items()
         }
     )
 
