@@ -11,12 +11,10 @@ the lowest cost is the best.
 
 import math
 from enum import IntEnum
-from functools import cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import (
@@ -28,6 +26,7 @@ from bezierplan.planners.parts.genetic import (
     redraw_gene,
     same,
 )
+from bezierplan.planners.parts.penalised import basis
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid
@@ -278,21 +277,12 @@ def _cells(grid: Grid, reach: int) -> _Cells:
 
 
 def _sampled(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
-    ends, free = _basis(curve, control_points, samples)
+    ends, free = basis(curve, control_points, samples)
     grid = problem.workspace
     straight = math.dist(problem.start, problem.target) / grid.cell
     return _Curve(
         grid.in_cells(np.array([problem.start, problem.target])).T @ ends, free, straight, grid.cell
     )
-
-
-@cache
-def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of both ends (2, samples) and of free control points (n, samples) of a curve."""
-    basis = curves.sample_matrix(curve, control_points + 2, samples).T
-    # A copy even where nothing is left, since numba would compile all kernels once more for an
-    # array that is read-only.
-    return basis[[0, -1]], basis[1:-1].copy()
 
 
 @compiled

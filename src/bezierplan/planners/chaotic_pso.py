@@ -12,10 +12,8 @@ three generators; positions are drawn particle by particle, and for each move r1
 number that the chaotic sequence replaces is drawn and discarded.
 """
 
-import logging
 import math
 from enum import IntEnum
-from functools import cache
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -28,8 +26,6 @@ from bezierplan.planners.parts.genetic import copy
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
 from bezierplan.planners.parts.settings import UNITS, filled, with_settings
 from bezierplan.workspaces.problem import Path, Problem
-
-logger = logging.getLogger(__name__)
 
 extra = (
     "violation",
@@ -181,9 +177,7 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules across several settings. Raises ValueError naming the setting and what is expected;
-    warns if the swarm cannot move.
-    """
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     try:
         curves.piece_matrix(settings["curve"], settings["control_points"] + 2)
     except ValueError as error:
@@ -193,10 +187,6 @@ def check(settings: dict) -> None:
     if settings["chaotic_map"] == "constant" and settings["chaotic_start_rule"] == "random":
         raise ValueError(
             "chaotic_start_rule: random; a constant map needs fixed, its value is chaotic_start"
-        )
-    if settings["particles"] == 1:
-        logger.warning(
-            "particles: 1; the only particle is its own best and the swarm's, so it never moves"
         )
 
 
@@ -301,7 +291,9 @@ def search(
 
 
 def _objective(problem: Problem, settings: Settings) -> Objective:
-    ends, free = _basis(Curve(settings.curve).name, settings.control_points, settings.samples)
+    ends, free = penalised.basis(
+        Curve(settings.curve).name, settings.control_points, settings.samples
+    )
     return Objective(
         ends=np.array([problem.start, problem.target]).T @ ends,
         free=free,
@@ -312,30 +304,13 @@ def _objective(problem: Problem, settings: Settings) -> Objective:
     )
 
 
-@cache
-def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) at the
-    samples of a curve.
-    """
-    basis = curves.sample_matrix(curve, control_points + 2, samples).T
-    return basis[list(curves.ends(curve))], np.ascontiguousarray(
-        basis[_free(curve, control_points)]
-    )
-
-
-@cache
-def _free(curve: str, control_points: int) -> np.ndarray:
-    """Which control points of a curve are free (n,)."""
-    return np.delete(np.arange(control_points + 2), curves.ends(curve))
-
-
 def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
     """Control points (n + 2, d) of a particle (d n,)."""
     d = len(problem.start)
     n = len(position) // d
     points = np.empty((n + 2, d))
     points[list(curves.ends(curve))] = problem.start, problem.target
-    points[_free(curve, n)] = position.reshape(d, n).T
+    points[penalised.free(curve, n)] = position.reshape(d, n).T
     return points
 
 

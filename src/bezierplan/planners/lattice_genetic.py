@@ -118,9 +118,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
         best, history = _search(moves, places, free, cells, settings)
     else:
-        paths, sizes = _first_paths(
-            starts, places, _rows_between(places), population, settings.longest_join
-        )
+        paths, sizes = _first_paths(starts, places, population, settings.longest_join)
         best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
         if sizes.all():
             rules = cell_paths.Rules(
@@ -188,54 +186,29 @@ def _mutate(rng, genes, bits, free, legal, mutation):
         redraw_gene(rng, genes, free)
 
 
-def _rows_between(places: Lattice) -> list[np.ndarray]:
-    """The free cells of each row between those of start and target, from start to target."""
+def _first_paths(
+    rng: np.random.Generator, places: Lattice, population: int, longest: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Paths (population, longest) from start to target through a random free cell of each row
+    between them, and their sizes (population,); 0 from the first one that cannot be found.
+    """
     first, last = places.row[places.start], places.row[places.target]
     step = 1 if first < last else -1
-    return [
+    rows = [
         np.flatnonzero((places.row == row) & ~places.occupied)
         for row in range(first + step, last, step)
     ]
-
-
-def _first_paths(
-    rng: np.random.Generator, places: Lattice, rows: list[np.ndarray], population: int, longest: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Paths (population, longest) from start to target through a random cell of each row, and their
-    sizes (population,); 0 for none.
-    """
     paths = np.zeros((population, longest), dtype=np.int64)
     sizes = np.zeros(population, dtype=np.int64)
-    if all(map(len, rows)):
-        choices = np.zeros((len(rows), len(places.row)), dtype=np.int64)
-        for row, free in enumerate(rows):
-            choices[row, : len(free)] = free
-        _fill(
-            rng,
-            places,
-            choices,
-            np.array([len(free) for free in rows], dtype=np.int64),
-            paths,
-            sizes,
-        )
-    return paths, sizes
-
-
-@compiled
-def _fill(rng, lattice, choices, counts, paths, sizes):
-    """Fill in paths and their sizes, in place, until one cannot be found.
-
-    choices: (rows, n) the free cells of each row; counts: (rows,) how many.
-    """
-    marks = np.zeros(len(lattice.row), dtype=np.int64)
-    cells = np.empty(len(counts) + 2, dtype=np.int64)
-    cells[0], cells[-1] = lattice.start, lattice.target
-    for i in range(len(paths)):
-        for _ in range(_MOST_DRAWS):
-            for row in range(len(counts)):
-                cells[row + 1] = choices[row, integer(rng, 0, counts[row])]
-            sizes[i] = cell_paths.join(lattice, cells, paths[i], marks)
+    marks = np.zeros(len(places.row), dtype=np.int64)
+    tries = _MOST_DRAWS if all(map(len, rows)) else 0
+    for i in range(population):
+        for _ in range(tries):
+            drawn = [free[rng.integers(len(free))] for free in rows]
+            cells = np.array([places.start, *drawn, places.target])
+            sizes[i] = cell_paths.join(places, cells, paths[i], marks)
             if sizes[i]:
                 break
         if sizes[i] == 0:
-            return
+            break
+    return paths, sizes

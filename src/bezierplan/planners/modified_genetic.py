@@ -330,7 +330,7 @@ def search(
             if pool.cost[row] < min(best_cost, _UNFIT):
                 best, best_cost = pool.ones[row, : pool.count[row]].copy(), pool.cost[row]
         history[iteration] = best_cost
-        distinct[iteration] = gene_lists.distinct(pool, size)
+        distinct[iteration] = gene_lists.kinds_of(pool, size)[0]
         if iteration == rules.iterations:
             break
 

@@ -118,21 +118,15 @@ def roadmap(
     return length, points[way], len(one)
 
 
-class _Field(NamedTuple):
-    """What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and
-    which points and segments (n,) are free.
-    """
-
-    low: np.ndarray
-    high: np.ndarray
-    is_free: Callable[[np.ndarray], np.ndarray]
-    sees: Callable[[np.ndarray, np.ndarray], np.ndarray]
+# What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and which
+# points and segments (n,) are free.
+_Field = tuple[np.ndarray, np.ndarray, Callable[..., np.ndarray], Callable[..., np.ndarray]]
 
 
 def _among_circles(circles: Circles, d_min: float) -> _Field:
     radii = circles.radii + d_min
     low, high = np.reshape(circles.bounds, (2, 2)).T
-    return _Field(
+    return (
         low,
         high,
         partial(_outside, circles.centres, radii),
@@ -145,7 +139,7 @@ def _on_grid(grid: Grid, d_min: float) -> _Field:
     if d_min > 0:
         raise ValueError(f"d_min: {d_min:g}; on a grid expected 0, its cells cannot grow")
     low, high = grid.in_units(np.array([[0.5, 0.5], np.array(grid.occupied.shape[::-1]) - 0.5]))
-    return _Field(low, high, partial(_in_free_cells, grid), partial(_free_segments, grid))
+    return low, high, partial(_in_free_cells, grid), partial(_free_segments, grid)
 
 
 def _free_points(
@@ -153,7 +147,7 @@ def _free_points(
     nodes: int,
     low: np.ndarray,
     high: np.ndarray,
-    is_free: Callable[[np.ndarray], np.ndarray],
+    is_free: Callable[..., np.ndarray],
 ) -> np.ndarray:
     """Points (nodes or fewer, 2), uniform in a field's free part; fewer if almost none is free."""
     free = np.empty((0, 2))

@@ -124,7 +124,7 @@ def _answer(
         stop="exact",
         extra={
             "turns": len(radii),
-            "tight_turns": int(_is_tight(radii, settings).sum()),
+            "tight_turns": int((radii < settings.turning_radius * (1 - 1e-9)).sum()),
             "least_radius": float(radii.min(initial=math.inf)),
         },
     )
@@ -227,11 +227,6 @@ def _rounded(
         if not bad[1:-1].any() or not share[bad[1:-1]].any():
             return points, radii, tries, not bad.any()
         _shrink(share, bad[1:-1], begins)
-
-
-def _is_tight(radii: np.ndarray, settings: Settings) -> np.ndarray:
-    """Whether (n,) radii are smaller than the turning radius."""
-    return radii < settings.turning_radius * (1 - 1e-9)
 
 
 def _of_turns(which: np.ndarray, begins: np.ndarray) -> np.ndarray:

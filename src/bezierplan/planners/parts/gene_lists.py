@@ -113,18 +113,27 @@ def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
     return count
 
 
-@allocation_free
-def distinct(pool: Pool, size: int) -> int:
-    """Number of distinct chromosomes among the first `size` of the pool, told by their costs."""
-    count = size
+@compiled
+def kinds_of(pool: Pool, size: int) -> tuple[int, np.ndarray, np.ndarray]:
+    """Number of distinct chromosomes among the first `size` of the pool, a place of each of them
+    (size,), and for each place (size,) which of them is there.
+    """
+    kind, heads, kinds = np.empty(size, dtype=np.int64), np.empty(size, dtype=np.int64), 0
     for i in range(size):
-        for j in range(i - 1, -1, -1):  # in a sorted pool equal ones are neighbours
-            if pool.cost[i] == pool.cost[j] and same(
-                pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]
+        k = kinds - 1
+        while k >= 0:
+            head = heads[k]  # equal chromosomes have equal costs
+            if pool.cost[i] == pool.cost[head] and same(
+                pool.ones[i, : pool.count[i]], pool.ones[head, : pool.count[head]]
             ):
-                count -= 1
                 break
-    return count
+            k -= 1
+        if k < 0:
+            k = kinds
+            heads[kinds] = i
+            kinds += 1
+        kind[i] = k
+    return kinds, heads, kind
 
 
 @allocation_free
@@ -144,21 +153,7 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
     A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum
     is made in the order of the places.
     """
-    kind, heads, kinds = np.empty(filled, dtype=np.int64), np.empty(filled, dtype=np.int64), 0
-    for i in range(filled):
-        k = kinds - 1
-        while k >= 0:
-            head = heads[k]  # equal chromosomes have equal costs
-            if pool.cost[i] == pool.cost[head] and same(
-                pool.ones[i, : pool.count[i]], pool.ones[head, : pool.count[head]]
-            ):
-                break
-            k -= 1
-        if k < 0:
-            k = kinds
-            heads[kinds] = i
-            kinds += 1
-        kind[i] = k
+    kinds, heads, kind = kinds_of(pool, filled)
     values, marked = np.empty((kinds, kinds)), np.zeros(genes, dtype=np.int64)
     for k in range(kinds):
         chromosome = heads[k]

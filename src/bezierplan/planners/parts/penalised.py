@@ -9,10 +9,12 @@ no obstacle: the swarm's own bounds keep the control points inside.
 """
 
 from enum import IntEnum
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
@@ -57,6 +59,22 @@ class Objective(NamedTuple):
     polygons: Polygonal
     penalty: int
     beta: float
+
+
+@cache
+def basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of start and target (2, samples) and of the free control points (n, samples) at the
+    samples of a curve.
+    """
+    weights = curves.sample_matrix(curve, control_points + 2, samples).T
+    # A copy, since numba would compile all kernels once more for an array that is read-only.
+    return weights[list(curves.ends(curve))], weights[free(curve, control_points)].copy()
+
+
+@cache
+def free(curve: str, control_points: int) -> np.ndarray:
+    """Which control points of a curve are free (n,)."""
+    return np.delete(np.arange(control_points + 2), curves.ends(curve))
 
 
 @allocation_free
