@@ -334,7 +334,6 @@ def test_a_chain_of_pieces_is_measured_like_its_path():
     ("changes", "named"),
     [
         ({"population": 21}, "population: 21"),
-        ({"length_weight": 0}, "length_weight: 0"),
         ({"curve": "piecewise_quadratic", "control_points": 0}, "control_points: 0"),
         ({"curve": "piecewise_quadratic", "control_points": 8, "samples": 8}, "samples: 8"),
     ],

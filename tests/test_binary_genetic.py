@@ -276,7 +276,6 @@ def test_occupied_control_points_cost_what_the_setting_says():
         ({"genes": 0}, "genes: 0"),
         ({"curve": "piecewise_cubic", "genes": 1}, "genes: 1"),
         ({"spacing": "arc_length"}, "spacing"),
-        ({"cut": "gene", "genes": 1}, "cut"),
         ({"samples": 6}, "samples: 6"),
     ],
 )

@@ -640,15 +640,15 @@ def test_ascending_is_a_stable_order(values):
 
 
 def test_the_best_survive_and_of_equal_ones_the_first():
-    pool, spare = gene_lists.empty_pool(6, 120), gene_lists.empty_pool(3, 120)
+    pool = gene_lists.empty_pool(6, 120)
     for place, cost in enumerate([5.0, 3.0, 4.0, 3.0, 9.0, 4.0]):
         gene_lists.put(np.array([place]), 1, cost, pool, place)
-    gene_lists.select(pool, 6, spare)
+    gene_lists.select(pool, 3, 6)
     assert pool.ones[:3, 0].tolist() == [1, 3, 2]
     assert pool.cost[:3].tolist() == [3.0, 3.0, 4.0]
     for place, cost in enumerate([5.0, 5.0, 5.0, 9.0, 5.0, 4.0]):
         gene_lists.put(np.array([place]), 1, cost, pool, place)
-    gene_lists.select(pool, 6, spare)
+    gene_lists.select(pool, 3, 6)
     assert pool.ones[:3, 0].tolist() == [5, 0, 1]
 
 

@@ -753,7 +753,7 @@ def test_starts_between_centres_are_refused():
 
 @pytest.mark.parametrize(
     ("setting", "value", "wanted"),
-    [("population", 61, "even number"), ("friction", 0.0, "above 0")],
+    [("population", 61, "even number")],
 )
 def test_settings_that_do_not_fit(setting, value, wanted):
     with pytest.raises(ValueError, match=f"{setting}: .*{wanted}"):

@@ -123,7 +123,7 @@ class Settings(NamedTuple):
             "feasible in the last two forms: free of collisions, or also clear by safety_distance"
         ),
     ]
-    length_weight: Annotated[float, Range(0), About("w1", PAPER + ", eq. 12")]
+    length_weight: Annotated[float, Range(1e-6), About("w1", PAPER + ", eq. 12")]
     safety_weight: Annotated[float, Range(0), About("w2", PAPER + ", eq. 12")]
     safety_distance: Annotated[
         float, Range(0), About("distance to keep from obstacles", PAPER + ", eq. 14", UNITS)
@@ -142,11 +142,6 @@ def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings)
     check_curve(settings, "control_points")
-    if settings["length_weight"] == 0:
-        raise ValueError(
-            "length_weight: 0; "
-            "a path without any cost has no fitness, so a number above 0 is needed"
-        )
 
 
 @with_settings(Settings)

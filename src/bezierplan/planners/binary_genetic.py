@@ -110,8 +110,6 @@ def check(settings: dict) -> None:
     check_pairs(settings)
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
         raise ValueError("spacing: arc_length; only a polyline has it, other curves need parameter")
-    if settings["cut"] == "gene" and settings["genes"] == 1:
-        raise ValueError("cut: gene; a single gene can only be cut at a bit")
 
 
 @with_settings(Settings)

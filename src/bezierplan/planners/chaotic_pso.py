@@ -364,7 +364,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 if rules.random_numbers == RandomNumbers.particle or (
                     rules.random_numbers == RandomNumbers.iteration and i == 0
                 ):
-                    _draw(rng, r)
+                    r[0], r[1] = rng.random(), rng.random()
                 _move(
                     rng,
                     r,
@@ -419,12 +419,6 @@ def _violation_of_points(particle, objective, scratch):
 
 
 @allocation_free
-def _draw(rng, r):
-    r[0] = rng.random()
-    r[1] = rng.random()
-
-
-@allocation_free
 def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
     """Velocity and position of one particle, in place (tharwat2018, eqs. 8 and 7; CPSO-I: eq. 17,
     CPSO-II: eq. 18).
@@ -433,7 +427,7 @@ def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
     """
     for d in range(len(x)):
         if rules.random_numbers == RandomNumbers.dimension:
-            _draw(rng, r)
+            r[0], r[1] = rng.random(), rng.random()
         r1, r2 = r[0], r[1]
         if rules.chaotic_term == ChaoticTerm.cognitive:
             r1 = zeta[min(d, len(zeta) - 1)]

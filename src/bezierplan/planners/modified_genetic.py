@@ -212,13 +212,7 @@ def plan(
     grid = problem.workspace
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     if problem.start == problem.target:
-        nothing = {
-            "distinct_chromosomes": 0.0,
-            "mean_q": math.nan,
-            "population_q": math.nan,
-            "extra_batches": 0,
-            "valid_share": math.nan,
-        }
+        nothing = dict.fromkeys(extra, math.nan) | {"distinct_chromosomes": 0.0, "extra_batches": 0}
         return Plan.of_one(Path("polyline", grid.in_units(ends)), 0.0, "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
@@ -304,7 +298,6 @@ def search(
     size = rules.population
     children = 4 * (size // 2)
     pool = gene_lists.empty_pool(size + batches * children, _ROOM)
-    spare = gene_lists.empty_pool(size, _ROOM)
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations)
@@ -355,7 +348,7 @@ def search(
                 q[iteration] = pairs / (filled * (filled - 1) / 2)
                 if not q[iteration] > eta:
                     break
-        gene_lists.select(pool, filled, spare)
+        gene_lists.select(pool, size, filled)
         population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (
             size * (size - 1) / 2
         )

@@ -118,12 +118,10 @@ def roadmap(
     return length, points[way], len(one)
 
 
-# What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and which
-# points and segments (n,) are free.
-_Field = tuple[np.ndarray, np.ndarray, Callable[..., np.ndarray], Callable[..., np.ndarray]]
-
-
-def _among_circles(circles: Circles, d_min: float) -> _Field:
+def _among_circles(circles: Circles, d_min: float) -> tuple:
+    """What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and
+    functions that tell which points and segments (n,) are free.
+    """
     radii = circles.radii + d_min
     low, high = np.reshape(circles.bounds, (2, 2)).T
     return (
@@ -134,8 +132,10 @@ def _among_circles(circles: Circles, d_min: float) -> _Field:
     )
 
 
-def _on_grid(grid: Grid, d_min: float) -> _Field:
-    """Nodes lie between the centres of the outermost cells, in free cells."""
+def _on_grid(grid: Grid, d_min: float) -> tuple:
+    """`_among_circles` for a grid: nodes lie between the centres of the outermost cells, in free
+    cells.
+    """
     if d_min > 0:
         raise ValueError(f"d_min: {d_min:g}; on a grid expected 0, its cells cannot grow")
     low, high = grid.in_units(np.array([[0.5, 0.5], np.array(grid.occupied.shape[::-1]) - 0.5]))

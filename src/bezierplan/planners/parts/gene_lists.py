@@ -39,12 +39,8 @@ def put(ones: np.ndarray, count: int, cost: float, pool: Pool, place: int) -> No
 
 
 @compiled
-def select(pool: Pool, filled: int, spare: Pool) -> None:
-    """Move the best of the first chromosomes to the front, in place; ties in their original order.
-
-    spare: a pool with as many places as survive, overwritten.
-    """
-    survivors = len(spare.cost)
+def select(pool: Pool, survivors: int, filled: int) -> None:
+    """Move the best of the first chromosomes to the front, in place; ties in their order."""
     highest = pool.cost[:survivors].max()
     # Some that cost no more are enough, so the others need no sorting.
     order, count = np.empty(filled, dtype=np.int64), 0
@@ -52,11 +48,10 @@ def select(pool: Pool, filled: int, spare: Pool) -> None:
         order[count] = i
         count += pool.cost[i] <= highest
     sort(order[:count], pool.cost)
-    for place in range(survivors):
-        i = order[place]
-        put(pool.ones[i], pool.count[i], pool.cost[i], spare, place)
-    for place in range(survivors):
-        put(spare.ones[place], spare.count[place], spare.cost[place], pool, place)
+    best = order[:survivors]
+    pool.ones[:survivors] = pool.ones[best]
+    pool.count[:survivors] = pool.count[best]
+    pool.cost[:survivors] = pool.cost[best]
 
 
 @allocation_free
