@@ -64,32 +64,16 @@ def test_a_join_that_no_path_fits_in_finds_none():
     assert plan("ga_rows", longest_join=20).path is None
 
 
-def test_first_paths_by_rows_are_paths_from_start_to_target():
-    problem = environment(2)
-    places = lattice(problem.workspace, problem.start, problem.target, "one")
-    rows = lattice_genetic._rows_between(places)
-    assert len(rows) == 18
-    assert [set(places.row[row].tolist()) for row in rows] == [{row} for row in range(1, 19)]
-    paths, sizes = lattice_genetic._first_paths(np.random.default_rng(0), places, rows, 20, 600)
+@pytest.mark.parametrize("ends", [((0.0, 0.0), (20.0, 20.0)), ((20.0, 20.0), (0.0, 0.0))])
+def test_first_paths_by_rows_are_paths_from_start_to_target(ends):
+    places = lattice(environment(2).workspace, *ends, "one")
+    paths, sizes = lattice_genetic._first_paths(np.random.default_rng(0), places, 20, 600)
     for path, size in zip(paths, sizes, strict=True):
         assert (path[0], path[size - 1]) == (places.start, places.target)
         assert all(
             cell_paths.step_between(places, *pair) >= 0 for pair in itertools.pairwise(path[:size])
         )
         assert set(places.row[path[:size]].tolist()) == set(range(20))
-
-
-def test_rows_are_passed_from_the_start_down_too():
-    grid = OPEN.workspace
-    places = lattice(grid, (8.0, 8.0), (0.0, 0.0), "one")
-    assert [int(places.row[row[0]]) for row in lattice_genetic._rows_between(places)] == [
-        6,
-        5,
-        4,
-        3,
-        2,
-        1,
-    ]
 
 
 def test_a_row_without_a_free_cell_has_no_path():
