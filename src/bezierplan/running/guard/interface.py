@@ -124,43 +124,30 @@ def asked(function: Callable[..., Any], location: str, *arguments: Any) -> None:
 def interface_fault(module: ModuleType) -> str | None:
     """What a module lacks to be a planner, or None."""
     plan = getattr(module, "plan", None)
-    try:
-        if not callable(plan) or isinstance(plan, type):
-            raise ValueError
-        parameters = inspect.signature(plan).parameters.values()
-    except ValueError:  # also where Python knows no signature
+    if not callable(plan) or isinstance(plan, type):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
-    fixed = [
-        parameter
-        for parameter in parameters
-        if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD)
-    ]
-    positional = [parameter.name for parameter in fixed if parameter.default is parameter.empty]
-    if len(positional) != 2 or any(
-        parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD)
-        for parameter in parameters
-    ):
-        return "function plan: expected plan(problem, rng, *, <settings>)"
-    for parameter in parameters:
-        if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is not parameter.empty:
-            return (
-                f"setting {parameter.name}: has a default value; "
-                "a study gives a value to every setting"
-            )
-        if parameter.kind is parameter.KEYWORD_ONLY and parameter.annotation is parameter.empty:
-            return f"setting {parameter.name}: has no annotation; {_EXPECTED}"
     try:
         parameters = inspect.signature(plan, eval_str=True).parameters.values()
     except Exception as error:
-        return f"function plan: its annotations cannot be read ({told(error)})"
-    for parameter in parameters:
-        try:
-            _ = parameter.kind is parameter.KEYWORD_ONLY and setting(parameter.annotation)
-        except TypeError:
+        return f"function plan: its signature cannot be read ({told(error)})"
+    own = [each for each in parameters if each.kind is each.KEYWORD_ONLY]
+    others = [each for each in parameters if each not in own]
+    if sum(each.default is each.empty for each in others) != 2 or any(
+        each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) for each in others
+    ):
+        return "function plan: expected plan(problem, rng, *, <settings>)"
+    for each in own:
+        if each.default is not each.empty:
             return (
-                f"setting {parameter.name}: is annotated with "
-                f"{inspect.formatannotation(parameter.annotation)}; {_EXPECTED}"
+                f"setting {each.name}: has a default value; a study gives a value to every setting"
             )
+        try:
+            setting(each.annotation)
+        except TypeError:
+            annotated = f"is annotated with {inspect.formatannotation(each.annotation)}"
+            if each.annotation is each.empty:
+                annotated = "has no annotation"
+            return f"setting {each.name}: {annotated}; {_EXPECTED}"
     return _workspaces_fault(getattr(module, "workspaces", ()))
 
 

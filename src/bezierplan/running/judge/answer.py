@@ -93,7 +93,7 @@ def restored(curve: str, points: Any) -> Path | None:
 
 def packed(plan: Plan) -> dict[str, Any]:
     """A plain plan as text can hold it, with all bits of its numbers."""
-    return plan._asdict() | {"history": plan.history.tolist(), "path": stored(plan.path)}
+    return plan._asdict() | {"history": plan.history.tolist(), "path": [*stored(plan.path)]}
 
 
 def unpacked(fields: dict[str, Any]) -> Plan:
