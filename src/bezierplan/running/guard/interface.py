@@ -129,7 +129,7 @@ def interface_fault(module: ModuleType) -> str | None:
     try:
         parameters = inspect.signature(plan, eval_str=True).parameters.values()
     except Exception as error:
-        return f"function plan: its signature cannot be read ({told(error)})"
+        return f"function plan: its annotations cannot be read ({told(error)})"
     own = [each for each in parameters if each.kind is each.KEYWORD_ONLY]
     others = [each for each in parameters if each not in own]
     if sum(each.default is each.empty for each in others) != 2 or any(
