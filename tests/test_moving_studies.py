@@ -29,7 +29,6 @@ import numpy as np
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry import curves
 from bezierplan.planners import Path, Plan, Range
-from panels import options_of
 
 workspaces = ("grid",)
 
