@@ -24,7 +24,7 @@ for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
 # A copy of the tree tests its own source, whatever the environment's path file says; so do the
 # processes that tests start.
 SOURCE = str(ROOT / "src")
-sys.path.insert(0, SOURCE)
+sys.path[:0] = [SOURCE, str(ROOT / "docs")]
 os.environ["PYTHONPATH"] = os.pathsep.join([SOURCE, *filter(None, [os.environ.get("PYTHONPATH")])])
 
 from hypothesis import configuration, settings  # noqa: E402

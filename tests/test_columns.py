@@ -5,12 +5,12 @@ follow.
 import numpy as np
 import pyarrow as pa
 import pytest
+import tables_of_keys as keys
 
 from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.planners import PLACE
 from bezierplan.running import columns, execution, problems, rows
 from bezierplan.running.chunk import Chunk
-from bezierplan.study import keys
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
@@ -31,7 +31,7 @@ CHUNK = Chunk(
 
 
 def test_tables_of_columns_are_those_of_the_declarations():
-    """`python -m bezierplan.study.keys` renews them."""
+    """`python docs/tables_of_keys.py` renews them."""
     text = keys.RESULTS_README.read_text(encoding="utf-8")
     assert keys.renewed_columns(text) == text
     assert all(

@@ -9,10 +9,7 @@ from bezierplan.commands import run
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 
-NO_STUDY = (
-    "not a name of a study; expected at most 100 letters, digits, _ and -, a letter first, "
-    "and not the name of a device"
-)
+NO_STUDY = "not a name of a study; expected at most 100 letters, digits, _ and -, a letter first, "
 WORDS = {
     "results of two lines": (["verify", "x\ny"], "x\\ny: no runs here"),
     "results with an escape": (["digest", "x\x1by"], "x\\x1by: no runs here"),

@@ -2,6 +2,7 @@
 that its files name what exists.
 """
 
+import dataclasses
 import math
 from types import SimpleNamespace
 
@@ -19,7 +20,7 @@ from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
 from bezierplan.schema import checked
-from bezierplan.study import checks, jobs, reading
+from bezierplan.study import alternatives, checks, jobs, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
@@ -443,28 +444,13 @@ def test_study_is_free_of_faults(key):
     assert study == shared(key)
 
 
-@pytest.mark.parametrize("key", KEYS)
-def test_every_default_of_an_assumption_is_in_force(key):
-    """Of all five studies; `load` refuses a default that is not, which is tried here with a value
-    that no setting has.
-    """
-    study = shared(key)
-    governed = [assumption for assumption in study.assumptions if assumption.setting]
-    assert len(governed) >= {"song2016": 9, "tharwat2018": 15, "ma2020": 14}.get(key, 5)
-    for assumption in governed:
-        checks.check_assumption(study, assumption, "here")
-        named = isinstance(assumption.default, dict)
-        other = dict.fromkeys(assumption.default, "none such") if named else "none such"
-        with pytest.raises(checked.Fault, match="not the one that is used"):
-            checks.check_assumption(study, assumption.but(default=other), "here")
-
-
-def test_the_default_on_some_problems_alone_is_the_value_used_there():
+def test_the_default_of_an_assumption_is_what_the_study_uses():
+    """One knob turned in experiments.yaml turns it, too; some problems may have their own."""
     study = shared("ma2020")
-    here = next(each for each in study.assumptions if each.id == "O14h")
-    assert study.settings["generations"] == 50
-    assert study.problems["environment2"].settings["generations"] == 100
-    checks.check_assumption(study, here, "here")
-    elsewhere = here.but(default=dict.fromkeys(here.default, 50), alternatives=[100])
-    with pytest.raises(checked.Fault, match=r"50: not the one that is used; .* is 100"):
-        checks.check_assumption(study, elsewhere, "here")
+    own = {each.id: alternatives.default_of(study, each) for each in study.assumptions}
+    assert own["O2"] == study.settings["control_points"]
+    assert set(own["O14h"].values()) == {study.problems["environment2"].settings["generations"]}
+    turned = dataclasses.replace(study, settings=study.settings | {"control_points": 5})
+    checks.check(turned)
+    first = next(each for each in study.assumptions if each.id == "O2")
+    assert alternatives.default_of(turned, first) == 5

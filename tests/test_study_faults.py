@@ -4,23 +4,73 @@ import shutil
 from pathlib import Path
 
 import pytest
-from faults import told
 
 from bezierplan.schema import checked
+from bezierplan.study import reading
 
 DATA, STUDIES = Path(__file__).parent / "data", Path(__file__).parents[1] / "config" / "studies"
+FILE = checked.read(DATA / "faults.yaml")
+PLANNERS = FILE.pop("planners")
 FAULTS = {
-    f"{study}: {name}": (study, *fault)
-    for study, faults in checked.read(DATA / "faults.yaml").items()
+    f"{study}: {name}": (study, fault)
+    for study, faults in FILE.items()
     for name, fault in faults.items()
 }
 
 
+def copy(study, folder):
+    """A study's folder to be spoilt."""
+    home = STUDIES if (STUDIES / study).exists() else DATA
+    return Path(shutil.copytree(home / study, folder / study))
+
+
+def told(folder):
+    """What loading a study tells: one line that can be printed, and that is no longer than a
+    screen.
+    """
+    with pytest.raises(checked.Fault) as caught:
+        reading.load([folder])
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 1600
+    return str(caught.value)
+
+
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_is_told_in_one_line(name, tmp_path):
-    study, file, old, new, expected = FAULTS[name]
-    home = STUDIES if (STUDIES / study).exists() else DATA
-    folder = Path(shutil.copytree(home / study, tmp_path / study))
-    message = told(folder / file, old, new, folder)
+    study, (file, *old, new, expected) = FAULTS[name]
+    folder = copy(study, tmp_path)
+    text = (folder / file).read_text()
+    assert all(words in text for words in old)
+    (folder / file).write_text(text.replace(*old, new, 1) if old else new)
+    message = told(folder)
     assert expected in message
-    assert Path(file).name in message
+    assert Path(file).name in message or ".csv" in message
+
+
+@pytest.mark.parametrize("name", PLANNERS)
+def test_a_planner_that_is_none_is_told_in_one_line(name, tmp_path):
+    folder, (text, expected) = copy("walks", tmp_path), PLANNERS[name]
+    (folder / "walk.py").write_text(text)
+    message = told(folder)
+    assert expected in message
+    assert "experiments.yaml: " in message
+
+
+@pytest.mark.parametrize("name", ["experiments.yaml", "published/lengths.csv", "room.txt"])
+@pytest.mark.parametrize("kind", ["folder", "elsewhere", "missing", "bytes"])
+def test_what_is_no_file_of_the_study(kind, name, tmp_path):
+    folder = copy("walks", tmp_path)
+    file = folder / name
+    file.unlink()
+    match kind:
+        case "folder":
+            file.mkdir()
+        case "elsewhere":
+            file.symlink_to(tmp_path / "secret")
+        case "bytes":
+            file.write_bytes(b"\xff\xfe")
+    assert Path(name).name in told(folder)
+
+
+def test_studies_for_tests_have_no_fault():
+    assert reading.load([DATA / "walks", DATA / "yard"])

@@ -92,50 +92,12 @@ def runs(number, methods=METHODS):
     return {f"runs {method}": number for method in methods}
 
 
-TABLES = {
-    "table table1": 1,
-    "table feasibility": 1,
-    "table running_time": 1,
-    "claims": 1,
-    "summary": 1,
-}
-ARTEFACTS_OF_RUNS = TABLES | {
-    "baseline_comparison": 1,
-    "figure figure3": 1,
-    "figure figure4": 1,
-    "figure figure5": 1,
-    "figure overall": 1,
-    "figure work": 1,
-}
-
-OF_PUBLISHED = {
-    "table table1": 1,
-    "claims": 1,
-    "audit": 1,
-    "summary": 1,
-    "figure work": 1,
-    "figure identified": 1,
-}
-# A label is printed by what shows the thing that it names.
-OF_LABELS = {
-    name: 1
-    for name in (*ARTEFACTS_OF_RUNS, "figure identified")
-    if name not in ("claims", "baseline_comparison")
-}
-# The page shows everything, with titles and assumptions.
-PAGE = {"page": 1}
-
-
-def with_page(jobs):
-    """Jobs with those that they make run again: before the page, runs are judged again from their
-    points; tables are set in LaTeX.
-    """
-    again = {"verified": "runs ", "latex": "table "}
-    return (
-        jobs
-        | PAGE
-        | {job: 1 for job, kind in again.items() if any(name.startswith(kind) for name in jobs)}
-    )
+SUMMARY = {"summary": 1, "page": 1}
+TABLES = {"table table1": 1, "latex table1": 1, "claims": 1, "baseline_comparison": 1} | SUMMARY
+# What shows runs, which are judged again before the page.
+ARTEFACTS_OF_RUNS = TABLES | {"figure figure3": 1, "figure figure4": 1, "figure figure5": 1}
+OF_RUNS = ARTEFACTS_OF_RUNS | {"verified": 1}
+OF_PUBLISHED = {"table table1": 1, "latex table1": 1, "claims": 1, "audit": 1} | SUMMARY
 
 
 @pytest.fixture(scope="module")
@@ -228,58 +190,31 @@ def test_nothing_is_left_to_do(tree):
     assert not list((tree / "results").rglob(".part-*"))
 
 
-def test_each_planner_has_a_job_before_all_others(tree):
-    """It compiles the planner's kernels, for which others would wait. Claims wait for no figure,
-    and runs only for problems.
-    """
-    printed = snakemake(tree, "--dry-run", "--forceall")
-    given, of_planner = {}, {}
-    for job in re.findall(r"^rule \w+:\n(.*?)(?=^rule |\Z)", printed, flags=re.M | re.S):
-        told = dict(re.findall(r"^    (\w+): (.*)$", job, flags=re.M))
-        log = Path(told.get("log", "")).parts
-        if "priority" in told:
-            given.setdefault(log[4].removesuffix(".log"), []).append(float(told["priority"]))
-        if "runs" in log:
-            of_planner.setdefault("genetic" if log[-2] in GENETIC else log[-2], []).append(
-                float(told["priority"])
-            )
-    assert {planner: len(found) for planner, found in of_planner.items()} == dict.fromkeys(
-        METHODS[-3:], 2
-    ) | {"genetic": 10}
-    ((claims,), (problems,), (bounds,)) = (given[rule] for rule in ("claims", "problems", "bounds"))
-    assert all(
-        problems > max(found) > claims > sorted(found)[-2] > bounds > 0
-        for found in of_planner.values()
-    )
-    assert len({max(found) for found in of_planner.values()}) == len(of_planner)
-
-
 EDITS = {
     "code of a planner": (
         "src/bezierplan/planners/binary_genetic.py",
         "history[generation] = best_objective",
         "history[generation] = best_objective + 0",
-        runs(2, GENETIC) | ARTEFACTS_OF_RUNS,
+        runs(2, GENETIC) | OF_RUNS,
     ),
-    # The audit and the drawing of paths read the study's own file, which tries the operators.
     "code of an operator": (
         "src/bezierplan/planners/parts/genetic.py",
         "wheel = np.cumsum(fitness)",
         "wheel = np.cumsum(fitness + 0)",
-        runs(2, GENETIC) | ARTEFACTS_OF_RUNS | {"audit": 1, "figure identified": 1},
+        runs(2, GENETIC) | OF_RUNS,
     ),
     "a docstring": ("src/bezierplan/planners/parts/genetic.py", '"""', '"""Once more. ', {}),
-    "a comment in a script": (
-        "workflow/scripts/runs.py",
-        "    import pyarrow",
-        "    # A comment.\n    import pyarrow",
-        {},
+    "what a job does": (
+        "src/bezierplan/study/jobs.py",
+        "        compared = comparison.compare(\n",
+        "        0\n        compared = comparison.compare(\n",
+        dict.fromkeys(("table table1", "latex table1", *SUMMARY), 1),
     ),
-    "code of a script": (
-        "workflow/scripts/table.py",
-        "    table, comparison = ",
-        "    0\n    table, comparison = ",
-        {name: 1 for name in TABLES if name != "claims"},
+    "what another job does": (
+        "src/bezierplan/study/jobs.py",
+        "        return again.with_chunks(",
+        "        0\n        return again.with_chunks(",
+        {},
     ),
     "how a job is logged": (
         "src/bezierplan/running/log.py",
@@ -291,41 +226,25 @@ EDITS = {
         "config/studies/song2016/artefacts.yaml",
         "title: ",
         "title: The same, ",
-        PAGE | {"latex": 1},
-    ),
-    "a comment": (
-        "src/bezierplan/planners/parts/genetic.py",
-        "# A draw close to 1",
-        "# Hence a draw close to 1",
-        {},
-    ),
-    # Paths and convergence share code with the kind `lines`, which reads the units of metrics; the
-    # audit reads what a metric can be.
-    "a metric": (
-        "src/bezierplan/analysis/measures.py",
-        "CLASS_SAMPLES = 2001",
-        "CLASS_SAMPLES = 2002",
-        ARTEFACTS_OF_RUNS | {"audit": 1},
+        {"latex table1": 1, "page": 1},
     ),
     "a kind of figure": (
         "src/bezierplan/figures/panels/convergence.py",
         "from __future__ import annotations",
         "from __future__ import annotations\n\nNEW = 1",
-        {"figure figure4": 1},
+        {"figure figure4": 1, "page": 1},
     ),
     "a setting of one method": (
         EXPERIMENTS,
         "samples: 701}",
         "samples: 701, population: 202}",
-        runs(2, ["nonsmooth"])
-        | TABLES
-        | {"baseline_comparison": 1, "figure overall": 1, "figure work": 1},
+        runs(2, ["nonsmooth"]) | TABLES | {"verified": 1},
     ),
     "a setting of all methods": (
         EXPERIMENTS,
         "penalty: 10.0",
         "penalty: 11.0",
-        runs(2, GENETIC) | ARTEFACTS_OF_RUNS,
+        runs(2, GENETIC) | OF_RUNS,
     ),
     "a published number": (
         "config/studies/song2016/published/table1.csv",
@@ -337,35 +256,27 @@ EDITS = {
         "config/studies/song2016/workspaces/figure2.txt",
         "....##....######\n",
         "....##.....#####\n",
-        {"problems": 1, "bounds": 1, "figure figure2": 1, "figure identified": 1, "audit": 1}
-        | runs(2)
-        | ARTEFACTS_OF_RUNS,
+        {"problems": 1, "bounds": 1, "figure figure2": 1, "audit": 1} | runs(2) | OF_RUNS,
     ),
-    "the seed rule": (
-        EXPERIMENTS,
-        "    repeats: {smoke",
-        "    seeds: shared\n    repeats: {smoke",
-        runs(2) | ARTEFACTS_OF_RUNS,
-    ),
-    "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1) | ARTEFACTS_OF_RUNS),
+    "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1) | OF_RUNS),
     "fewer repeats": (EXPERIMENTS, "full: 4,", "full: 3,", ARTEFACTS_OF_RUNS),
     "a label": (
         "config/studies/song2016/artefacts.yaml",
         "0_15: 0 to 15",
         "0_15: from 0 to 15",
-        OF_LABELS | {"claims": 1},
+        {name: 1 for name in ARTEFACTS_OF_RUNS if name != "baseline_comparison"},
     ),
     "a claim": (
         "config/studies/song2016/claims.yaml",
         "margin: 0.1,",
         "margin: 0.2,",
-        {"claims": 1, "summary": 1},
+        {"claims": 1} | SUMMARY,
     ),
     "an alternative": (
         "config/studies/song2016/assumptions.yaml",
         "[20, 50, 101, 401]",
         "[20, 50, 401]",
-        PAGE,
+        {"page": 1},
     ),
 }
 
@@ -374,7 +285,7 @@ EDITS = {
 def test_edit_reruns_exactly_what_it_changes(name, tree):
     file, old, new, expected = EDITS[name]
     edit(tree / file, old, new)
-    assert planned(tree) == (expected and with_page(expected))
+    assert planned(tree) == expected
 
 
 @pytest.mark.parametrize(
@@ -388,7 +299,7 @@ def test_content_of_a_source_counts_not_its_date(file, tree):
         old, new, expected = next(row[1:] for row in EDITS.values() if row[0].endswith(name))
         edit(source, old, new)
         os.utime(source, ns=(dates.st_atime_ns, dates.st_mtime_ns))
-        assert planned(tree) == with_page(expected)
+        assert planned(tree) == expected
     else:
         os.utime(source)
         assert planned(tree) == {}
@@ -422,8 +333,8 @@ def test_new_planner_reruns_nothing(tree):
 
 
 def test_deleted_figure_alone_is_made_again(tree):
-    (tree / "results/full/song2016/figures/figure4.svg").unlink()
-    assert planned(tree) == {"figure figure4": 1} | PAGE
+    (tree / "results/full/song2016/paper/figure4.svg").unlink()
+    assert planned(tree) == {"figure figure4": 1, "page": 1}
 
 
 def test_single_figure_needs_only_its_own_methods(tree):
@@ -459,20 +370,13 @@ def test_one_core_another_order_and_larger_chunks_give_the_same_content(finished
     assert 0 < looks <= jobs == len(files) + 1
 
 
-def test_figures_and_page_made_again_on_one_core_have_equal_bytes(tree):
-    """On Linux the figure of the same CPU times: all others are compared at the end of the workflow
-    that is killed.
-    """
-    figures = (tree / "results/full/song2016/figures").glob(
-        "work.*" if sys.platform == "linux" else "*"
-    )
-    files = [tree / "results/full/index.html", *figures]
-    before = [file.read_bytes() for file in files]
-    assert len(files) >= 4
-    for file in files:
-        file.unlink()
+def test_page_made_again_on_one_core_has_equal_bytes(tree):
+    """Figures are compared at the end of the workflow that is killed."""
+    file = tree / "results/full/index.html"
+    before = file.read_bytes()
+    file.unlink()
     snakemake(tree, "--cores", "1")
-    assert [file.read_bytes() for file in files] == before
+    assert file.read_bytes() == before
 
 
 def untimed(text):
@@ -539,7 +443,7 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_goes_on_to_th
     for kill, moment, runs in (
         (os.killpg, "problems/*.parquet", 7),
         (os.kill, "runs/*/*/*.parquet", 7),
-        (os.killpg, "tables/*.csv", 16),
+        (os.killpg, "paper/*.csv", 16),
     ):
         before = set(tree.glob(f"results/full/song2016/{moment}"))
         make = subprocess.Popen(
@@ -578,17 +482,11 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_goes_on_to_th
     assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
     assert not list((tree / "results").rglob(".part-*"))
     drawings, drawn_again = (
-        {file.name: file.read_bytes() for file in place.glob("results/full/song2016/figures/*")}
+        {file.name: file.read_bytes() for file in place.glob("results/full/song2016/paper/figure*")}
         for place in (finished, tree)
     )
     assert drawings.keys() == drawn_again.keys()
-    assert {name for name, content in drawings.items() if drawn_again[name] != content} <= {
-        "work.csv",
-        "work.pdf",
-        "work.png",
-        "work.svg",
-        "work.txt",
-    }
+    assert {name for name, content in drawings.items() if drawn_again[name] != content} == set()
 
 
 # One kernel that calls another one of another module.

@@ -17,7 +17,6 @@ from bezierplan.schema.model import (
     Experiment,
     Flag,
     Function,
-    Label,
     Line,
     Metric,
     Model,
@@ -75,7 +74,7 @@ class TableValue(Model):
         "next to ours, but are all inconclusive; "
         "left out: true",
     )
-    label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")
+    label: Line = Field(description="how the value is printed")
     decimals: Decimals = Field(
         description="how many decimals are printed, a whole number from 0 to 15"
     )

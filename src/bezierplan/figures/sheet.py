@@ -101,12 +101,12 @@ def draw(
         _name_axes_once(figure.axes[: len(panels)], columns)
         _draw_legend(figure)
         _fit_height(figure)
-    captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
+    captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _TOLD]
     figure.set_label("\n".join(filter(None, captions)))
     return figure
 
 
-_PARTS = "caption", "glance"
+_TOLD = "caption", "glance"
 
 
 def _plain(text: str) -> str:

@@ -1,7 +1,7 @@
 """Columns of the runs tables, each declared once, as an annotated field of a named tuple: its type,
 its meaning and its unit. What a file of runs holds (`rows.table`), what is expected of it when it
 is read (`rows.fault`), which names are taken, what a study may select by (`study.design`), and the
-tables in results/README.md (`python -m bezierplan.study.keys`) follow.
+tables in results/README.md (`python docs/tables_of_keys.py`) follow.
 
 A row is what is known before its run (`Planned`, with the place of its problem after `problem` and
 its settings after `planner`), what the run found out (`Outcome`), for a drive more of that

@@ -1,14 +1,7 @@
-"""YAML files read strictly, within stated limits; a fault is one line with its place.
-
-YAML is written by people and read from folders of unknown origin, so anything that could overload
-the reader is rejected before it is built: files that are not regular, long files, deep nesting, and
-aliases that expand beyond what a file could hold. Tags are not supported, because plain scalars get
-their types without them.
-"""
+"""YAML files read strictly; a fault is one line with its place."""
 
 import difflib
 import re
-import stat
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -24,26 +17,19 @@ except ImportError:  # PyYAML was built without libyaml
 
 LONGEST_FILE = 4_000_000
 """Bytes of the longest file that is read: a study's YAML, maps, published numbers."""
+
+
 DEEPEST = 20
-"""Levels of the deepest nesting in YAML."""
-TOO_DEEP = f"nested more than {DEEPEST} levels deep"
-MOST_NODES = 200_000
-"""Values in one YAML file, aliases counted as what they stand for."""
-
-
-LONGEST_MESSAGE, MESSAGE_END = 1000, 300
-"""Characters of the longest message, and how many of its end are shown of a longer one."""
+"""Levels of nesting in YAML; the reader of libyaml has no limit, and would end the program."""
 
 
 class Fault(ValueError):
-    """A problem in a file that the user must fix, in one line of bounded length: no character from
-    the file can break the line.
+    """A problem in a file that the user must fix, in one line: no character from the file can break
+    it.
     """
 
     def __init__(self, text: str) -> None:
-        if len(text) > LONGEST_MESSAGE:
-            text = f"{text[: LONGEST_MESSAGE - MESSAGE_END - 5]} ... {text[-MESSAGE_END:]}"
-        super().__init__(plain(text))
+        super().__init__(plain(text, 1500))
 
 
 class _Loader(SafeLoader):
@@ -98,11 +84,10 @@ def text_of(file: Path, location: str) -> str:
     of at most `LONGEST_FILE` bytes.
     """
     try:
-        found = file.stat()
-        if not stat.S_ISREG(found.st_mode):
-            raise Fault(f"{location}: cannot be read (not a regular file)")
-        if found.st_size > LONGEST_FILE:
-            raise Fault(f"{location}: {found.st_size} bytes; expected at most {LONGEST_FILE}")
+        if not file.is_file():
+            raise Fault(f"{location}: {'not a regular file' if file.exists() else 'no such file'}")
+        if (size := file.stat().st_size) > LONGEST_FILE:
+            raise Fault(f"{location}: {size} bytes; expected at most {LONGEST_FILE}")
         return file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise Fault(f"{location}: cannot be read; expected text in UTF-8") from None
@@ -113,55 +98,21 @@ def text_of(file: Path, location: str) -> str:
 def parse(text: str, location: str) -> Any:
     """The content of YAML text, read strictly. Raises Fault, beginning with a location."""
     try:
-        _check_size(text, location)
+        depth = 0
+        for event in yaml.parse(text, _Loader):
+            depth += isinstance(event, yaml.CollectionStartEvent)
+            depth -= isinstance(event, yaml.CollectionEndEvent)
+            if depth > DEEPEST:
+                raise Fault(f"{location}: nested more than {DEEPEST} levels deep")
         return yaml.load(text, _Loader)
+    except Fault:
+        raise
     except yaml.MarkedYAMLError as error:
-        # Newer versions of libyaml have a limit of their own, and meet it where they read ahead.
-        problem = TOO_DEEP if error.problem == "exceeded maximum nesting depth" else error.problem
-        raise Fault(f"{_line(location, error.problem_mark)}: {problem}") from None
-    except yaml.YAMLError as error:  # characters not allowed in YAML
+        line = f": line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise Fault(f"{location}{line}: {error.problem}") from None
+    except (yaml.YAMLError, ValueError, LookupError, AttributeError) as error:
+        # Characters not allowed in YAML, values that are not of their tags.
         raise Fault(f"{location}: not YAML ({str(error).splitlines()[0]})") from None
-
-
-def _line(location: str, mark: Any) -> str:
-    return f"{location}: line {mark.line + 1}" if mark else location
-
-
-def _check_size(text: str, location: str) -> None:
-    """Raise Fault for nesting and aliases beyond the limits, and for tags, from the events alone,
-    before anything is built.
-    """
-    sizes: dict[str, int] = {}  # of nodes with an anchor
-    opened = [("", 0)]  # anchor and value count so far of each open node
-    for event in yaml.parse(text, _Loader):
-        anchor, size = getattr(event, "anchor", None) or "", 0
-        if getattr(event, "tag", None):
-            raise Fault(
-                f"{_line(location, event.start_mark)}: {event.tag}: "
-                "tags are not read; write the plain value"
-            )
-        if isinstance(event, yaml.CollectionStartEvent):
-            opened.append((anchor, 1))
-            if len(opened) > DEEPEST:
-                raise Fault(f"{_line(location, event.start_mark)}: {TOO_DEEP}")
-        elif isinstance(event, yaml.AliasEvent):
-            if anchor not in sizes:
-                raise Fault(
-                    f"{_line(location, event.start_mark)}: *{anchor}: stands for nothing before "
-                    "it, or for itself"
-                )
-            size = sizes[anchor]
-        elif isinstance(event, yaml.ScalarEvent):
-            sizes[anchor] = size = 1
-        elif isinstance(event, yaml.CollectionEndEvent):
-            anchor, size = opened.pop()
-            sizes[anchor] = size
-        opened[-1] = opened[-1][0], opened[-1][1] + size
-        if opened[-1][1] > MOST_NODES:
-            raise Fault(
-                f"{_line(location, event.start_mark)}: more than {MOST_NODES} values, aliases "
-                "counted as what they stand for"
-            )
 
 
 def check_known(name: Any, known: Iterable[Any], location: str) -> None:
@@ -171,10 +122,6 @@ def check_known(name: Any, known: Iterable[Any], location: str) -> None:
         raise Fault(f"{location}: {name}: unknown{closest(name, known)}")
 
 
-# More known words than this are not all listed, but only some that are most alike.
-MOST_LISTED, FEW_LISTED = 40, 10
-
-
 def closest(word: Any, known: Iterable[Any]) -> str:
     """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence
     about an unknown one.
@@ -182,7 +129,7 @@ def closest(word: Any, known: Iterable[Any]) -> str:
     words = sorted(map(str, known))
     near = difflib.get_close_matches(str(word), words, n=1)
     hint = f"; did you mean {near[0]}?" if near else ";"
-    if len(words) > MOST_LISTED:
-        listed = difflib.get_close_matches(str(word), words, n=FEW_LISTED, cutoff=0.0)
+    if len(words) > 40:
+        listed = difflib.get_close_matches(str(word), words, n=10, cutoff=0.0)
         return f"{hint} known: {', '.join(sorted(listed))} and {len(words) - len(listed)} others"
     return f"{hint} known: {', '.join(words) or 'none'}"

@@ -1,17 +1,14 @@
 """Mappings in files as frozen classes, one per kind of mapping, whose fields are the keys.
 
-They are built with pydantic. Snakemake has already loaded it when a study is read, so it adds
-nothing to the start-up time (msgspec would add 0.05 s), and it reports every fault as a record of
-kind, place and input, from which this module makes one line that names place, key, value and what
-would be right. msgspec stops at the first fault and then reports a misspelt key as a missing one.
-
-The description of a field is written once and serves three purposes: the message about a wrong
-value, the tables of config/README.md, and the reader of the class. The types below reject what
-`pydantic` would convert: a number stays the integer or the decimal that was written.
+They are built with pydantic, which reports every fault as a record of kind, place and input. This
+module makes of it one line that names place, key, value and what would be right. The description of
+a field is written once and serves three purposes: the message about a wrong value, the tables of
+config/README.md, and the reader of the class.
 """
 
 import math
 import re
+import textwrap
 import types
 import typing
 from collections.abc import Callable, Iterable, Iterator
@@ -21,9 +18,11 @@ from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
+    Field,
     PlainValidator,
     TypeAdapter,
     ValidationError,
+    WrapValidator,
     field_validator,
     model_validator,
 )
@@ -31,9 +30,6 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 from bezierplan.schema.checked import Fault, closest
-
-LONGEST_VALUE = 100
-"""Characters of a value that a message shows."""
 
 
 class Model(BaseModel):
@@ -74,7 +70,7 @@ class Model(BaseModel):
             raise wrong(_fault(error.errors(include_url=False)[0], field)) from None
 
     def plain(self, *without: str) -> dict[str, Any]:
-        """The mapping as written, in plain values, for jobs; some keys can be left out."""
+        """The mapping as written, in plain values; some keys can be left out."""
         fields = type(self).model_fields.items()
         entry = {
             field.alias or name: getattr(self, name)
@@ -96,35 +92,13 @@ def keys(model: type[Model]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
-def defaults(model: type[Model]) -> dict[str, Any]:
-    """Keys that a mapping can leave out -> the values that they then have, None for none."""
-    return {key: field.default for key, field in keys(model).items() if not field.is_required()}
-
-
 def plain(value: Any) -> Any:
-    """Models and named tuples as mappings, also inside lists and mappings; of a named tuple without
-    what has its default.
-    """
+    """Models as mappings, also inside lists and mappings."""
     if isinstance(value, Model):
         return value.plain()
-    if hasattr(value, "_asdict"):
-        absent, entry = value._field_defaults, value._asdict()
-        return {
-            name: plain(each)
-            for name, each in entry.items()
-            if name not in absent or each != absent[name]
-        }
     if isinstance(value, dict):
         return {key: plain(each) for key, each in value.items()}
-    return [plain(each) for each in value] if isinstance(value, list | tuple) else value
-
-
-J = TypeVar("J")
-
-
-def job(kind: type[J], params: Any) -> J:
-    """A job as the named tuple from before `plain`. Raises ValidationError for other content."""
-    return TypeAdapter(kind).validate_python(params)
+    return [plain(each) for each in value] if isinstance(value, list) else value
 
 
 def parsed(model: type[M], content: Any, location: str) -> M:
@@ -158,17 +132,24 @@ def expected(text: str) -> PydanticCustomError:
 
 def shown(value: Any) -> str:
     """A value as a message shows it."""
-    text = repr(value)
-    return text if len(text) <= LONGEST_VALUE else f"{text[: LONGEST_VALUE - 3]}..."
+    return textwrap.shorten(repr(value), 100, placeholder="...")
 
 
 _EXPECTED = {
     "string_type": "text",
     "bool_type": "true or false",
+    "int_type": "a whole number",
+    "float_type": "a number",
+    "finite_number": "a number",
     "list_type": "a list",
     "dict_type": "a mapping of names to values",
     "model_attributes_type": "a mapping",
+    "greater_than": "a number above {gt}",
+    "greater_than_equal": "a number of at least {ge}",
+    "less_than_equal": "a number of at most {le}",
+    "too_short": "a list of at least {min_length}",
 }
+"""By the kind of a fault in a value that has no description."""
 
 
 def _fault(fault: Any, field: FieldInfo | None) -> str:
@@ -176,18 +157,15 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
     context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
-    if fault["type"] == "expected" and field is None:
-        return f"{shown(value)}: expected {context['text']}"
     if fault["type"] == "literal_error" and isinstance(value, str):
         known = re.findall(r"'([^']*)'", context["expected"])
         return f"{value}: unknown{closest(value, known)}"
-    return (
-        f"{shown(value)}: expected "
-        f"{field.description if field else _EXPECTED.get(fault['type'], fault['msg'])}"
-    )
+    words = _EXPECTED.get(fault["type"])
+    wanted = words.format_map(context) if words else context.get("text", fault["msg"])
+    return f"{shown(value)}: expected {field.description if field else wanted}"
 
 
-# Types of values.
+# Types of values. Numbers stay as they are written: 20 is part of names, and 20.0 another one.
 
 
 def value(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
@@ -203,98 +181,46 @@ def value(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
 
 def is_number(entry: Any) -> bool:
     """Whether it is a finite number, and not a boolean."""
-    if isinstance(entry, int):
-        return not isinstance(entry, bool) and abs(entry) < 10**300  # the others are no floats
-    return isinstance(entry, float) and math.isfinite(entry)
+    return isinstance(entry, int | float) and not isinstance(entry, bool) and abs(entry) <= LARGEST
 
 
-def _is_whole(entry: Any) -> bool:
-    return isinstance(entry, int) and not isinstance(entry, bool)
+def is_line(entry: Any) -> bool:
+    """Whether it is one line of text that is not blank."""
+    return isinstance(entry, str) and bool(entry.strip()) and entry.isprintable()
 
 
-def _is_huge(entry: Any) -> bool:
-    return isinstance(entry, int) and abs(entry) >= 10**9
+def _as_written(entry: Any, check: Callable[[Any], Any]) -> Any:
+    check(entry)
+    return entry
 
 
-LONGEST_LINE = 600
-"""Characters of a text."""
-
-
-def is_line(entry: Any, longest: int = LONGEST_LINE) -> bool:
-    """Whether it is one line of printable text that is not blank, of at most so many characters."""
-    return (
-        isinstance(entry, str)
-        and bool(entry.strip())
-        and len(entry) <= longest
-        and entry.isprintable()
-    )
-
-
-LONGEST_LABEL, LONGEST_WORD = 80, 30
-"""Characters of a text that is printed in a figure or in the head of a table, and of a word in it:
-lines are broken at blanks.
-"""
 MOST = 1_000_000
 """Largest count: of repeats, of layouts, of cells."""
-SMALLEST, LARGEST = 1e-12, 1e12
-"""Size of a number other than 0: beyond, arithmetic with coordinates and lengths means nothing."""
+LARGEST = 1e12
+"""Largest coordinate, length or weight."""
 
 
-def sized(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
-    """A type of number, kept as written, of a size that can be meant."""
-
-    def check(entry: Any) -> Any:
-        if not (is_number(entry) and fits(entry)):
-            raise expected(wanted)
-        if entry and not SMALLEST <= abs(entry) <= LARGEST:
-            raise wrong(f"{shown(entry)}: expected a size from {SMALLEST:g} to {LARGEST:g}, or 0")
-        return entry
-
-    return PlainValidator(check)
+def number(**limits: float) -> Any:
+    """A type of number within limits: `gt`, `ge`, `le`."""
+    limits = {"ge": -LARGEST, "le": LARGEST} | limits
+    return Annotated[float, Field(**limits), WrapValidator(_as_written)]
 
 
-Number = Annotated[float, sized(lambda entry: True, "a number")]
-Positive = Annotated[float, sized(lambda entry: entry > 0, "a number above 0")]
-NotNegative = Annotated[float, sized(lambda entry: entry >= 0, "a number of at least 0")]
+def whole(low: int, high: int) -> Any:
+    """A limit on a whole number."""
+    return Field(ge=low, le=high)
 
 
-def whole(low: int, high: int) -> PlainValidator:
-    """A type of whole number, not true or false, between two limits that are part of it."""
-    return value(
-        lambda entry: _is_whole(entry) and low <= entry <= high,
-        f"a whole number from {low} to {high}",
-    )
-
-
+Number, Positive, NotNegative = number(), number(gt=0, ge=None), number(ge=0)
 Whole = Annotated[int, whole(0, MOST)]
 Count = Annotated[int, whole(1, MOST)]
 Decimals = Annotated[int, whole(0, 15)]
-
-
-def line(longest: int) -> PlainValidator:
-    """A type of text: one line, kept as written."""
-    return value(
-        lambda entry: is_line(entry, longest),
-        f"one line of text without control characters, not blank, at most {longest} characters",
-    )
-
-
-Line = Annotated[str, line(LONGEST_LINE)]
-Label = Annotated[
-    str,
-    value(
-        lambda entry: (
-            is_line(entry, LONGEST_LABEL) and max(map(len, entry.split())) <= LONGEST_WORD
-        ),
-        f"one line of text without control characters, not blank, at most {LONGEST_LABEL} "
-        f"characters, {LONGEST_WORD} a word",
-    ),
-]
-Flag = Annotated[bool, value(lambda entry: isinstance(entry, bool), "true or false")]
+Flag = bool
+Line = Annotated[str, value(is_line, "one line of text, not blank")]
 Scalar = Annotated[
     str | float | bool,
     value(
-        lambda entry: isinstance(entry, bool) or is_number(entry) or is_line(entry, LONGEST_LINE),
+        lambda entry: isinstance(entry, bool) or is_number(entry) or is_line(entry),
         "a word or a number",
     ),
 ]
@@ -304,49 +230,28 @@ Setting = Annotated[
     value(
         lambda entry: (
             entry is None
-            or is_line(entry, LONGEST_LINE)
-            or (isinstance(entry, int | float) and not math.isnan(entry) and not _is_huge(entry))
+            or is_line(entry)
+            or (isinstance(entry, int | float) and not math.isnan(entry))
         ),
         "a word, a number, true or false",
     ),
 ]
 """A value of a planner's setting, which may be infinite."""
 
-LONGEST_NAME = 100
-"""Characters of a name, which is part of paths."""
-DEVICES = frozenset(
-    {
-        "con",
-        "prn",
-        "aux",
-        "nul",
-        *(f"{port}{number}" for port in ("com", "lpt") for number in range(10)),
-    }
-)
-"""Names that no file can have on Windows."""
-
 
 def matching(pattern: str, wanted: str) -> PlainValidator:
-    """A type of text that a regular expression matches as a whole, and that a file or folder can be
-    called.
-    """
-
-    def check(entry: Any) -> Any:
-        if not (isinstance(entry, str) and re.fullmatch(pattern, entry)):
-            raise expected(wanted)
-        if len(entry) > LONGEST_NAME:
-            raise wrong(f"{shown(entry)}: {len(entry)} characters; expected at most {LONGEST_NAME}")
-        if entry in DEVICES:
-            raise wrong(f"{entry}: the name of a device on Windows; expected another one")
-        return entry
-
-    return PlainValidator(check)
+    """A type of text that a regular expression matches as a whole."""
+    return value(
+        lambda entry: isinstance(entry, str) and bool(re.fullmatch(pattern, entry)),
+        wanted,
+    )
 
 
 Name = Annotated[
     str,
     matching(
-        r"[a-z][a-z0-9_]*", "a name of lower-case letters, digits and _ that begins with a letter"
+        r"[a-z][a-z0-9_]{0,99}",
+        "a name of lower-case letters, digits and _ that begins with a letter",
     ),
 ]
 
@@ -354,12 +259,6 @@ Name = Annotated[
 def one_or_list(entry: Any) -> list:
     """A value, or a list of values, as a list."""
     return entry if isinstance(entry, list) else [entry]
-
-
-MOST_ENTRIES = 1000
-"""Entries of a list of names or values, and of a mapping of what has a name: methods, problems,
-claims, ...
-"""
 
 
 def identity(entry: Any) -> str:
@@ -371,53 +270,36 @@ def identity(entry: Any) -> str:
     return repr(float(entry) if is_number(entry) else entry)
 
 
-def at_most(number: int) -> AfterValidator:
-    """A limit on the entries of a list or mapping."""
-
-    def check(entry: Any) -> Any:
-        if len(entry) > number:
-            raise wrong(f"{len(entry)} entries; expected at most {number}")
-        return entry
-
-    return AfterValidator(check)
+def at_most(number: int) -> Any:
+    """A limit on the entries of a list."""
+    return Field(max_length=number)
 
 
-def listed(item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False) -> Any:
-    """A type of list without duplicates, kept as written; with `single`, also a lone item without a
-    list.
+def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
+    """A type of list without duplicates, or with `single` also of a lone item without a list, kept
+    as written.
     """
-    return Annotated[list[item], _distinct(item, least=least, most=most, single=single)]
+    distinct = Annotated[list[item], Field(min_length=least), AfterValidator(_distinct)]
+    if not single:
+        return distinct
+    several, lone = (TypeAdapter(each, config=ConfigDict(strict=True)) for each in (distinct, item))
+    return Annotated[
+        list[item],
+        PlainValidator(
+            lambda entry: (several if isinstance(entry, list) else lone).validate_python(entry)
+        ),
+    ]
 
 
-def _distinct(
-    item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False
-) -> PlainValidator:
-    adapter = TypeAdapter(list[item], config=ConfigDict(strict=True))
-
-    def check(entry: Any) -> Any:
-        if not isinstance(entry, list) and not single:
-            raise expected("a list")
-        if isinstance(entry, list) and len(entry) > most:
-            raise wrong(f"{len(entry)} entries; expected at most {most}")
-        try:
-            items = adapter.validate_python(one_or_list(entry))
-        except ValidationError:
-            if isinstance(entry, list):
-                raise
-            raise expected("a value or a list of values") from None
-        if isinstance(entry, list) and len(items) < least:
-            raise expected(f"a list of at least {least}")
-        texts: dict[str, None] = {}
-        for each in items:
-            if (text := identity(each)) in texts:
-                raise wrong(f"{shown(entry)}: {each!r} is listed twice")
-            texts[text] = None
-        return items if isinstance(entry, list) else items[0]
-
-    return PlainValidator(check)
+def _distinct(entry: list) -> list:
+    texts = [identity(each) for each in entry]
+    for number, text in enumerate(texts):
+        if text in texts[:number]:
+            raise wrong(f"{shown(entry)}: {entry[number]!r} is listed twice")
+    return entry
 
 
-Values = Annotated[list[Scalar], _distinct(Scalar, single=True)]
+Values = listed(Scalar, single=True)
 """A value of a column or a list of them."""
 
 
@@ -431,10 +313,7 @@ def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
             raise wrong(f"{key}: missing key; one of {', '.join(sorted(models))}")
         kind = entry[key]
         if not isinstance(kind, str) or kind not in models:
-            raise wrong(
-                f"{key}: {kind if isinstance(kind, str) else shown(kind)}: "
-                f"unknown{closest(kind, models)}"
-            )
+            raise wrong(f"{key}: {kind}: unknown{closest(kind, models)}")
         return models[kind].model_validate(entry)
 
     return PlainValidator(check)
@@ -446,11 +325,6 @@ def mapping_or(mapping: Any, other: Any) -> PlainValidator:
     return PlainValidator(
         lambda entry: (as_mapping if isinstance(entry, dict) else as_other).validate_python(entry)
     )
-
-
-def after(check: Callable[[Any], Any]) -> AfterValidator:
-    """A further check of a value that has passed the previous ones."""
-    return AfterValidator(check)
 
 
 # Names defined elsewhere.

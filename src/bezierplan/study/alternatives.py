@@ -31,16 +31,37 @@ def tried(study: Study) -> list[str]:
 
 def concerned(study: Study, assumption: Assumption) -> list[str]:
     """Methods whose setting an assumption governs, except baselines and variants; only those that
-    its default names, if any.
+    it names, if any.
     """
-    methods = [
+    of = assumption.methods or [
         name
         for name, method in study.methods.items()
         if name not in study.baselines and not method.variant_of
     ]
-    if isinstance(assumption.default, dict):
-        methods = [method for method in methods if method in assumption.default]
-    return [method for method in methods if assumption.setting in study.resolved(method)]
+    return [method for method in of if assumption.setting in study.resolved(method)]
+
+
+def default_of(study: Study, assumption: Assumption) -> Any:
+    """The value that runs use where an assumption leaves it to a setting: one for the methods
+    without a value of their own, or each of those that it names.
+    """
+    setting, methods = assumption.setting, concerned(study, assumption)
+    if setting is None:
+        return assumption.default
+    used = {
+        method: next(
+            (
+                settings[setting]
+                for problem in assumption.problems
+                if setting in (settings := study.problems[problem].settings)
+                and setting not in study.methods[method].settings
+            ),
+            study.resolved(method)[setting],
+        )
+        for method in methods
+    }
+    shared = [used[name] for name in methods if setting not in study.methods[name].settings]
+    return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 
 
 def methods_changed(study: Study, name: str) -> list[str]:
@@ -76,7 +97,7 @@ def headline_claims(study: Study, name: str) -> list[Claim]:
 def alternatives_described(study: Study) -> dict[str, Tried]:
     """What `analysis.sensitivity` prints about each alternative, by name."""
     return {
-        name: Tried(study.key, of.id, of.detail, of.setting, of.default, value)
+        name: Tried(study.key, of.id, of.detail, of.setting, default_of(study, of), value)
         for name, (of, value) in alternatives(study).items()
         if of.claims
     }

@@ -11,7 +11,6 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
 from bezierplan.schema.checked import closest
 from bezierplan.schema.model import (
-    Label,
     Line,
     Model,
     Name,
@@ -112,9 +111,7 @@ def _look(given: Any) -> str:
 class ArtefactsFile(Model):
     """The file."""
 
-    labels: dict[Line, Label] = Field(
-        {}, description="name → how it is printed, at most 80 characters, 30 a word"
-    )
+    labels: dict[Line, Line] = Field({}, description="name → how it is printed")
     looks: dict[Name, Annotated[str, PlainValidator(_look)]] = Field(
         {},
         description="name of a method → how it looks in every figure: "

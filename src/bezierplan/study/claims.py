@@ -8,18 +8,14 @@ each kind of check.
 import re
 from typing import Annotated, Any, Literal
 
-from annotated_types import MinLen
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.claim import Claim, ClaimId
 from bezierplan.schema.model import (
-    MOST_ENTRIES,
     Line,
     Model,
     Name,
     Setting,
-    at_most,
-    identity,
     listed,
     mapping_or,
     matching,
@@ -27,16 +23,11 @@ from bezierplan.schema.model import (
 )
 from bezierplan.study.experiments import PART, PART_EXPECTED, ProblemName
 
-MOST_ALTERNATIVES = 100
-"""Alternatives of one assumption."""
-
 
 class ClaimsFile(Model):
     """The file."""
 
-    claims: Annotated[list[Claim], at_most(MOST_ENTRIES)] = Field(
-        description="a list of claims", min_length=1
-    )
+    claims: list[Claim] = Field(description="a list of claims", min_length=1)
 
 
 class Assumption(Model):
@@ -46,11 +37,12 @@ class Assumption(Model):
         description="O or M and a number, such as O1; O1b for a second setting of the same point"
     )
     detail: Line = Field(description="what the paper leaves open, one line")
-    default: Annotated[Any, mapping_or(Annotated[dict[Name, Setting], MinLen(1)], Setting)] = Field(
-        description="the value that runs use; or method → value, and then the alternatives are for "
-        "these methods alone"
+    default: Annotated[Any, mapping_or(dict[Name, Setting], Setting)] = Field(
+        None,
+        description="the value that runs use; left out for a setting, whose value stands in "
+        "`experiments.yaml`",
     )
-    alternatives: listed(Setting, least=0, most=MOST_ALTERNATIVES) = Field(
+    alternatives: listed(Setting, least=0) = Field(
         description="a list of the other values that the setting can take; [] for none"
     )
     reason: Line = Field(description="why the default was chosen, one or two lines")
@@ -59,6 +51,9 @@ class Assumption(Model):
         "numbers then come nearest to printed ones, so that these confirm nothing) or assumed"
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
+    methods: listed(Name) = Field(
+        [], description="the methods for which alone the alternatives of a setting are"
+    )
     problems: listed(ProblemName) = Field(
         [],
         description="the problems on which alone the alternatives of a setting are tried; the "
@@ -83,36 +78,28 @@ class Assumption(Model):
 
     @model_validator(mode="after")
     def _check_setting(self) -> "Assumption":
-        defaults = {
-            identity(value)
-            for value in (
-                self.default.values() if isinstance(self.default, dict) else [self.default]
+        if self.setting is None and self.default is None:
+            raise wrong("default: missing key; the value that runs use, unless it is a setting's")
+        if self.setting is None and self.model_fields_set & {
+            "methods",
+            "problems",
+            "along",
+            "claims",
+        }:
+            raise wrong(
+                "setting: missing key; methods, problems, with and claims need the planner's "
+                "setting that is governed"
             )
-        }
         for value in self.alternatives:
-            if {identity(value)} == defaults:
-                raise wrong(f"alternatives: {value}: is the default; expected the other values")
             if self.setting is not None and not re.fullmatch(PART, str(value)):
                 raise wrong(
                     f"alternatives: {value!r}: is part of a file's name; expected "
                     f"{PART_EXPECTED}, or a number"
                 )
-        if self.setting and self.workspace:
-            raise wrong("setting: beside workspace; expected one of them")
-        if self.setting is None and self.problems:
-            raise wrong(
-                "problems: without setting; expected the planner's setting that is governed there"
-            )
-        if self.setting is None and self.model_fields_set & {"along", "claims"}:
-            raise wrong(
-                "setting: missing key; with and claims need the planner's setting that is governed"
-            )
         return self
 
 
 class AssumptionsFile(Model):
     """The file."""
 
-    assumptions: Annotated[list[Assumption], at_most(MOST_ENTRIES)] = Field(
-        description="a list of assumptions", min_length=1
-    )
+    assumptions: list[Assumption] = Field(description="a list of assumptions", min_length=1)

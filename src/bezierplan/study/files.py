@@ -2,28 +2,21 @@
 
 from pathlib import Path
 
-from bezierplan.schema.checked import LONGEST_FILE, Fault
+from bezierplan.schema.checked import Fault
 
 
 def inside(folder: Path, name: str, location: str) -> Path:
-    """A file in a study's folder. Raises Fault, beginning with a location, if it is missing, lies
-    outside the folder (also through a link), is not a regular file, or has more than `LONGEST_FILE`
-    bytes.
+    """A file in a study's folder. Raises Fault, beginning with a location, if it is missing, is not
+    a regular file, or lies outside the folder, also through a link.
     """
     file = folder / name
     try:
-        lies_inside = file.resolve().is_relative_to(folder.resolve())
-        if not lies_inside:
-            raise Fault(f"{location}: lies outside the study's folder; expected a file in it")
-        if not file.exists():
-            raise Fault(f"{location}: no such file in {file.parent.name or file.parent}")
-        if not file.is_file():
-            raise Fault(f"{location}: not a regular file")
-        size = file.stat().st_size
+        lies_inside, missing = file.resolve().is_relative_to(folder.resolve()), not file.is_file()
     except (OSError, ValueError) as error:
-        if isinstance(error, Fault):
-            raise
         raise Fault(f"{location}: cannot be read ({type(error).__name__})") from None
-    if size > LONGEST_FILE:
-        raise Fault(f"{location}: {size} bytes; expected at most {LONGEST_FILE}")
+    if not lies_inside:
+        raise Fault(f"{location}: lies outside the study's folder; expected a file in it")
+    if missing:
+        reason = "not a regular file" if file.exists() else "no such file"
+        raise Fault(f"{location}: {reason} in {file.parent.name or file.parent}")
     return file

@@ -19,6 +19,7 @@ from bezierplan.places import STUDIES, TREE
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.schema import checked
 from bezierplan.study import jobs
+from bezierplan.study.alternatives import default_of
 from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Job, Studies
@@ -189,7 +190,10 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
             if (figure := study.figures.get(name))
         },
         assumptions=[
-            AssumptionShown(**{name: getattr(each, name) for name in AssumptionShown._fields})
+            AssumptionShown(
+                **{name: getattr(each, name) for name in AssumptionShown._fields}
+                | {"default": default_of(study, each)}
+            )
             for each in study.assumptions
         ],
         files=[name for name, there in files.items() if there],

@@ -11,12 +11,11 @@ from typing import Any, TypeVar
 from bezierplan.places import STUDIES
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.schema.model import DEVICES, LONGEST_NAME, Model, parsed
+from bezierplan.schema.model import Model, parsed
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.experiments import ExperimentsFile
-from bezierplan.study.files import inside
 
 M = TypeVar("M", bound=Model)
 
@@ -145,11 +144,9 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
 def _read(folder: Path, name: str, model: type[M]) -> M | None:
     """A file of a study; None if it is missing, because all but the experiments are optional."""
     file = folder / f"{name}.yaml"
-    if name != "experiments" and not file.exists() and not file.is_symlink():
+    if name != "experiments" and not file.exists():
         return None
-    location = relative(file)
-    inside(folder, file.name, location)
-    return parsed(model, checked.read(file, location), location)
+    return parsed(model, checked.read(file, relative(file)), relative(file))
 
 
 def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
@@ -160,11 +157,6 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
     for key, study in given.items():
         location = relative(study.folder)
         check_name(key, f"{location}: {key}")
-        if {"{", "}"} & set(location):
-            raise Fault(
-                f"{location}: Snakemake reads braces as a pattern; expected a folder without "
-                "them; rename it"
-            )
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
             raise Fault(
                 f"{location}: config/studies has a study {key} already, whose results this one "
@@ -182,16 +174,8 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
 
 def check_name(key: str, location: str) -> None:
     """Raise Fault, beginning with a location, unless a study can have this name."""
-    if (
-        not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key)
-        or len(key) > LONGEST_NAME
-        or key.lower() in DEVICES
-    ):
-        wanted = (
-            f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the "
-            "name of a device"
-        )
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]{0,99}", key):
         raise Fault(
-            f"{location}: not a name of a study; "
-            f"expected {wanted}; choose another name for its folder"
+            f"{location}: not a name of a study; expected at most 100 letters, digits, _ and -, a "
+            "letter first; choose another name for its folder"
         )

@@ -11,7 +11,6 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field, PrivateAttr, model_validator
 
 from bezierplan.schema.model import (
-    LONGEST_LINE,
     Column,
     Experiment,
     Line,
@@ -31,7 +30,7 @@ from bezierplan.schema.model import (
 Group = Annotated[
     str | float,
     value(
-        lambda given: is_line(given, LONGEST_LINE) or is_number(given),
+        lambda given: is_line(given) or is_number(given),
         "a value of the column `across`, or rest",
     ),
 ]

@@ -14,7 +14,6 @@ from bezierplan.schema.model import (
     Names,
     Values,
     at_most,
-    line,
     listed,
     matching,
     one_of,
@@ -35,7 +34,7 @@ class Claim(Model):
 
     id: ClaimId = Field(description="C and a number, such as C1")
     place: Line = Field(description="where the paper says it")
-    statement: Annotated[str, line(160)] = Field(
+    statement: Line = Field(
         description="one plain sentence of at most 160 characters, in words of one's own"
     )
     artefact: listed(Annotated[Name, Names("artefact")], least=2, single=True) = Field(

@@ -1,6 +1,6 @@
 """Columns of the tables of claims, each declared once, as an annotated field of a named tuple: its
 type and its meaning. The order of columns in the files, and the tables in results/README.md
-(`python -m bezierplan.study.keys`), follow.
+(`python docs/tables_of_keys.py`), follow.
 """
 
 from typing import Annotated, NamedTuple

@@ -35,7 +35,6 @@ from bezierplan.schema.model import (
     Experiment,
     Flag,
     Function,
-    Label,
     Line,
     Metric,
     Model,
@@ -128,7 +127,7 @@ class Panel(Model, ABC):
     fewest_methods: ClassVar[int] = 1
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
-    title: Label = Field(
+    title: Line = Field(
         None, description="one line above the panel, at most 80 characters, 30 a word"
     )
     each: list[dict[str, Any]] = Field(None, min_length=2, description=EACH)

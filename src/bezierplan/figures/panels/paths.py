@@ -22,7 +22,6 @@ from bezierplan.schema.model import (
     Column,
     Experiment,
     Flag,
-    Label,
     Line,
     Metric,
     Model,
@@ -160,7 +159,7 @@ class Options(RunsPanel):
         False,
         description="whether only the workspace with start and target is drawn, true or false",
     )
-    letters: list[Label] = Field(
+    letters: list[Line] = Field(
         None,
         description="what is written next to start and target: a list of two",
         min_length=2,

@@ -34,7 +34,6 @@ from bezierplan.schema.model import (
     NotNegative,
     Number,
     Positive,
-    after,
     is_line,
     is_number,
     keys,
@@ -49,7 +48,7 @@ from bezierplan.workspaces.text_file import read_text
 
 def _is_file_name(entry: Any) -> bool:
     """Whether it can be a file's name, which Snakemake does not read as a pattern."""
-    return is_line(entry, 200) and not set("{}*?[]\\") & set(entry)
+    return is_line(entry) and not set("{}*?[]\\") & set(entry)
 
 
 _IS_FILE = value(_is_file_name, "the name of a file, without { } * ? [ ]")
@@ -71,7 +70,7 @@ def of_length(length: int, wanted: str) -> AfterValidator:
             raise wrong(f"{given!r}: expected {wanted}")
         return given
 
-    return after(check)
+    return AfterValidator(check)
 
 
 Size = Annotated[

@@ -1,5 +1,5 @@
 """The tables of keys in config/README.md, generated from the models, and those of columns in
-results/README.md, from their declarations: `python -m bezierplan.study.keys` updates them, and a
+results/README.md, from their declarations: `python docs/tables_of_keys.py` updates them, and a
 test ensures that they are up to date.
 """
 

@@ -1,0 +1,5 @@
+extra = ("roads",)
+
+
+def plan(problem, rng, *, tries: int):
+    pass
