@@ -169,12 +169,14 @@ class Study:
         return [file] if file else self.published_files()
 
     def published_drawn(self, figure: str) -> list[str]:
-        """Files of published numbers that a figure draws."""
-        drawn = any(
-            panel.published_drawn or getattr(panel, "published", False)
-            for panel in self.figures[figure].panels
-        )
-        return self.published_files() if drawn else []
+        """Files of published numbers that a figure draws: the tables that its panels name, or all
+        for functions that ask for them.
+        """
+        panels, files = self.figures[figure].panels, self.published_files()
+        if any(getattr(panel, "published", False) for panel in panels):
+            return files
+        tables = {getattr(panel, "printed", None) for panel in panels}
+        return [file for file in files if Path(file).stem in tables]
 
     def published_files(self) -> list[str]:
         """All files of published numbers, relative to the working folder."""

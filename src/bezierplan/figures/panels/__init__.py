@@ -139,11 +139,6 @@ class Panel(Model, ABC):
         """What it draws from, as `data` of its kind takes it."""
 
     @property
-    def published_drawn(self) -> bool:
-        """Whether published numbers are drawn: of the table that its key `printed` names."""
-        return getattr(self, "printed", None) is not None
-
-    @property
     def place(self) -> str:
         """Where it stands in the list of panels in the file: the keys that lead to it."""
         return self._place

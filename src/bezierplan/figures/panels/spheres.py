@@ -160,6 +160,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up]
     )
     workspaces.shade(axes, flat)
+    room = flat["size"].max()
+    for name, places in flat.loc[flat["part"] != "corner", ["x", "y"]].items():
+        axes.set(**{f"{name}lim": (places.min() - room, places.max() + room)})
     axes.set_xlabel(f"{across} ({unit})")
     axes.set_ylabel(f"{up} ({unit})")
     style.draw_parts(axes, flat, _LOOK)
