@@ -164,7 +164,8 @@ def given_to(job: Job, key: str, **more: Any) -> dict[str, Any]:
 
 def files_of(study: Study) -> Any:
     """Files of all runs of a study, its problems and bounds, in the working folder."""
-    job = jobs.TableOfRuns.of({study.key: study}, SCALE, study.key, "lengths")
+    methods = study.methods_of("all")
+    job = SimpleNamespace(shows={"all": jobs.chunks_of(study, "all", methods, SCALE)})
     return experiments(job.shows, SimpleNamespace(**given_to(job, study.key)))["all"]
 
 
@@ -217,6 +218,7 @@ def _gathering_one(given: Studies, key: str) -> Iterator[Made]:
                 ("table", "csv"),
                 ("comparison", "comparison.csv"),
                 ("published", "published.csv"),
+                ("marks", "marks.csv"),
             )
         }
         yield Made(job, given_to(job, key, published=published), output)

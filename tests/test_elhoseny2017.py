@@ -80,7 +80,7 @@ def test_the_example_agrees_with_the_text():
     assert (mark, interval, units) == ("+", None, 3)
     assert effect == pytest.approx(1 / 9 - 0.11, abs=1e-12)
     changed = PUBLISHED["table1"].copy()
-    changed.loc[0, "value"] = 1 - changed.loc[0, "value"]
+    changed.loc[0, "1"] = 1 - changed.loc[0, "1"]
     assert elhoseny2017.q_example({}, {}, PUBLISHED | {"table1": changed})[0] == "-"
 
 

@@ -1,5 +1,5 @@
-# Tables, laid out like the paper's; published.csv holds the printed numbers in the same rows and
-# columns, comparison.csv each of them next to ours.
+# Tables in the paper's form; published.csv holds the printed numbers in the same rows and columns,
+# marks.csv the verdicts, comparison.csv each printed number next to ours.
 
 
 rule table:
@@ -18,6 +18,7 @@ rule table:
             caption="../report/artefact.rst",
         ),
         published=f"{RESULTS}/{{tree}}/{{table}}.published.csv",
+        marks=f"{RESULTS}/{{tree}}/{{table}}.marks.csv",
         comparison=report(
             f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
             category="{study}",
@@ -40,7 +41,7 @@ rule table:
         "../scripts/job.py"
 
 
-# Of numbers that no paper prints.
+# Of numbers that no paper prints, or of more than it prints.
 use rule table as unprinted_table with:
     input:
         runs=read(
@@ -48,6 +49,9 @@ use rule table as unprinted_table with:
         ),
         problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        published=of_study(
+            lambda study, job: list(filter(None, [study.published_file(job.table)]))
+        ),
     output:
         table=report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
@@ -95,6 +99,11 @@ rule listing:
 rule latex:
     input:
         table=f"{RESULTS}/{{tree}}/{{table}}.csv",
+        beside=lambda wildcards: [
+            f"{RESULTS}/{{tree}}/{{table}}.{kind}.csv"
+            for kind in ("published", "marks")
+            if wildcards.table in STUDIES[wildcards.study].with_published()
+        ],
     output:
         f"{RESULTS}/{{tree}}/{{table}}.tex",
     log:

@@ -134,7 +134,7 @@ def compare(
     them. name: `study/table`, which seeds each row's random draws.
     """
     key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
-    keys = key_columns + [key for key in spec.key_columns if key not in key_columns]
+    keys = list(dict.fromkeys([*key_columns, *spec.key_columns, *spec.primary]))
     methods = one_or_list(spec.where.get("method", []))
     beside = _beside(methods, variant_of, baselines) if "method" in keys else []
     spec = spec.but(where=spec.where | {"method": methods + beside}) if beside else spec

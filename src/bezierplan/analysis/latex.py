@@ -1,6 +1,7 @@
 """Tables as LaTeX, ready to be read by a paper that loads `booktabs` and `graphicx`."""
 
 import itertools
+from collections.abc import Sequence
 
 import pandas as pd
 
@@ -21,9 +22,27 @@ _MOST_COLUMNS = 7
 _LEVEL = ": "
 
 
-def document(table: pd.DataFrame, caption: str, label: str) -> str:
+MARKS = {"agrees": "+", "disagrees": "x", "inconclusive": "?", "identified": "="}
+LEGEND = "Above: printed. Below: ours; " + ", ".join(
+    f"{mark} {verdict}" for verdict, mark in MARKS.items()
+)
+
+
+def laid_over(ours: pd.DataFrame, printed: pd.DataFrame, marks: pd.DataFrame) -> pd.DataFrame:
+    """Two tables of the same shape as one: in each cell the printed number, below it ours with the
+    mark of its verdict. Heads of rows stay.
+    """
+    over = ours.copy()
+    for column in ours.columns[(ours != printed).any() | (marks != printed).any()]:
+        below = ours[column] + " " + marks[column].map(MARKS).fillna("")
+        over[column] = printed[column].replace("", "-") + "\n" + below.str.strip()
+    return over
+
+
+def document(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str] = ()) -> str:
     """A table with rules as of a book: numbers on the right, and columns whose names begin alike
-    below a common head. table: all text, as in its csv file. label: what `\\ref` takes.
+    below a common head. table: all text, as in its csv file. label: what `\\ref` takes. notes: what
+    stands below it.
 
     >>> lengths = pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]})
     >>> print(document(lengths, "Lengths in %", "tab:x"))
@@ -42,12 +61,15 @@ def document(table: pd.DataFrame, caption: str, label: str) -> str:
     \\end{table}
     <BLANKLINE>
     """
-    sides = "".join("r" if _is_number(table[column]) else "l" for column in table)
+    sides = "".join(
+        "r" if _is_number(table[column].str.split("\n").str[0]) else "l" for column in table
+    )
     cells = map(_row, table.itertuples(index=False))
     rows = ["\\toprule", *_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]
     body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in rows), "\\end{tabular}"]
     if len(table.columns) > _MOST_COLUMNS:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
+    body += [f"\\par\\footnotesize {escaped(note)}." for note in notes]
     head = [
         "\\centering",
         f"\\caption{{{escaped(caption)}}}",
@@ -63,7 +85,13 @@ def escaped(text: str) -> str:
 
 
 def _row(cells: tuple) -> str:
-    return " & ".join(escaped(str(cell)) for cell in cells) + " \\\\"
+    """Cells of a row; one of two lines is a stack."""
+    texts = [escaped(str(cell)) for cell in cells]
+    stacks = [
+        "\\shortstack[r]{" + text.replace("\n", " \\\\ ") + "}" if "\n" in text else text
+        for text in texts
+    ]
+    return " & ".join(stacks) + " \\\\"
 
 
 def _heads(names: list[str]) -> list[str]:

@@ -48,6 +48,7 @@ class Table(Model):
     """Keys common to all kinds of table."""
 
     title: Line = Field(description="one line")
+    note: Line = Field(None, description="a footnote, one line; left out: none")
 
 
 class TableValue(Model):
@@ -134,10 +135,19 @@ class Pivot(Table):
         description="a list of {metric, statistic, label, decimals}, and perhaps `where`",
         min_length=1,
     )
+    labels: dict[Line, Label] = Field(
+        {}, description="name → how this table prints it, where that differs from the study's label"
+    )
     published: PublishedFile = Field(
         None,
         description="a file in the study's folder `published` to compare with: letters, digits, _ "
-        "and -, then .csv",
+        "and -, then .csv; the table then has the paper's form: the paper's methods alone, in its "
+        "interpretation (`primary`), and the printed numbers in the same rows and columns",
+    )
+    extends: Annotated[Name, Names("compared")] = Field(
+        None,
+        description="a table with published numbers: they are compared with the runs of this table "
+        "as well, of which there are more: variants, baselines, other interpretations",
     )
     reads: dict[Name, Metric] = Field(
         {},
@@ -167,8 +177,8 @@ class Pivot(Table):
     )
     primary: Where = Field(
         {},
-        description="column → the value whose rows count as the paper's interpretation in the "
-        "summary; left out: all rows",
+        description="column → the value that is the paper's interpretation, the only one that a "
+        "table with published numbers shows; left out: all",
     )
 
     @model_validator(mode="after")
@@ -190,6 +200,11 @@ class Pivot(Table):
                 "reads: the table has no published numbers, whose metrics it names; leave it out"
             )
         return self
+
+    @property
+    def printed(self) -> bool:
+        """Whether it has the form that the paper prints."""
+        return bool(self.published) and not self.extends
 
     @property
     def key_columns(self) -> list[str]:

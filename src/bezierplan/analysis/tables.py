@@ -5,6 +5,7 @@ Rows and columns are values of columns of the runs table, entries of `values`, a
 is needed to distinguish numbers but not named as index or column becomes a level of the columns.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,6 +14,9 @@ import pandas as pd
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.results import Results, select
 from bezierplan.analysis.table_kinds import Pivot
+
+SIGNIFICANT = 3
+"""Digits that a number has at least where a paper's table holds ours."""
 
 
 def in_order(table: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
@@ -144,7 +148,8 @@ def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame
     """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
     labels: how names are printed. Column levels are joined into one name, such as `objective value:
-    smooth`; index levels stay columns of the csv file. Where some runs have no value, a column
+    smooth`; index levels stay columns of the csv file. A table of the paper's form has at least
+    `SIGNIFICANT` digits, except for counts; in any other, where some runs have no value, a column
     beside the values says how many have one (`_with_counts`).
     """
     index, columns = _levels(spec)
@@ -153,7 +158,11 @@ def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame
     table["statistic"] = pd.Categorical(table["statistic"], categories=list(order), ordered=True)
     numbers_behind = zip(table["statistic"], table["numbers"], table["decimals"])
     table["text"] = [
-        _printed(statistics.statistic(name, numbers), decimals)
+        _printed(
+            statistics.statistic(name, numbers),
+            decimals,
+            SIGNIFICANT if spec.printed and name != "count" else 0,
+        )
         for name, numbers, decimals in numbers_behind
     ]
     rows, heads = (
@@ -175,16 +184,21 @@ def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame
         for levels in heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
     ]
     wide.columns = [": ".join(levels) for levels in heads.itertuples(index=False)]
-    wide = _with_counts(wide, counted, asked, stems)
+    if not spec.printed:
+        wide = _with_counts(wide, counted, asked, stems)
     wide.index = _index(rows.rename(columns=labels))
     return wide
 
 
-def printed(file: str, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame:
-    """The numbers of a file of published numbers, in the rows and columns of their table, as the
-    paper prints them.
+def alike(
+    rows: pd.DataFrame, spec: Pivot, labels: dict[str, str], like: pd.DataFrame
+) -> pd.DataFrame:
+    """Texts in the rows and columns of their table, empty where there is none.
+
+    rows: the columns of a file of published numbers, or of a comparison with them, and the text of
+    each as `value`. like: the table, as from `pivot`.
     """
-    numbers = pd.read_csv(file, dtype=str, keep_default_na=False)
+    numbers = rows.astype(str)
     titles = {entry.metric: entry.label for entry in reversed(spec.values)}
     numbers = numbers.rename(columns={"value": "number"}).assign(
         value=[titles.get(spec.reads.get(name, name), name) for name in numbers["metric"]]
@@ -196,7 +210,8 @@ def printed(file: str, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame:
         values="number", index=index, columns=columns, aggfunc="first", sort=False
     )
     wide.columns = [": ".join([name] if isinstance(name, str) else name) for name in wide.columns]
-    return wide
+    placed = wide.reindex(index=like.index, columns=like.columns)
+    return placed.astype(object).fillna("")
 
 
 def _with_counts(
@@ -254,6 +269,12 @@ def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd
     return pd.Series(names, index=level.index, dtype=object)
 
 
-def _printed(number: float, decimals: int) -> str:
-    """A number with the given decimals; empty for NaN."""
-    return "" if np.isnan(number) else f"{number:.{decimals}f}"
+def _printed(number: float, decimals: int, significant: int) -> str:
+    """A number with the given decimals, more if it needs them for its significant digits; empty for
+    NaN.
+    """
+    if np.isnan(number):
+        return ""
+    if significant and number:
+        decimals = max(decimals, significant - 1 - math.floor(math.log10(abs(number))))
+    return f"{number:.{decimals}f}"

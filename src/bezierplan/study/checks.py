@@ -56,6 +56,7 @@ def check(study: Study) -> None:
         _check_names(design, functions, table, where)
         if isinstance(table, Pivot) and table.published:
             published.check(design, table, where)
+            design.check_where([table.experiment], table.primary, f"{where}: primary")
         if isinstance(table, Comparison):
             _check_comparison(design, table, where)
     for name, figure in study.figures.items():

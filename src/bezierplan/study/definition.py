@@ -150,9 +150,19 @@ class Study:
         """The tables of runs, which are compared with published numbers; the others have none."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
+    def whole(self, table: str) -> Pivot:
+        """A table of runs with what the one that it extends says of published numbers."""
+        spec = self.compared()[table]
+        if not spec.extends:
+            return spec
+        printed = self.compared()[spec.extends]
+        shared = ("published", "reads", "within", "primary", "identify")
+        return spec.but(**{name: getattr(printed, name) for name in shared})
+
     def published_file(self, table: str) -> str | None:
         """The file of a table's published numbers relative to the working folder, or None."""
-        file = getattr(self.tables[table], "published", None)
+        spec = self.tables[table]
+        file = getattr(self.tables[getattr(spec, "extends", None) or table], "published", None)
         return file and relative(self.folder / "published" / file)
 
     def with_published(self) -> dict[str, Pivot]:

@@ -287,12 +287,18 @@ def experiments_of(study: Study, artefact: str) -> list[str]:
 
 
 def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
-    """Methods of an experiment whose runs an artefact needs: all for a table (the comparison shows
-    them), for a figure those it selects, including baselines if named.
+    """Methods of an experiment whose runs an artefact needs: for a table of the paper's form those
+    it selects, for another all (the comparison shows them), for a figure those it selects,
+    including baselines if named.
     """
-    if artefact in study.tables:
-        return study.methods_of(experiment)
     methods = study.experiments[experiment].methods
+    if artefact in study.tables:
+        spec = study.compared()[artefact]
+        return (
+            one_or_list(spec.where.get("method", methods))
+            if spec.printed
+            else study.methods_of(experiment)
+        )
     needed = set()
     for panel in study.figures[artefact].panels:
         if getattr(panel, "experiment", None) == experiment:
@@ -331,7 +337,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
     return {
         name: label for name, label in study.labels.items() if name in shown or name not in names
-    }
+    } | spec.get("labels", {})
 
 
 @dataclass(frozen=True)
@@ -339,7 +345,7 @@ class TableOfRuns(Job):
     """A table of runs, and its comparison with published numbers."""
 
     name: str
-    """`study/table`."""
+    """`study/table`, of the table that it extends, so that equal rows have equal numbers."""
     spec: Pivot
     """Without its title, which stands in the caption alone."""
     labels: dict[str, str]
@@ -355,22 +361,22 @@ class TableOfRuns(Job):
     def of(cls, studies, scale, study, table, tree=""):
         """The table of a name."""
         own = studies[study]
-        spec = own.compared()[table]
+        spec = own.whole(table)
         experiment = own.experiments[spec.experiment]
         # The experiment's own methods unless the table selects some: baselines appear only in the
-        # comparison.
+        # comparison, and there with variants, unless the table has the paper's form.
         where = {"method": experiment.methods} | spec.where
+        if spec.printed:
+            where |= spec.primary
+        more = {} if spec.printed else own.variants()
+        baselines = [] if spec.printed else own.methods_of(spec.experiment)
         file = own.published_file(table)
         return cls(
-            name=f"{study}/{table}",
-            spec=spec.but(title=table, monotone=[], fitted=[], where=where),
+            name=f"{study}/{spec.extends or table}",
+            spec=spec.but(title=table, note=None, labels={}, monotone=[], fitted=[], where=where),
             labels=labels_of(own, table),
-            variants={
-                name: method
-                for name, method in own.variants().items()
-                if name in experiment.methods
-            },
-            baselines=[name for name in own.methods_of(spec.experiment) if name in own.baselines],
+            variants={name: method for name, method in more.items() if name in experiment.methods},
+            baselines=[name for name in baselines if name in own.baselines],
             repeats=experiment.repeats[scale],
             published=content_digest(file) if file else "",
             shows=shown_by(own, table, scale),
@@ -378,6 +384,8 @@ class TableOfRuns(Job):
 
     def run(self, given, made, threads):
         """Make the table and its comparison."""
+        import pandas as pd
+
         from bezierplan.analysis import comparison, results, tables
         from bezierplan.running import inputs
 
@@ -388,10 +396,15 @@ class TableOfRuns(Job):
         compared = comparison.compare(
             runs, self.spec, published, self.variants, self.baselines, self.name
         )
-        tables.pivot(runs, self.spec, self.labels).to_csv(made.table, lineterminator="\n")
-        if file:
-            printed = tables.printed(file, self.spec, self.labels)
-            printed.to_csv(made.published, lineterminator="\n")
+        table = tables.pivot(runs, self.spec, self.labels)
+        table.to_csv(made.table, lineterminator="\n")
+        if self.spec.printed:
+            compared = compared[compared["value_published"].notna()]
+            numbers = pd.read_csv(file, dtype=str, keep_default_na=False)
+            verdicts = compared.assign(value=compared["verdict"].fillna(""))
+            for rows, laid in ((numbers, made.published), (verdicts, made.marks)):
+                laid_out = tables.alike(rows, self.spec, self.labels, like=table)
+                laid_out.to_csv(laid, lineterminator="\n")
         compared.to_csv(made.comparison, index=False, float_format="%.10g", lineterminator="\n")
 
 
@@ -434,15 +447,19 @@ class TableWithoutRuns(Job):
 
 @dataclass(frozen=True)
 class Latex(Job):
-    """A table as LaTeX, with its caption, which alone holds the title."""
+    """A table as LaTeX, with its caption, which alone holds the title. One of the paper's form has
+    the printed numbers in the same cells.
+    """
 
     label: str
     caption: str
+    note: str | None
 
     @classmethod
     def of(cls, studies, scale, study, table, tree=""):
         """The table of a name."""
-        return cls(f"{study}-{table}", caption(studies[study], table, scale))
+        own = studies[study]
+        return cls(f"{study}-{table}", caption(own, table, scale), own.tables[table].note)
 
     def run(self, given, made, threads):
         """Set the table."""
@@ -450,8 +467,14 @@ class Latex(Job):
 
         from bezierplan.analysis import latex
 
-        table = pd.read_csv(given.table, dtype=str, keep_default_na=False)
-        text = latex.document(table, self.caption, f"tab:{self.label}")
+        table, *beside = (
+            pd.read_csv(file, dtype=str, keep_default_na=False)
+            for file in [given.table, *given.beside]
+        )
+        notes = [self.note] if self.note else []
+        if beside:
+            table, notes = latex.laid_over(table, *beside), [latex.LEGEND, *notes]
+        text = latex.document(table, self.caption, f"tab:{self.label}", notes)
         Path(made[0]).write_text(text, encoding="utf-8")
 
 

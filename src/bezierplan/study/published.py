@@ -63,10 +63,8 @@ def keys(study: Study, table: Pivot) -> list[str]:
     """The columns that tell the rows of a table's comparison apart."""
     file = study.folder / "published" / table.published if table.published else None
     header = read(file).header if file else []
-    levels = [
-        level for level in (*table.index, *table.columns) if level not in ("value", "statistic")
-    ]
-    return list(dict.fromkeys([*(column for column in header if column not in COLUMNS), *levels]))
+    named = [column for column in header if column not in COLUMNS]
+    return list(dict.fromkeys([*named, *table.key_columns, *table.primary]))
 
 
 def check(design: Design, table: Pivot, location: str) -> None:

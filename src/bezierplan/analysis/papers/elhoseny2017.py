@@ -35,8 +35,7 @@ def said(published: "Published") -> dict[str, float]:
 def solutions(published: "Published") -> dict[str, np.ndarray]:
     """Table 1: the genes (10,) of each solution."""
     return {
-        name: rows.sort_values("gene")["value"].to_numpy()
-        for name, rows in published["table1"].groupby("solution")
+        name: row.to_numpy() for name, row in published["table1"].set_index("solution").iterrows()
     }
 
 
