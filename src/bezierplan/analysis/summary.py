@@ -144,7 +144,7 @@ def report(
         "it bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
         "gives one. Here each claim has its verdict under the default interpretation; "
-        "`numbers.csv` and `claims.csv` have the others too.",
+        "`claims.csv` has the others too.",
         *baseline_comparison.section(measured, titles),
     ]
     for study, title in titles.items():
