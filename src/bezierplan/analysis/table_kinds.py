@@ -135,7 +135,7 @@ class Pivot(Table):
         description="a list of {metric, statistic, label, decimals}, and perhaps `where`",
         min_length=1,
     )
-    labels: dict[Line, Label] = Field(
+    labels: dict[Line, Line] = Field(
         {}, description="name → how this table prints it, where that differs from the study's label"
     )
     published: PublishedFile = Field(
