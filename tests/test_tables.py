@@ -387,6 +387,31 @@ def test_without_another_method_a_tenth_is_what_matters():
     assert (found["power"], found["verdict"]) == (1.0, "agrees")
 
 
+@pytest.mark.parametrize(
+    ("published", "ends", "bound", "verdict"),
+    [
+        (10.5, (8.0, 10.9), 1.0, "agrees"),  # 11 is excluded
+        (10.5, (9.5, 11.5), 1.0, "inconclusive"),  # 9 is, on the other side
+        (9.5, (9.1, 11.5), 1.0, "agrees"),
+        (9.5, (9.1, 11.5), 9.05, "inconclusive"),  # but no run has 9
+    ],
+)
+def test_the_number_that_matters_lies_on_the_side_of_the_published_one(
+    published, ends, bound, verdict
+):
+    cell = {"metric": "objective", "statistic": "mean", "value_published": published}
+    cell |= {"bound": bound, "least": -math.inf, "most": math.inf, "decimals": 2}
+    found = comparison._judged(cell, True, 10.0, ends, 10, np.empty(0))
+    assert found["verdict"] == verdict
+
+
+def test_other_methods_below_the_bound_do_not_count():
+    cell = {"metric": "length", "statistic": "mean", "value_published": 10.5}
+    cell |= {"bound": 9.0, "least": 9.0, "most": math.inf, "decimals": 2}
+    rivals = np.array([1.0, 2.0, 10.0, 10.2])
+    assert comparison._judged(cell, True, 10.0, (9.5, 11.5), 10, rivals)["power"] == 0
+
+
 def test_number_that_the_metric_cannot_have_is_not_possible():
     spec = SPEC | {
         "values": [{"metric": "evaluations", "statistic": "mean", "label": "e", "decimals": 0}]

@@ -21,14 +21,12 @@ import pandas as pd
 from bezierplan.analysis import identified, possible
 from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked, place
 from bezierplan.analysis.jobs import AuditJob
-from bezierplan.analysis.metrics import METRICS, Metric
+from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
 from bezierplan.analysis.results import groups, published_table
 from bezierplan.analysis.table_kinds import Layout, Monotone
 from bezierplan.running import problems
 
-# Metrics that are path lengths or never less, and their statistics that need not be the value of
-# any single path.
-_AT_LEAST_A_LENGTH = ("length", "objective")
+# Statistics that need not be the value of any single path.
 _SPREADS = ("std", "iqr", "range")
 
 # From the lowest to the highest.
@@ -63,7 +61,7 @@ def below_bound(
     for name, table in tables.items():
         keys = _keys(table)
         for _, row in table[
-            table["metric"].isin(_AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
+            table["metric"].isin(AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)
         ].iterrows():
             bound = bounds[name]["bound"].get(
                 _problem(primary.get(name, {}) | row.to_dict(), bounds[name]), math.nan

@@ -28,8 +28,8 @@ number. Columns:
   empty for times, and below six runs
 - can_fail: whether a number on the published one's side of ours could have been rejected
   (`statistics.can_fail`)
-- power: share of the numbers that matter (`_rivals`) that would have been rejected instead of the
-  published one
+- power: share of the numbers that matter (`_rivals`), without those that no run can have, that
+  would have been rejected instead of the published one
 - identified: cells of the paths whose length the published number is to the last digit
   (`identified`), and the chance of a match
 - verdict: identified; disagrees; inconclusive; agrees
@@ -66,8 +66,8 @@ agrees.
 """
 
 MATTERS = 0.1
-"""Where the paper prints too few numbers of other methods in a place, numbers that differ from ours
-by this share are those that matter.
+"""Where the paper prints too few numbers of other methods in a place, the number that differs from
+ours by this share, on the side of the published one, is the one that matters.
 """
 
 LEAST_RIVALS = 2
@@ -79,7 +79,7 @@ VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
 
 NO_END = "interval without an end on that side"
 TOO_WIDE = "interval that contains most numbers of the competing methods"
-OFF_OURS = f"interval that contains numbers {100 * MATTERS:g} % off ours"
+OFF_OURS = f"interval that contains the number {100 * MATTERS:g} % off ours, or no run has it"
 """Why a number in the interval is inconclusive: the test could not have failed, or has no power
 against printed numbers, or against ours.
 """
@@ -350,9 +350,16 @@ def _judged(
         return judged | {"can_fail": None}
     ends = (predicted[0] - half, predicted[1] + half)
     can_fail = not in_range or statistics.can_fail(published, ours, predicted, limits)
+    # To exclude a number that no run can have, or one on the other side of ours, says nothing.
+    least = row["bound"] if row["metric"] in metrics.AT_LEAST_A_LENGTH else -math.inf
+    near = np.array([ours * (1 + math.copysign(MATTERS, (published - ours) * ours))])
+    rivals, near = (
+        numbers[~((numbers < max(limits[0], least) - half) | (numbers > limits[1] + half))]
+        for numbers in (rivals, near)
+    )
     enough = len(rivals) >= LEAST_RIVALS
-    others = rivals if enough else ours * np.array([1 - MATTERS, 1 + MATTERS])
-    power = statistics.power(others, ends)
+    others = rivals if enough else near
+    power = statistics.power(others, ends) if len(others) else 0.0
     if not in_range or (can_fail and power >= LEAST_POWER):
         why = ""
     else:

@@ -107,6 +107,9 @@ _CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
 _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 
 
+AT_LEAST_A_LENGTH = ("length", "objective")
+"""Metrics that are path lengths or never less."""
+
 METRICS |= {
     "objective": Metric("u", "final value of the planner's objective"),
     "length": Metric("u", "exact arc length", feasible_only=True, least="bound"),
