@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from studies import FOLDER, drawing
 
-from bezierplan.analysis import identified, measures
+from bezierplan.analysis import audit, identified, measures
 from bezierplan.analysis.claims import verdicts
 from bezierplan.analysis.sensitivity import changed
 from bezierplan.analysis.table_kinds import Identify
@@ -164,3 +164,26 @@ def test_drawn_paths_of_song2016_have_the_printed_length(ends):
     for _, line in marks[marks["mark"] == "line"].groupby("group"):
         length = np.hypot(*np.diff(line[["x", "y"]].to_numpy(), axis=0).T).sum()
         assert length == pytest.approx(printed, abs=5e-5)
+
+
+def test_seven_minima_of_ma2020_are_straight_and_diagonal_moves_and_no_maximum_is():
+    square = Problem("", from_lines(["." * 20] * 20, 1.0, "cell"), (0.0, 0.0), (20.0, 20.0))
+    problems, found = {f"environment{n}": square for n in (1, 2)}, {}
+    for n in (1, 2):
+        published = audit.read_published(FOLDER / f"ma2020/published/table{n}.csv")
+        for statistic in ("min", "max"):
+            where = {"method": ["aco", "ga", "aco_ga", "asfa_ga"]}
+            told = {"metric": "length", "statistic": statistic, "where": where, "because": "cells"}
+            entry = Identify(**told, diagonal=1.414)
+            *rows, together = identified.of_table(f"table{n}", published, [entry], problems)
+            found[statistic] = found.get(statistic, 0) + together["printed"]
+            if statistic == "min":
+                assert chance_of(together) < 1e-5
+    assert found == {"min": 7, "max": 0}
+    assert rows[3]["printed"] == 34.7728
+    moves = identified.of_moves(square, 32.3821, 1.414)
+    assert (moves.paths, moves.length) == ([(14, 13)], pytest.approx(32.382))
+    assert 0 < moves.chance < 0.02
+    # A root to four decimals does not give it, nor does an odd number of straight moves.
+    assert identified.of_moves(square, 32.3821, 1.4142).paths == []
+    assert identified.of_moves(square, 15 + 13 * 1.414, 1.414).paths == []

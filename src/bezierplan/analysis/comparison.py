@@ -30,8 +30,8 @@ number. Columns:
   (`statistics.can_fail`)
 - power: share of the numbers that matter (`_rivals`), without those that no run can have, that
   would have been rejected instead of the published one
-- identified: cells of the paths whose length the published number is to the last digit
-  (`identified`), and the chance of a match
+- identified: cells or moves of the paths whose length the published number is (`identified`), and
+  the chance of a match
 - verdict: identified; disagrees; inconclusive; agrees
 - why: why it is inconclusive: not defined by the paper, or the interval has no end there, or
   contains most of the numbers that matter
@@ -192,12 +192,13 @@ def _identified(
     """The paths whose length a published number is, in words; None if no enumeration that counts
     finds one, or chance may well have.
     """
-    if pd.isna(row["value_published"]) or row.get("problem") not in problems:
+    problem = problems.get(row.get("problem", row.get("workspace")))
+    if pd.isna(row["value_published"]) or problem is None:
         return None
     for entry in entries:
         if entry.counts and identified.applies(entry, row):
             value, decimals = row["value_published"], int(row["decimals"])
-            found = identified.in_problem(problems[row["problem"]], value, decimals, entry.edges)
+            found = identified.sought(entry, problem, value, decimals)
             if found and found.paths and found.chance < identified.UNLIKELY:
                 return identified.in_words(found)
     return None

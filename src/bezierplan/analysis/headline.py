@@ -25,13 +25,13 @@ COLUMNS = {
 LEGEND = (
     "*agree*: the published number lies in our 95 % prediction interval for an experiment of the "
     "paper's size, and the interval is narrow enough to exclude most of the values published for "
-    "competing methods. *identified*: it is to the last digit the length of a path that we can "
-    "name. *disagree*: it lies outside. *inconclusive*: the interval is too wide or has no end on "
-    "that side, or the paper does not define the quantity. *typical deviation*: median of "
-    "|ours - published| / |published|. *partly*: the claim holds in some of its comparisons. The "
-    "baseline is the exact shortest path with rounded corners, which needs no search; "
-    "the last three columns go from the lowest to the highest of all methods, our own variants of "
-    "the paper's included."
+    "competing methods. *identified*: it is the length of a path that we can name, to the last "
+    "digit or to the decimals of a rounded root. *disagree*: it lies outside. *inconclusive*: the"
+    " interval is too wide or has no end on that side, or the paper does not define the quantity."
+    " *typical deviation*: median of |ours - published| / |published|. *partly*: the claim holds "
+    "in some of its comparisons. The baseline is the exact shortest path with rounded corners, "
+    "which needs no search; the last three columns go from the lowest to the highest of all "
+    "methods, our own variants of the paper's included."
 )
 
 _IN_WORDS = {

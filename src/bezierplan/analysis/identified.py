@@ -1,4 +1,5 @@
-"""Printed lengths that are those of paths through cell centres, to the last digit.
+"""Printed lengths that are those of paths through cell centres: free polylines to the last digit,
+or straight and diagonal moves to the decimals of a rounded square root of two.
 
 Lengths of polylines between cell centres are sums of a few square roots of whole numbers, so a
 length with four decimals can tell which paths it belongs to. `in_problem` enumerates every free
@@ -44,13 +45,15 @@ _ROUNDING = 1e-9
 class Identified(NamedTuple):
     """Paths whose length rounds to a printed one.
 
-    paths: the cells of each of those with fewest edges. chance: share of the numbers nearby, as
-    printed, that some path matches. length: of the first path, in cells; NaN without one.
+    paths: the cells of each of those with fewest edges, or numbers of moves. chance: share of the
+    numbers nearby, as printed, that some path matches. length: of the first path, in cells; NaN
+    without one. noun: what the numbers of `paths` are.
     """
 
     paths: list[tuple[int, ...]]
     chance: float
     length: float
+    noun: str = "cells"
 
 
 class Ways(NamedTuple):
@@ -90,6 +93,8 @@ def ways(grid: Grid) -> Ways:
 def applies(entry: Identify, row: dict) -> bool:
     """Whether an enumeration is declared for a published number, from the columns of its row."""
     where = {"metric": entry.metric} | entry.where
+    if entry.statistic:
+        where["statistic"] = entry.statistic
     return all(row.get(column) in one_or_list(wanted) for column, wanted in where.items())
 
 
@@ -121,6 +126,39 @@ def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Ide
     )
 
 
+def of_moves(problem: Problem, value: float, diagonal: float) -> Identified:
+    """The straight and diagonal moves from start to target whose length is printed so, up to the
+    decimals of the diagonal move: those beyond are cut off.
+
+    Each of the two differences between start and target says how many moves there are at least, and
+    their sum whether the number of straight ones is even.
+    """
+    cell = problem.workspace.cell
+    apart = [round(abs(b - a) / cell) for a, b in zip(problem.start, problem.target)]
+    places = possible.decimals(str(diagonal))
+    unit, value = 10.0**-places, value / cell
+    printed = math.floor(value / unit + _ROUNDING) * unit
+    most = int(value + NEARBY) + 1
+    moves = [
+        (straight, rest)
+        for rest in range(most)
+        for straight in range(sum(apart) % 2, most, 2)
+        if straight + 2 * rest >= sum(apart) and straight + rest >= max(apart)
+    ]
+    lengths = np.array([straight + diagonal * rest for straight, rest in moves])
+    paths = [moves[each] for each in np.flatnonzero(_near(lengths, printed, unit / 2))]
+    length = paths[0][0] + diagonal * paths[0][1] if paths else math.nan
+    chance = _chance(np.sort(lengths), printed, unit / 2)
+    return Identified(paths, chance, length, f"straight moves and diagonal ones of {diagonal:g}:")
+
+
+def sought(entry: Identify, problem: Problem, value: float, decimals: int) -> Identified | None:
+    """The paths that a declaration names, of a length that is printed so."""
+    if entry.diagonal is None:
+        return in_problem(problem, value, decimals, entry.edges)
+    return of_moves(problem, value, entry.diagonal)
+
+
 @lru_cache(maxsize=4)
 def _ways_of(cells: bytes, shape: tuple[int, int]) -> Ways:
     return ways(Grid(np.frombuffer(cells, dtype=bool).reshape(shape), 1.0, ""))
@@ -131,7 +169,7 @@ def in_words(identification: Identified) -> str:
     shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
     more = len(identification.paths) - len(shown)
     cells = (
-        f"cells {' or '.join(shown)}{f' or {more} others' if more else ''}"
+        f"{identification.noun} {' or '.join(shown)}{f' or {more} others' if more else ''}"
         if shown
         else "no such path"
     )
@@ -150,19 +188,21 @@ def of_table(
     keys = published.columns.difference(NOT_KEYS, sort=False)
     for entry in entries:
         tried = []
-        rule = (
-            f"{entry.because}: the length of a free polyline of at most {entry.edges} edges "
-            "through cell centres"
+        what = (
+            f"a free polyline of at most {entry.edges} edges through cell centres"
+            if entry.diagonal is None
+            else f"straight moves and diagonal ones of {entry.diagonal:g}"
         )
+        rule = f"{entry.because}: the length of {what}"
         for row in published.to_dict("records"):
             problem = problems.get(row.get("problem", row.get("workspace")))
             if not applies(entry, row) or problem is None:
                 continue
-            path = in_problem(problem, row["value"], possible.decimals(row["printed"]), entry.edges)
+            path = sought(entry, problem, row["value"], possible.decimals(row["printed"]))
             if path is None:
                 continue
             tried.append(path)
-            location = place(row, [*keys, "metric"])
+            location = place(row, [*keys, "metric", *(["statistic"] if entry.statistic else [])])
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
             yield checked(item, location, rule, row["value"], limit, fits, in_words(path))
         if tried:
@@ -173,7 +213,8 @@ def of_table(
             )
             location = ", ".join(
                 f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
-                for key, wanted in entry.where.items()
+                for key, wanted in (entry.where | {"statistic": entry.statistic}).items()
+                if wanted
             )
             rule, fits = f"{entry.because}: all numbers together", matched == len(tried) or None
             yield checked(item, location, rule, matched, len(tried), fits, told)

@@ -103,12 +103,22 @@ class Identify(Model):
     """
 
     metric: Metric = Field(description="the metric of the published numbers that are tried")
+    statistic: Statistic = Field(None, description="their statistic; left out: all")
     where: Where = Field(
         {},
         description="column of the published file → value or list of values: those that are tried",
     )
     edges: Count = Field(
-        description="most edges of a polyline through cell centres, a whole number of at least 1"
+        7,
+        description="most edges of a polyline through cell centres, a whole number of at least 1; "
+        "left out: 7",
+    )
+    diagonal: float = Field(
+        None,
+        gt=1,
+        lt=2,
+        description="the length of a diagonal move, such as 1.414, if the paths are of straight "
+        "and diagonal moves instead; lengths are compared to its decimals",
     )
     counts: Flag = Field(
         True,
@@ -171,9 +181,10 @@ class Pivot(Table):
     )
     identify: list[Identify] = Field(
         [],
-        description="published lengths on grids that may be, to the last digit, those of free "
-        "polylines through cell centres from start to "
-        "target, which the audit enumerates: {metric, where, edges, because}, and perhaps `counts`",
+        description="published lengths on grids that may be those of free polylines through cell "
+        "centres from start to target, to the last digit, or of straight and diagonal moves, to "
+        "the decimals of `diagonal`, which the audit enumerates: {metric, because}, and perhaps "
+        "`statistic`, `where`, `edges`, `diagonal` and `counts`",
     )
     primary: Where = Field(
         {},

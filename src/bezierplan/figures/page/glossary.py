@@ -4,8 +4,8 @@ WORDS = {
     "agrees": "The published number lies in our 95 % prediction interval for an experiment of the "
     "paper's size, and the interval is narrow enough to exclude most of the values that the paper "
     "prints for competing methods. It need not be near ours.",
-    "identified": "The published number is to the last digit the length of a path that an "
-    "enumeration finds.",
+    "identified": "The published number is, to the last digit or to the decimals of a rounded "
+    "root, the length of a path that an enumeration finds.",
     "disagrees": "The published number lies outside our 95 % prediction interval for an "
     "experiment of the paper's size.",
     "inconclusive": "The published number lies in the interval, but so would most others: the "
