@@ -32,10 +32,10 @@ def setup(app: Any) -> dict[str, bool]:
 
 def write(folder: Path) -> None:
     """Write all generated pages below a folder."""
+    from bezierplan.commands import studies_of
     from bezierplan.planners import known_planners
-    from bezierplan.study import reading
 
-    studies = reading.load(reading.read_config({}))
+    studies = studies_of()
     claims, baseline_comparison = (
         pd.read_csv(OUTCOME / "claims.csv"),
         pd.read_csv(OUTCOME / "baseline_comparison.csv"),

@@ -11,15 +11,17 @@ MOST_LINES = 5
 OWN = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.Lambda, ast.FunctionDef)
 
 
-def names(scope: ast.AST) -> Iterator[tuple[str, int]]:
-    """Names of a scope with their lines, but for those of the scopes within it."""
+def names(scope: ast.AST) -> Iterator[tuple[str, int, bool]]:
+    """Names of a scope with their lines, and whether they are bound there, but for those of the
+    scopes within it.
+    """
     for node in ast.iter_child_nodes(scope):
         if isinstance(node, OWN):
             continue
         if isinstance(node, ast.Name):
-            yield node.id, node.lineno
+            yield node.id, node.lineno, isinstance(node.ctx, ast.Store)
         if isinstance(node, ast.arg):
-            yield node.arg, node.lineno
+            yield node.arg, node.lineno, True
         yield from names(node)
 
 
@@ -30,8 +32,9 @@ def long_lived(text: str) -> list[str]:
         node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)
     ):
         for word in ANYTHING:
-            lines = [line for name, line in names(function) if name == word]
-            if lines and max(lines) - min(lines) > MOST_LINES:
+            uses = [(line, bound) for name, line, bound in names(function) if name == word]
+            lines = [line for line, _ in uses]
+            if any(bound for _, bound in uses) and max(lines) - min(lines) > MOST_LINES:
                 said.append(f"{function.name}: {word}, lines {min(lines)} to {max(lines)}")
     return said
 

@@ -155,15 +155,15 @@ def _verdict(own: pd.DataFrame) -> str:
     """Whether a method that is feasible as often as the baseline is shorter or curves less."""
     reliable = own[own["feasible"] >= own["feasible_baseline"]]
     better = reliable[(reliable["length"] < 1 - EQUAL) | (reliable["curvature"] < 1 - EQUAL)]
-    found = (
+    words = (
         f"Of {counted(len(reliable), 'method')} feasible as often as the baseline, "
         f"{len(better) or 'none'} {'are' if len(better) > 1 else 'is'} shorter or less curved"
     )
     if better.empty:
-        return f"{found}."
+        return f"{words}."
     best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
     return (
-        f"{found}; the least curved, {best['method']}, has {number(best['curvature'])} times the "
+        f"{words}; the least curved, {best['method']}, has {number(best['curvature'])} times the "
         f"curvature, {number(best['length'])} times the length and {number(best['cpu'])} times the "
         "CPU time."
     )

@@ -89,13 +89,16 @@ def draw(
         FigureCanvasAgg(figure)
         notes = []
         for number, (letter, panel) in enumerate(zip(letters, panels)):
-            kind, own = kind_module(panel.kind), frame[frame["panel"] == number]
+            kind, rows_of_panel = kind_module(panel.kind), frame[frame["panel"] == number]
             projection = getattr(kind, "PROJECTION", None)
             axes = figure.add_subplot(rows, columns, number + 1, projection=projection)
-            notes.append(kind.draw(axes, own, scene, panel))
+            notes.append(kind.draw(axes, rows_of_panel, scene, panel))
             _fit(
                 axes,
-                letter + _heading(panel, own if several else own[[]], scene, notes[-1]),
+                letter
+                + _heading(
+                    panel, rows_of_panel if several else rows_of_panel[[]], scene, notes[-1]
+                ),
                 inches / columns,
             )
         _name_axes_once(figure.axes[: len(panels)], columns)

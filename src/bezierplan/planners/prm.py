@@ -217,7 +217,7 @@ def _visible(
 
 
 def _shortest_way(
-    points: np.ndarray, one: np.ndarray, other: np.ndarray
+    points: np.ndarray, tails: np.ndarray, heads: np.ndarray
 ) -> tuple[float, np.ndarray]:
     """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and
     empty if they are not connected.
@@ -225,8 +225,8 @@ def _shortest_way(
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 
-    lengths = np.hypot(*(points[one] - points[other]).T)
-    links = csr_array((lengths, (one, other)), shape=2 * (len(points),))
+    lengths = np.hypot(*(points[tails] - points[heads]).T)
+    links = csr_array((lengths, (tails, heads)), shape=2 * (len(points),))
     far, before = dijkstra(links, directed=False, indices=0, return_predecessors=True)
     way = [1] if far[1] < np.inf else []
     while way and way[-1]:

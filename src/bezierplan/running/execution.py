@@ -102,7 +102,7 @@ def track(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> 
                 problem, run_task.generator(), **run_task.settings
             )
             return list(made)
-    given = {
+    arguments = {
         "planner": str(File(chunk.planner).resolve()),
         "problem": worker.packed_problems({condition.problem: problem}),
         "task": run_task,
@@ -110,7 +110,7 @@ def track(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> 
     return list(
         map(
             np.array,
-            process.answers("guard.worker.tracked", given, run_task.name, chunk.time_limit),
+            process.answers("guard.worker.tracked", arguments, run_task.name, chunk.time_limit),
         )
     )
 

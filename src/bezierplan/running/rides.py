@@ -69,13 +69,13 @@ def _planner(planner: str, warm: bool, task: worker.Task, taken: list[str]) -> r
 
     def planned(seen: Problem, last: Any) -> tuple[Plan, Any]:
         if warm:
-            found = module.resume(seen, rng, last, **task.settings)
-            if not isinstance(found, tuple) or len(found) != 2:
+            answer = module.resume(seen, rng, last, **task.settings)
+            if not isinstance(answer, tuple) or len(answer) != 2:
                 raise TypeError(
-                    f"resume returns a {type(found).__name__}; expected a Plan and what the next "
+                    f"resume returns a {type(answer).__name__}; expected a Plan and what the next "
                     "call gets as last"
                 )
-            plan, state = found
+            plan, state = answer
         else:
             plan, state = module.plan(seen, rng, **task.settings), None
         try:
@@ -136,7 +136,7 @@ def run(
         yield from drives(chunk.planner, chunk.policy, problems, worlds, tasks, begins)
         begin(None, execution.told_chunk(chunk))
         return
-    given = {
+    arguments = {
         "planner": str(File(chunk.planner).resolve()),
         "policy": chunk.policy,
         "problems": worker.packed_problems(problems),
@@ -144,7 +144,7 @@ def run(
         "runs": tasks,
     }
     name = execution.told_chunk(chunk)
-    for ride, cpu, wall in process.answers("rides.plain_drives", given, name, chunk.time_limit):
+    for ride, cpu, wall in process.answers("rides.plain_drives", arguments, name, chunk.time_limit):
         with process.plain_values(name):
             yield _unpacked(*ride), process.seconds(cpu), process.seconds(wall)
 

@@ -59,17 +59,17 @@ class Design:
         problems = [
             self.study.problems[name] for name in self.study.experiments[experiment].problems
         ]
-        own = {key for problem in problems for key in problem.model_fields_set if key in PLACE}
-        own |= {"layout" for problem in problems if problem.layouts}
-        own |= {
+        columns = {key for problem in problems for key in problem.model_fields_set if key in PLACE}
+        columns |= {"layout" for problem in problems if problem.layouts}
+        columns |= {
             name
             for method in self.study.methods_of(experiment)
             for name in self.study.resolved(method)
         }
-        own |= self.study.experiments[experiment].vary.keys()
+        columns |= self.study.experiments[experiment].vary.keys()
         return PLANNED | {
             column: _type([row[column] for row in self.rows(experiment) if column in row])
-            for column in sorted(own - PLANNED.keys())
+            for column in sorted(columns - PLANNED.keys())
         }
 
     def _types(self, experiments: list[str]) -> tuple[dict[str, str], set[str]]:
@@ -151,29 +151,29 @@ class Design:
         """
         types, planned = self._types(experiments)
         for column, wanted in where.items():
-            place = f"{location}: {column}"
+            key = f"{location}: {column}"
             if column not in types:
                 computed = METRICS[column].compute is not None if column in METRICS else True
                 if column not in METRICS or (computed and baselines):
-                    raise Fault(f"{place}: unknown{closest(column, types)}")
+                    raise Fault(f"{key}: unknown{closest(column, types)}")
                 self.check_metric(experiments, column, location)
             elif column not in planned and types[column] in ("number", "list", "name"):
                 raise Fault(
-                    f"{place}: {wanted}: a {types[column]} that a run finds out is not selected by "
+                    f"{key}: {wanted}: a {types[column]} that a run finds out is not selected by "
                     "its value; expected another column"
                 )
             for value in one_or_list(wanted):
                 kind = {"flag": bool, "word": str}.get(types.get(column, ""), object)
                 if not isinstance(value, kind):
-                    raise Fault(f"{place}: {value}: expected a {types[column]}")
+                    raise Fault(f"{key}: {value}: expected a {types[column]}")
                 if column == "path_curve":
-                    check_known(value, CURVES, place)
+                    check_known(value, CURVES, key)
                 elif column == "repeat":
-                    self.check_repeat(experiments, value, place)
+                    self.check_repeat(experiments, value, key)
                 elif column in planned and column not in _MANY:
                     values = self.values(experiments, column, baselines)
                     if identity(value) not in map(identity, values):
-                        raise Fault(f"{place}: {value}: unknown{closest(value, values)}")
+                        raise Fault(f"{key}: {value}: unknown{closest(value, values)}")
         rows = self._selectable(experiments, baselines)
         if rows and not any(fits(row, where) for row in rows):
             raise Fault(

@@ -48,8 +48,8 @@ class Job:
         """The job of some wildcards."""
         raise NotImplementedError
 
-    def run(self, given: Any, made: Any, threads: int) -> None:
-        """Do the work. given, made: input and output files, by their names in the rule."""
+    def run(self, input_files: Any, output_files: Any, threads: int) -> None:
+        """Do the work with the files of a rule, by their names there."""
         raise NotImplementedError
 
     def modules(self) -> Iterable[str | None]:
@@ -105,33 +105,33 @@ class Problems(Job):
     @classmethod
     def of(cls, studies, scale, study, experiment):
         """Problems; of an experiment of drives, with their worlds."""
-        own, kind = studies[study], Worlds if studies[study].moves(experiment) else Problems
-        described = problems_job(own, experiment, scale)
-        maps = content_digest(*own.maps(described.workspaces))
-        return kind(described, relative(own.folder), maps)
+        content, kind = studies[study], Worlds if studies[study].moves(experiment) else Problems
+        described = problems_job(content, experiment, scale)
+        maps = content_digest(*content.maps(described.workspaces))
+        return kind(described, relative(content.folder), maps)
 
     def modules(self):
         """Those of the kinds of workspace."""
         return kinds_of_workspace(self.descriptions.workspaces)
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Build the problems."""
         from bezierplan.running import problems
 
         built = problems.build_all(self.descriptions, Path(self.folder))
-        problems.write(built, self.descriptions.homes, made[0])
+        problems.write(built, self.descriptions.homes, output_files[0])
 
 
 @dataclass(frozen=True)
 class Worlds(Problems):
     """The problems of an experiment of drives, with the worlds that move."""
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Build the problems and worlds."""
         from bezierplan.running import worlds
 
         built, moving = worlds.build_all(self.descriptions, Path(self.folder))
-        worlds.write(built, self.descriptions.homes, moving, made[0])
+        worlds.write(built, self.descriptions.homes, moving, output_files[0])
 
 
 @dataclass(frozen=True)
@@ -143,27 +143,31 @@ class Bounds(Job):
         """Bounds; of an experiment of drives, what no robot can beat."""
         return (BoundsOfDrives if studies[study].moves(experiment) else Bounds)()
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Compute the bounds."""
         import pyarrow.parquet as parquet
 
         from bezierplan.running import problems
 
-        parquet.write_table(problems.bounds_of(problems.read(given.problems)), made[0])
+        parquet.write_table(
+            problems.bounds_of(problems.read(input_files.problems)), output_files[0]
+        )
 
 
 @dataclass(frozen=True)
 class BoundsOfDrives(Bounds):
     """For each problem what no robot can beat."""
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Compute the bounds."""
         import pyarrow.parquet as parquet
 
         from bezierplan.running import problems, rides, worlds
 
-        file = given.problems
-        parquet.write_table(rides.bounds_of(problems.read(file), worlds.read(file)), made[0])
+        file = input_files.problems
+        parquet.write_table(
+            rides.bounds_of(problems.read(file), worlds.read(file)), output_files[0]
+        )
 
 
 def job(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
@@ -245,33 +249,33 @@ class Runs(Job):
         """The planner."""
         return [module_of(self.chunk.planner)]
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Run the method."""
         import pyarrow.parquet as parquet
 
         from bezierplan.running import execution, problems, rows
 
-        runs, times = execution.run_chunk(problems.read(given.problems), self.chunk)
-        rows.write(runs, made.runs)
-        parquet.write_table(times, made.times)
+        runs, times = execution.run_chunk(problems.read(input_files.problems), self.chunk)
+        rows.write(runs, output_files.runs)
+        parquet.write_table(times, output_files.times)
 
 
 @dataclass(frozen=True)
 class Drives(Runs):
     """A robot that drives under every condition of an experiment, one block of repeats."""
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Let the robot drive."""
         import pyarrow.parquet as parquet
 
         from bezierplan.running import problems, rides, rows, worlds
 
         runs, times, traces = rides.run_chunk(
-            problems.read(given.problems), worlds.read(given.problems), self.chunk
+            problems.read(input_files.problems), worlds.read(input_files.problems), self.chunk
         )
-        rows.write(runs, made.runs)
-        parquet.write_table(times, made.times)
-        parquet.write_table(traces, made.traces, compression="zstd")
+        rows.write(runs, output_files.runs)
+        parquet.write_table(times, output_files.times)
+        parquet.write_table(traces, output_files.traces, compression="zstd")
 
 
 # --------------------------------------------------------------------------------------------------
@@ -360,52 +364,54 @@ class TableOfRuns(Job):
     @classmethod
     def of(cls, studies, scale, study, table, tree=""):
         """The table of a name."""
-        own = studies[study]
-        spec = own.whole(table)
-        experiment = own.experiments[spec.experiment]
+        content = studies[study]
+        spec = content.whole(table)
+        experiment = content.experiments[spec.experiment]
         # The experiment's own methods unless the table selects some: baselines appear only in the
         # comparison, and there with variants, unless the table has the paper's form.
         where = {"method": experiment.methods} | spec.where
         if spec.printed:
             where |= spec.primary
-        more = {} if spec.printed else own.variants()
-        baselines = [] if spec.printed else own.methods_of(spec.experiment)
-        file = own.published_file(table)
+        more = {} if spec.printed else content.variants()
+        baselines = [] if spec.printed else content.methods_of(spec.experiment)
+        file = content.published_file(table)
         return cls(
             name=f"{study}/{spec.extends or table}",
             spec=spec.but(title=table, note=None, labels={}, monotone=[], fitted=[], where=where),
-            labels=labels_of(own, table),
+            labels=labels_of(content, table),
             variants={name: method for name, method in more.items() if name in experiment.methods},
-            baselines=[name for name in baselines if name in own.baselines],
+            baselines=[name for name in baselines if name in content.baselines],
             repeats=experiment.repeats[scale],
             published=content_digest(file) if file else "",
-            shows=shown_by(own, table, scale),
+            shows=shown_by(content, table, scale),
         )
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Make the table and its comparison."""
         import pandas as pd
 
         from bezierplan.analysis import comparison, results, tables
         from bezierplan.running import inputs
 
-        ((experiment, files),) = inputs.experiments(self.shows, given).items()
+        ((experiment, files),) = inputs.experiments(self.shows, input_files).items()
         runs = results.read(files, self.repeats, experiment)
-        file = given.published[0] if self.published else None
+        file = input_files.published[0] if self.published else None
         published = comparison.read_published(file, self.spec)
         compared = comparison.compare(
             runs, self.spec, published, self.variants, self.baselines, self.name
         )
         table = tables.pivot(runs, self.spec, self.labels)
-        table.to_csv(made.table, lineterminator="\n")
+        table.to_csv(output_files.table, lineterminator="\n")
         if self.spec.printed:
             compared = compared[compared["value_published"].notna()]
             numbers = pd.read_csv(file, dtype=str, keep_default_na=False)
             verdicts = compared.assign(value=compared["verdict"].fillna(""))
-            for rows, laid in ((numbers, made.published), (verdicts, made.marks)):
+            for rows, laid in ((numbers, output_files.published), (verdicts, output_files.marks)):
                 laid_out = tables.alike(rows, self.spec, self.labels, like=table)
                 laid_out.to_csv(laid, lineterminator="\n")
-        compared.to_csv(made.comparison, index=False, float_format="%.10g", lineterminator="\n")
+        compared.to_csv(
+            output_files.comparison, index=False, float_format="%.10g", lineterminator="\n"
+        )
 
 
 @dataclass(frozen=True)
@@ -423,17 +429,17 @@ class TableWithoutRuns(Job):
     @classmethod
     def of(cls, studies, scale, study, table, tree=""):
         """The table of a name."""
-        own = studies[study]
-        spec = own.tables[table].but(title=table)
-        module = own.module() if spec.kind == "function" else None
-        published = content_digest(*own.published_of(table))
-        return cls(spec, module, labels_of(own, table), published)
+        content = studies[study]
+        spec = content.tables[table].but(title=table)
+        module = content.module() if spec.kind == "function" else None
+        published = content_digest(*content.published_of(table))
+        return cls(spec, module, labels_of(content, table), published)
 
     def modules(self):
         """That of the study."""
         return [self.module]
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Make the table."""
         import importlib
 
@@ -441,8 +447,10 @@ class TableWithoutRuns(Job):
         from bezierplan.running import inputs
 
         functions = vars(importlib.import_module(self.module)) if self.module else {}
-        table = listing.table(self.spec, inputs.by_table(given.published), functions, self.labels)
-        table.to_csv(made[0], index=False, float_format="%.10g", lineterminator="\n")
+        table = listing.table(
+            self.spec, inputs.by_table(input_files.published), functions, self.labels
+        )
+        table.to_csv(output_files[0], index=False, float_format="%.10g", lineterminator="\n")
 
 
 @dataclass(frozen=True)
@@ -458,10 +466,10 @@ class Latex(Job):
     @classmethod
     def of(cls, studies, scale, study, table, tree=""):
         """The table of a name."""
-        own = studies[study]
-        return cls(f"{study}-{table}", caption(own, table, scale), own.tables[table].note)
+        content = studies[study]
+        return cls(f"{study}-{table}", caption(content, table, scale), content.tables[table].note)
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Set the table."""
         import pandas as pd
 
@@ -469,13 +477,13 @@ class Latex(Job):
 
         table, *beside = (
             pd.read_csv(file, dtype=str, keep_default_na=False)
-            for file in [given.table, *given.beside]
+            for file in [input_files.table, *input_files.beside]
         )
         notes = [self.note] if self.note else []
         if beside:
             table, notes = latex.laid_over(table, *beside), [latex.LEGEND, *notes]
         text = latex.document(table, self.caption, f"tab:{self.label}", notes)
-        Path(made[0]).write_text(text, encoding="utf-8")
+        Path(output_files[0]).write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True)
@@ -509,37 +517,41 @@ class Figure(Job):
     @classmethod
     def of(cls, studies, scale, study, figure, tree=""):
         """The figure of a name."""
-        own = studies[study]
-        spec, experiments = own.figures[figure], experiments_of(own, figure)
+        content = studies[study]
+        spec, experiments = content.figures[figure], experiments_of(content, figure)
         again = {panel.experiment for panel in spec.panels if panel.rerun}
-        bare = workspaces_of_figure(own, figure)
+        bare = workspaces_of_figure(content, figure)
         any_method = any(getattr(panel, "data", None) for panel in spec.panels)
-        methods = {method for name in experiments for method in own.methods_of(name)}
-        first = own.problems[own.experiments[experiments[0]].problems[0]] if experiments else None
-        home = first.workspace if first else [*bare, *own.workspaces][0]
+        methods = {method for name in experiments for method in content.methods_of(name)}
+        first = (
+            content.problems[content.experiments[experiments[0]].problems[0]]
+            if experiments
+            else None
+        )
+        home = first.workspace if first else [*bare, *content.workspaces][0]
         return cls(
             study=study,
             columns=spec.columns,
             width=spec.width,
-            panels=[_planned(own, panel) for panel in spec.panels],
-            module=own.module() if any_method else None,
-            labels=labels_of(own, figure),
+            panels=[_planned(content, panel) for panel in spec.panels],
+            module=content.module() if any_method else None,
+            labels=labels_of(content, figure),
             looks={
-                name: look for name, look in looks(own).items() if any_method or name in methods
+                name: look for name, look in looks(content).items() if any_method or name in methods
             },
-            workspaces={name: own.workspaces[name].plain() for name in bare},
-            repeats={name: own.experiments[name].repeats[scale] for name in experiments},
+            workspaces={name: content.workspaces[name].plain() for name in bare},
+            repeats={name: content.experiments[name].repeats[scale] for name in experiments},
             chunks={
                 name: {
-                    method: job(own, name, method, scale, 0)
-                    for method in methods_of(own, figure, name)
+                    method: job(content, name, method, scale, 0)
+                    for method in methods_of(content, figure, name)
                 }
                 for name in sorted(again)
             },
-            unit=own.workspaces[home].unit,
-            folder=relative(own.folder),
-            sources=content_digest(*own.maps(bare), *own.published_drawn(figure)),
-            shows=shown_by(own, figure, scale),
+            unit=content.workspaces[home].unit,
+            folder=relative(content.folder),
+            sources=content_digest(*content.maps(bare), *content.published_drawn(figure)),
+            shows=shown_by(content, figure, scale),
         )
 
     def modules(self):
@@ -552,7 +564,7 @@ class Figure(Job):
             *kinds_of_workspace(self.workspaces),
         ]
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Draw the figure from its data, which are first written and read back."""
         import importlib
 
@@ -564,10 +576,10 @@ class Figure(Job):
 
         published = {
             name: results.published_table(file)
-            for name, file in inputs.by_table(given.published).items()
+            for name, file in inputs.by_table(input_files.published).items()
         }
         numbers = results.joined_numbers(published)
-        read = results.read_all(inputs.experiments(self.shows, given), self.repeats)
+        read = results.read_all(inputs.experiments(self.shows, input_files), self.repeats)
         experiments = {
             name: runs._replace(published=numbers, jobs=self.chunks.get(name))
             for name, runs in read.items()
@@ -580,12 +592,12 @@ class Figure(Job):
         functions = vars(importlib.import_module(self.module)) if self.module else {}
         scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks)
         sources = Sources(experiments, workspaces, functions, published, self.study)
-        sheet.write_data(sheet.data(self.panels, sources), made.data)
+        sheet.write_data(sheet.data(self.panels, sources), output_files.data)
         figure = sheet.draw(
-            self.panels, sheet.read_data(made.data), scene, self.columns, self.width
+            self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
         )
-        sheet.save(figure, made.svg, made.png, made.pdf)
-        Path(made.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
+        sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
+        Path(output_files.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
 
 
 def workspaces_of_figure(study: Study, figure: str) -> list[str]:
@@ -708,25 +720,26 @@ class Claims(Job):
     @classmethod
     def of(cls, studies, scale, study):
         """The claims of a study."""
-        own = studies[study]
-        experiments = alternatives.experiments_of_claims(own.claims)
+        content = studies[study]
+        experiments = alternatives.experiments_of_claims(content.claims)
         shows = {
-            name: chunks_of(own, name, own.experiments[name].methods, scale) for name in experiments
+            name: chunks_of(content, name, content.experiments[name].methods, scale)
+            for name in experiments
         }
-        return cls(**_claims(own, own.claims, scale), shows=shows)
+        return cls(**_claims(content, content.claims, scale), shows=shows)
 
     def modules(self):
         """That of the study, and kinds of check."""
         kinds = {check.test for claim in self.claims for check in claim.checks}
         return [self.module, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
-    def files(self, given, made):
+    def files(self, input_files, output_files):
         """Files of the results by experiment."""
         from bezierplan.running import inputs
 
-        return inputs.experiments(self.shows, given)
+        return inputs.experiments(self.shows, input_files)
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Judge the claims."""
         import importlib
 
@@ -736,10 +749,10 @@ class Claims(Job):
 
         judged, checks = judge.judge(
             self.claims,
-            results.read_all(self.files(given, made), self.repeats),
+            results.read_all(self.files(input_files, output_files), self.repeats),
             {
                 name: results.published_table(file)
-                for name, file in inputs.by_table(given.published).items()
+                for name, file in inputs.by_table(input_files.published).items()
             },
             self.artefacts,
             self.study,
@@ -749,7 +762,7 @@ class Claims(Job):
             repeats=self.paper_repeats,
             labels=self.labels,
         )
-        for table, file in ((judged, made.claims), (checks, made.checks)):
+        for table, file in ((judged, output_files.claims), (checks, output_files.checks)):
             table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
 
 
@@ -804,25 +817,27 @@ class Alternative(Claims):
     @classmethod
     def of(cls, studies, scale, study, alternative):
         """The alternative of a name."""
-        own = studies[study]
-        tried = alternatives.with_alternative(own, alternative)
-        claims = alternatives.headline_claims(own, alternative)
-        changed = alternatives.methods_changed(own, alternative)
+        content = studies[study]
+        tried = alternatives.with_alternative(content, alternative)
+        claims = alternatives.headline_claims(content, alternative)
+        changed = alternatives.methods_changed(content, alternative)
         methods = {
-            name: alternatives.methods_of_claims(own, claims, name)
+            name: alternatives.methods_of_claims(content, claims, name)
             for name in alternatives.experiments_of_claims(claims)
         }
         return cls(
-            **_claims(own, claims, scale),
+            **_claims(content, claims, scale),
             chunks=[
                 (number, alternatives.judged_only(job(tried, name, method, scale, number), claims))
                 for name, compared in methods.items()
                 for method in compared
                 if method in changed
-                for number in chunks(own, name, method, scale)
+                for number in chunks(content, name, method, scale)
             ],
             shows={
-                name: chunks_of(own, name, [one for one in compared if one not in changed], scale)
+                name: chunks_of(
+                    content, name, [one for one in compared if one not in changed], scale
+                )
                 for name, compared in methods.items()
             },
         )
@@ -831,12 +846,12 @@ class Alternative(Claims):
         """Planners as well."""
         return [*super().modules(), *(module_of(chunk.planner) for _, chunk in self.chunks)]
 
-    def files(self, given, made):
+    def files(self, input_files, output_files):
         """Files of the results by experiment, with the runs that are made here."""
         from bezierplan.running import again, inputs
 
         return again.with_chunks(
-            inputs.experiments(self.shows, given), self.chunks, Path(made.runs)
+            inputs.experiments(self.shows, input_files), self.chunks, Path(output_files.runs)
         )
 
 
@@ -851,7 +866,7 @@ class Sensitivity(Job):
         """The alternatives of a study."""
         return cls(alternatives.alternatives_described(studies[study]))
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Compare the verdicts."""
         import pandas as pd
 
@@ -859,10 +874,10 @@ class Sensitivity(Job):
 
         tried = {
             name: pd.read_csv(file)
-            for name, file in zip(self.described, given.alternatives, strict=True)
+            for name, file in zip(self.described, input_files.alternatives, strict=True)
         }
-        table = sensitivity.sensitivity(pd.read_csv(given.claims), tried, self.described)
-        table.to_csv(made[0], index=False, float_format="%.10g", lineterminator="\n")
+        table = sensitivity.sensitivity(pd.read_csv(input_files.claims), tried, self.described)
+        table.to_csv(output_files[0], index=False, float_format="%.10g", lineterminator="\n")
 
 
 @dataclass(frozen=True)
@@ -878,18 +893,18 @@ class Audit(Job):
     @classmethod
     def of(cls, studies, scale, study):
         """The audit of a study."""
-        own = studies[study]
-        tables = {Path(each.published).stem: each for each in own.with_published().values()}
+        content = studies[study]
+        tables = {Path(each.published).stem: each for each in content.with_published().values()}
         return cls(
             AuditJob(
                 study,
-                own.module(),
+                content.module(),
                 {name: table.experiment for name, table in tables.items()},
                 {name: table.primary for name, table in tables.items()},
                 {name: Layout.of(table) for name, table in tables.items()},
             ),
             sorted({table.experiment for table in tables.values() if table.identify}),
-            content_digest(*own.published_files()),
+            content_digest(*content.published_files()),
             shows={name: {} for name in sorted({each.experiment for each in tables.values()})},
         )
 
@@ -897,19 +912,19 @@ class Audit(Job):
         """That of the study."""
         return [self.audit.module]
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Check the numbers."""
         from bezierplan.analysis import audit
         from bezierplan.running import inputs
 
-        files = inputs.experiments(self.shows, given)
+        files = inputs.experiments(self.shows, input_files)
         table = audit.audited(
             self.audit,
             {name: files[name].problems for name in self.identified},
             {name: each.bounds for name, each in files.items()},
-            inputs.by_table(given.published),
+            inputs.by_table(input_files.published),
         )
-        table.to_csv(made[0], index=False, float_format="%.10g", lineterminator="\n")
+        table.to_csv(output_files[0], index=False, float_format="%.10g", lineterminator="\n")
 
 
 # --------------------------------------------------------------------------------------------------
@@ -950,13 +965,15 @@ class BaselineComparison(Job):
             },
         )
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Measure the methods."""
         from bezierplan.analysis import baseline_comparison
         from bezierplan.running import inputs
 
-        rows = baseline_comparison.of_studies(self.measured, inputs.experiments(self.shows, given))
-        rows.to_csv(made[0], index=False, float_format="%.6g", lineterminator="\n")
+        rows = baseline_comparison.of_studies(
+            self.measured, inputs.experiments(self.shows, input_files)
+        )
+        rows.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 
 
 @dataclass(frozen=True)
@@ -969,20 +986,33 @@ class Summary(Job):
     @classmethod
     def of(cls, studies, scale):
         """All studies."""
-        tables = [(key, name) for key, own in studies.items() for name in own.with_published()]
-        return cls(scale, SummaryJob(tables, {key: own.title for key, own in studies.items()}))
+        tables = [
+            (key, name) for key, content in studies.items() for name in content.with_published()
+        ]
+        return cls(
+            scale, SummaryJob(tables, {key: content.title for key, content in studies.items()})
+        )
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Gather them."""
         from bezierplan.analysis import summary
 
         files = {
             f"{study}/{table}": file
-            for (study, table), file in zip(self.summary.tables, given.comparisons, strict=True)
+            for (study, table), file in zip(
+                self.summary.tables, input_files.comparisons, strict=True
+            )
         }
-        found = summary.gathered(
-            self.summary, files, list(given.claims), given.baseline_comparison, self.scale
+        summed = summary.gathered(
+            self.summary,
+            files,
+            list(input_files.claims),
+            input_files.baseline_comparison,
+            self.scale,
         )
-        for table, file in ((found.numbers, made.numbers), (found.claims, made.claims)):
+        for table, file in (
+            (summed.numbers, output_files.numbers),
+            (summed.claims, output_files.claims),
+        ):
             table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
-        Path(made.summary).write_text(found.report, encoding="utf-8")
+        Path(output_files.summary).write_text(summed.report, encoding="utf-8")

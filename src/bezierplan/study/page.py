@@ -78,18 +78,18 @@ class Verified(Job):
         """What the page shows."""
         return cls(shows=shows(studies, scale, root))
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Judge all again."""
         from bezierplan.running import inputs
         from bezierplan.running.judge import recheck
 
         tasks = []
-        for files in inputs.experiments(self.shows, given).values():
+        for files in inputs.experiments(self.shows, input_files).values():
             tasks += [
                 recheck.Task(files.problems, "", tuple(files.chunks)),
                 recheck.Task(files.problems, files.bounds, ()),
             ]
-        recheck.write(recheck.verify(tasks, threads), made[0])
+        recheck.write(recheck.verify(tasks, threads), output_files[0])
 
 
 @dataclass(frozen=True)
@@ -114,13 +114,13 @@ class Page(Job):
             shows=behind,
         )
 
-    def run(self, given, made, threads):
+    def run(self, input_files, output_files, threads):
         """Write the page."""
         from bezierplan.figures.page import job
         from bezierplan.running import inputs
 
         experiments: dict[str, dict[str, ExperimentShown]] = {key: {} for key in self.page.studies}
-        for place, files in inputs.experiments(self.shows, given).items():
+        for place, files in inputs.experiments(self.shows, input_files).items():
             key, _, name = place.partition("/")
             methods, repeats = self.page.studies[key].experiments[name]
             traces = [
@@ -137,11 +137,11 @@ class Page(Job):
         }
         job.write(
             self.page._replace(studies=studies),
-            Path(given.verified).parent,
-            list(given.summary),
-            made.page,
+            Path(input_files.verified).parent,
+            list(input_files.summary),
+            output_files.page,
             threads,
-            given.verified,
+            input_files.verified,
         )
 
 

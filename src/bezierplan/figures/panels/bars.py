@@ -78,25 +78,25 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         hue=frame[hue].map({value: look["label"] for value, _, look in groups}),
     )
     colours = {look["label"]: look["color"] for _, _, look in groups}
-    place = {"x": "x", "hue": "hue", "order": names, "hue_order": list(colours), "ax": axes}
-    place["legend"] = False
+    layout = {"x": "x", "hue": "hue", "order": names, "hue_order": list(colours), "ax": axes}
+    layout["legend"] = False
     # Each statistic with the ends of its interval: their median and their range.
     long = named.melt(["x", "hue"], ["value", "low95", "high95"], value_name="end")
     error = {"errorbar": ("pi", 100), "err_kws": {"linewidth": 0.8, "color": "0.1"}}
-    sns.barplot(long, y="end", estimator="median", palette=colours, saturation=1, **place, **error)
+    sns.barplot(long, y="end", estimator="median", palette=colours, saturation=1, **layout, **error)
     for label, colour in colours.items():
         axes.bar(0, 0, color=colour, label=label)
     if frame["published"].notna().any():
         mark = {"marker": "D", "edgecolor": style.BLACK, "linewidth": 0.9, "size": 3.5}
         white = dict.fromkeys(colours, style.FREE)
         sns.stripplot(
-            named, y="published", palette=white, dodge=True, jitter=False, **place, **mark
+            named, y="published", palette=white, dodge=True, jitter=False, **layout, **mark
         )
         axes.plot([], [], label="published", **style.PUBLISHED_MARK)
     axes.plot([], [], **style.INTERVAL)
     bounds = frame.groupby(x)["bound"].mean()[places].dropna()
     if options.context and len(bounds):
-        middles = np.array([places.index(place) for place in bounds.index])
+        middles = np.array([places.index(name) for name in bounds.index])
         label = "exact shortest path"
         axes.hlines(bounds, middles - 0.45, middles + 0.45, label=label, **style.BOUND)
     style.name_places(axes, names, axis_label(x, scene))

@@ -130,24 +130,25 @@ def interface_fault(module: ModuleType) -> str | None:
         parameters = inspect.signature(plan, eval_str=True).parameters.values()
     except Exception as error:
         return f"function plan: its annotations cannot be read ({told(error)})"
-    own = [each for each in parameters if each.kind is each.KEYWORD_ONLY]
-    others = [each for each in parameters if each not in own]
+    settings = [each for each in parameters if each.kind is each.KEYWORD_ONLY]
+    others = [each for each in parameters if each not in settings]
     if sum(each.default is each.empty for each in others) != 2 or any(
         each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) for each in others
     ):
         return "function plan: expected plan(problem, rng, *, <settings>)"
-    for each in own:
-        if each.default is not each.empty:
+    for parameter in settings:
+        if parameter.default is not parameter.empty:
             return (
-                f"setting {each.name}: has a default value; a study gives a value to every setting"
+                f"setting {parameter.name}: has a default value; "
+                "a study gives a value to every setting"
             )
         try:
-            setting(each.annotation)
+            setting(parameter.annotation)
         except TypeError:
-            annotated = f"is annotated with {inspect.formatannotation(each.annotation)}"
-            if each.annotation is each.empty:
+            annotated = f"is annotated with {inspect.formatannotation(parameter.annotation)}"
+            if parameter.annotation is parameter.empty:
                 annotated = "has no annotation"
-            return f"setting {each.name}: {annotated}; {_EXPECTED}"
+            return f"setting {parameter.name}: {annotated}; {_EXPECTED}"
     return _workspaces_fault(getattr(module, "workspaces", ()))
 
 

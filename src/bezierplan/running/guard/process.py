@@ -50,33 +50,33 @@ def plans(
     """`worker.plans` in a process of its own, with plain plans. Raises PlannerFailure as `answers`
     does.
     """
-    given = {
+    arguments = {
         "planner": str(Path(planner).resolve()) if planner.endswith(".py") else planner,
         "problems": worker.packed_problems(problems),
         "tasks": list(tasks),
         "again": again,
     }
-    for number, plan, cpu, wall in answers("guard.worker.plain_plans", given, name, limit):
+    for number, plan, cpu, wall in answers("guard.worker.plain_plans", arguments, name, limit):
         with plain_values(name):
             yield worker.Made(number, answer.unpacked(plan), seconds(cpu), seconds(wall))
 
 
 def answers(
-    work: str, given: dict[str, Any], name: str, limit: float | None = None, hashing: int = 0
+    work: str, arguments: dict[str, Any], name: str, limit: float | None = None, hashing: int = 0
 ) -> list[Any]:
     """What a function answers in a process of its own.
 
     work: the function, as module and name in `bezierplan.running`; of a function to call with the
-    name of each run that begins, and of `given`, it yields plain values. name: what messages begin
-    with before that. limit: seconds for each run. hashing: seed of `hash`. Raises PlannerFailure,
-    naming the run, if the function raises an exception, the process crashes, ends itself, takes too
-    long or leaves others behind.
+    name of each run that begins, and of `arguments`, it yields plain values. name: what messages
+    begin with before that. limit: seconds for each run. hashing: seed of `hash`. Raises
+    PlannerFailure, naming the run, if the function raises an exception, the process crashes, ends
+    itself, takes too long or leaves others behind.
     """
     with tempfile.TemporaryDirectory(prefix="bezierplan-") as folder:
         job, lines, printed, empty = (
             Path(folder, part) for part in ("job.json", "answers.json", "printed.txt", "empty")
         )
-        job.write_text(json.dumps({"work": work, "given": given, "name": name}))
+        job.write_text(json.dumps({"work": work, "given": arguments, "name": name}))
         lines.touch()
         empty.mkdir()
         with printed.open("wb") as output:
@@ -135,7 +135,7 @@ def _log(printed: Path, name: str) -> None:
 
 def _read(lines: Path, name: str, ended: str, took: float) -> list[Any]:
     """The answers among the lines of a process. Raises PlannerFailure."""
-    given, done = [], False
+    answers_read, done = [], False
     with plain_values(name):
         # What follows the last line break was cut off.
         for line in lines.read_text(encoding="utf-8").split("\n")[:-1]:
@@ -143,23 +143,23 @@ def _read(lines: Path, name: str, ended: str, took: float) -> list[Any]:
             if kind == "begins":
                 name = str(value)
             elif kind == "answer":
-                given.append(value)
+                answers_read.append(value)
             elif kind == "fails":
                 failure = PlannerFailure(str(value[0]))
                 failure.add_note(str(value[1]))
                 raise failure
             elif kind == "took":
                 done = True
-                own = seconds(value)
+                by_clock = seconds(value)
     if not done:
         raise PlannerFailure(f"{name}: {ended}")
     share, least = _CLOCKS
-    if abs(own - took) > share * took + least:
+    if abs(by_clock - took) > share * took + least:
         raise PlannerFailure(
-            f"{name}: its process took {took:.3g} CPU seconds, by its own clock {own:.3g}; a "
-            "planner leaves clocks alone"
+            f"{name}: its process took {took:.3g} CPU seconds, by its own clock {by_clock:.3g}; "
+            "a planner leaves clocks alone"
         )
-    return given
+    return answers_read
 
 
 @contextmanager

@@ -419,20 +419,20 @@ def _drive_faults(
     traces = [_traces(chunk.file) for chunk in chunks]
     steps = max((len(each.clearance) for of in traces for each in of.values()), default=0)
     distances = cache(lambda name: _distances(moving[name], steps))
-    for chunk, found in zip(chunks, traces):
+    for chunk, drives in zip(chunks, traces):
         measured = np.full((len(chunk["id"]), 5), math.nan)
         for row, (run, name, flat) in enumerate(
             zip(chunk["id"], chunk["problem"], chunk["path_points"])
         ):
-            if run not in found:
+            if run not in drives:
                 yield Fault(chunk.file, run, "id", "a drive", "no trace of that id")
             elif name in made:
                 points, ends = flat.reshape(-1, 2), (made[name].start, made[name].target)
                 measured[row] = (
                     np.hypot(*np.diff(points, axis=0).T).sum(),
                     (tuple(points[0].tolist()), tuple(points[-1].tolist())) == ends,
-                    found[run].clearance.min(),
-                    distances(name)(found[run].points),
+                    drives[run].clearance.min(),
+                    distances(name)(drives[run].points),
                     moving[name].pace,
                 )
         length, joins, least, deepest, pace = measured.T
