@@ -104,12 +104,12 @@ def draw(
         _name_axes_once(figure.axes[: len(panels)], columns)
         _draw_legend(figure)
         _fit_height(figure)
-    captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _TOLD]
+    captions = [_caption(letters, [getattr(note, part) for note in notes]) for part in _PARTS]
     figure.set_label("\n".join(filter(None, captions)))
     return figure
 
 
-_TOLD = "caption", "glance"
+_PARTS = "caption", "glance"
 
 
 def _plain(text: str) -> str:

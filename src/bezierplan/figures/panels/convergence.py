@@ -111,8 +111,8 @@ def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
     low, median, high = np.quantile(
         _histories(results.runs, generations), [0.25, 0.5, 0.75], axis=0
     )
-    shown = np.nan if run is None else _histories(run.to_frame().T, generations)[0]
-    drawn = pd.DataFrame({"generation": range(generations), "objective": shown})
+    own = np.nan if run is None else _histories(run.to_frame().T, generations)[0]
+    drawn = pd.DataFrame({"generation": range(generations), "objective": own})
     drawn = drawn.assign(
         median=median, quartile1=low, quartile3=high, bound=results.runs["bound"].iloc[0], **names
     )

@@ -56,7 +56,7 @@ class Options(RunsPanel):
     drives: ClassVar[bool] = True
 
     pick: Pick = Field(description=PICK)
-    at: Annotated[float, value(lambda given: is_number(given) and 0 <= given <= 1, "")] = Field(
+    at: Annotated[float, value(lambda share: is_number(share) and 0 <= share <= 1, "")] = Field(
         description="the moment, as a share of the time of the drive, a number from 0 to 1"
     )
 

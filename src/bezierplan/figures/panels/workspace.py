@@ -156,10 +156,10 @@ def _cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
     row, column = np.nonzero(whole.occupied | (not hidden))
     surplus = (row >= grid.occupied.shape[0]) | (column >= grid.occupied.shape[1])
     part = np.where(surplus, "surplus", np.where(whole.occupied[row, column], "occupied", "free"))
-    shown = (part == numbers) | (numbers == "all")
+    numbered = (part == numbers) | (numbers == "all")
     x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
     cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
-    cells["number"] = pd.Series(row * columns + column, dtype="Int64").where(shown)
+    cells["number"] = pd.Series(row * columns + column, dtype="Int64").where(numbered)
     if whole.heights is not None and whole is grid:
         cells["height"] = whole.heights.ravel()
     return cells
