@@ -46,3 +46,19 @@ def test_a_wide_table_is_scaled_to_the_page():
     text = written(**{f"c{number}": ["1"] for number in range(9)})
     assert r"\resizebox{\textwidth}{!}{%" in text
     assert text.count("{") == text.count("}")
+
+
+def test_printed_number_stands_above_ours_with_its_mark():
+    ours, printed, marks = (
+        pd.DataFrame({"method": ["GA", "PRM"], "length": cells, "time": times})
+        for cells, times in (
+            (["1.52", "2.10"], ["0.01", "0.02"]),
+            (["1.5", "3"], ["4", ""]),
+            (["agrees", "disagrees"], ["", ""]),
+        )
+    )
+    text = latex.document(latex.laid_over(ours, printed, marks), "", "", [latex.LEGEND])
+    assert r"\begin{tabular}{lrr}" in text
+    assert r"GA & \shortstack[r]{1.5 \\ 1.52 +} & \shortstack[r]{4 \\ 0.01} \\" in text
+    assert r"PRM & \shortstack[r]{3 \\ 2.10 x} & \shortstack[r]{- \\ 0.02} \\" in text
+    assert r"\footnotesize Above: printed. Below: ours; + agrees, x disagrees" in text

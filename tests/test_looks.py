@@ -3,7 +3,6 @@ compare all planners say.
 """
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -129,33 +128,6 @@ def test_looks_are_declared_once_or_follow_the_planner():
     )
     twice = style.lines(["a", "b"], {"a": "blue", "b": "blue"})
     assert twice[0]["color"] != twice[1]["color"], "two lines in one panel are never alike"
-
-
-# Panels, kind and number of series of the printed figures, as far as the papers' texts tell.
-PRINTED = pd.read_csv(Path(__file__).parent / "data" / "figures.csv")
-KINDS = {
-    "map": {"workspace", "paths", "drawing"},
-    "schematic": {"drawing", "paths"},
-    "line plot": {"along_path"},
-    "surface": {"surface", "landscape"},
-}
-
-
-@pytest.mark.parametrize("printed", list(PRINTED.itertuples()), ids=lambda row: row[1] + row[2])
-def test_a_figure_has_the_panels_of_the_printed_one(printed):
-    figure = STUDIES[printed.study].figures[printed.figure]
-    assert figure.mirrors.startswith("In print: ")
-    if printed.panels > 0:
-        assert len(figure.panels) == printed.panels
-    for panel in figure.panels:
-        if isinstance(printed.kind, str):
-            assert panel.kind in KINDS.get(printed.kind, {printed.kind})
-        series = getattr(panel, "where", {}).get(
-            getattr(panel, "hue", None) or getattr(panel, "by", None)
-        )
-        if series and printed.series > 0:
-            assert len(series) == printed.series
-        assert not getattr(panel, "context", False), "nothing but what the paper draws"
 
 
 METHODS = ["smooth", "coarse", "random"]

@@ -35,152 +35,41 @@ def transcribed(study, table):
     ).to_dict("records")
 
 
-# How a label is called in config/.
-METHODS = {
-    "Proposed Method": "mga",
-    "Random mutation": "random",
-    "Mutation in Ref. [12]": "ref12",
-    "Mutation in Ref. [21]": "ref21",
-    "Proposed mutation": "proposed",
-}
-OBSTACLES = ("5", "10", "15", "20", "25")
-
-
-def cells(study, table, keys, columns):
-    """Set of (key columns, metric, statistic, text) of a printed table. keys: label -> values of
-    the key columns; columns: as `COLUMNS`.
-    """
-    found = set()
-    for label, *texts in printed(study, table):
-        assert len(texts) == len(columns), label
-        for column, text in zip(columns, texts):
-            if text != "—":
-                found.add((*keys(label), *column, text.replace(",", ".")))
-    return found
-
-
-def own(study, table, *keys):
-    rows = [tuple(row[key] for key in (*keys, "value")) for row in transcribed(study, table)]
-    assert len(set(rows)) == len(rows)
-    return set(rows)
-
-
-CASES = [(case, number) for case in ("case1", "case2") for number in OBSTACLES]
-LENGTH_AND_TIME = [
-    (metric, statistic) for metric in ("length", "cpu_s") for statistic in ("min", "max", "mean")
-]
-TRIALS = [("optimal", "count"), ("near_optimal", "count"), ("infeasible", "count")]
-MEANS = [("objective", "mean"), ("generation_improved", "mean"), ("cpu_s", "mean")]
-SWARMS = [("collisions_c", "mean"), ("rank", "mean"), ("objective", "mean")]
-OF_METHOD = ("method", "metric", "statistic")
-
-
-def method(label):
-    """Others are called what they are, such as `cpso2_sine` for CPSO-II-Sine."""
-    name = label.lower().replace("cpso-ii-", "cpso2_").replace("cpso-i-", "cpso1_")
-    return (METHODS.get(label, name.replace("-", "_")),)
-
-
-@pytest.mark.parametrize("table", ["table2", "table3"])
-def test_lengths_of_elhoseny2017(table):
-    found = own("elhoseny2017", table, "method", "route", "obstacles")
-    assert found == cells("elhoseny2017", table, method, CASES)
-    assert len(found) == 40
-
-
-def test_times_of_elhoseny2017():
-    columns = [(number,) for number in OBSTACLES]
-    assert own("elhoseny2017", "table6", "method", "obstacles") == cells(
-        "elhoseny2017", "table6", method, columns
-    )
-    found, name = set(), ""
-    for label, statistic, *texts in printed("elhoseny2017", "table5"):
-        name = label or name
-        called = {"GA": "mga_plain", "Proposed Method": "mga"}[name]
-        found |= {
-            (called, number, {"Avg.": "mean", "STD": "std"}[statistic], text)
-            for number, text in zip(OBSTACLES, texts)
-        }
-    assert own("elhoseny2017", "table5", "method", "obstacles", "statistic") == found
-
-
 def test_example_and_maps_of_elhoseny2017():
+    """The cells of tables of numbers are asked where they lie beside ours, in `test_layout`."""
     for table in ("table1", "table4"):
         rows = [list(row.values()) for row in transcribed("elhoseny2017", table)]
         assert rows == printed("elhoseny2017", table)
 
 
 @pytest.mark.parametrize("number", [1, 2])
-def test_tables_of_ma2020(number):
-    table = f"table{number}"
-    assert own("ma2020", table, *OF_METHOD) == cells("ma2020", table, method, LENGTH_AND_TIME)
-    assert {row["workspace"] for row in transcribed("ma2020", table)} == {f"environment{number}"}
-    # The text repeats some of them.
-    rows = {
-        tuple(row[key] for key in ("workspace", *OF_METHOD, "value"))
-        for row in transcribed("ma2020", table)
-    }
-    said = {
-        tuple(row[key] for key in ("workspace", *OF_METHOD, "value"))
-        for row in transcribed("ma2020", "text_numbers")
-    }
-    assert {row for row in said if row[0] == f"environment{number}"} <= rows
-
-
-@pytest.mark.parametrize(
-    ("table", "problem"),
-    [
-        ("table2", "env1_initial"),
-        ("table3", "env1_modified"),
-        ("table4", "env2_initial"),
-        ("table5", "env2_modified"),
-    ],
-)
-def test_tables_of_meledje(table, problem):
-    assert own("meledje", table, *OF_METHOD) == cells("meledje", table, method, TRIALS + MEANS)
-    assert {row["problem"] for row in transcribed("meledje", table)} == {problem}
-    # The paper counts out of 100 trials.
-    assert [sum(int(text) for text in texts[:3]) for _, *texts in printed("meledje", table)] == [
-        100
-    ] * 4
-
-
-def test_table_of_song2016():
-    columns = [
-        (way, metric)
-        for way in ("nonsmooth", "smooth")
-        for metric in ("generation_1pct", "objective")
-    ]
-    found = cells(
-        "song2016",
-        "table1",
-        lambda label: (label.removeprefix("Grid ").replace(" to ", "_"),),
-        columns,
+def test_the_text_of_ma2020_repeats_numbers_of_its_tables(number):
+    rows, said = (
+        {
+            tuple(row[key] for key in ("workspace", "method", "metric", "statistic", "value"))
+            for row in transcribed("ma2020", name)
+            if row["workspace"] == f"environment{number}"
+        }
+        for name in (f"table{number}", "text_numbers")
     )
-    assert own("song2016", "table1", "problem", "method", "metric") == found
+    assert said <= rows
+    assert len(rows) == len(transcribed("ma2020", f"table{number}"))
 
 
-@pytest.mark.parametrize(
-    ("table", "prefix", "rows"), [("table3", "cpso1", 8), ("table4", "cpso2", 8), ("table5", "", 5)]
-)
-def test_tables_of_tharwat2018(table, prefix, rows):
-    found = cells(
-        "tharwat2018",
-        table,
-        lambda label: (f"{prefix}_{label.lower()}",) if prefix else method(label),
-        SWARMS,
+@pytest.mark.parametrize("table", ["table2", "table3", "table4", "table5"])
+def test_meledje_counts_out_of_100_trials(table):
+    for _, *texts in printed("meledje", table):
+        assert sum(int(text) for text in texts[:3]) == 100
+
+
+@pytest.mark.parametrize(("table", "total"), [("table3", 36.0), ("table4", 36.1), ("table5", 13.8)])
+def test_mean_ranks_of_tharwat2018(table, total):
+    """Those of k methods add to k (k + 1) / 2: to 36 in Tables 3 and 4, up to rounding; those of
+    Table 5 do not add to 15.
+    """
+    assert sum(float(texts[1]) for _, *texts in printed("tharwat2018", table)) == pytest.approx(
+        total
     )
-    assert own("tharwat2018", table, *OF_METHOD) == found
-    # The mean ranks of k methods add to k (k + 1) / 2: to 36 in Tables 3 and 4, up to rounding;
-    # those of Table 5 do not add to 15.
-    total = sum(float(texts[1]) for _, *texts in printed("tharwat2018", table))
-    assert total == pytest.approx({"table3": 36.0, "table4": 36.1, "table5": 13.8}[table])
-    assert len(found) == 3 * rows
-
-
-def test_obstacles_of_tharwat2018():
-    found = cells("tharwat2018", "table6", lambda label: (label,), SWARMS)
-    assert own("tharwat2018", "table6", "obstacles", "metric", "statistic") == found
 
 
 # How many runs a number is of, and in which unit of length.

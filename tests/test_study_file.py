@@ -82,10 +82,10 @@ def test_panels_that_are_written_once_are_those_written_out():
         )
 
     shared = {"kind": "boxes", "experiment": "routes", "metric": "length"}
-    first = {"title": "one", "where": {"method": "smooth", "problem": ["0_15"]}, "limits": True}
+    first = {"title": "one", "where": {"method": "smooth", "problem": ["0_15"]}, "context": True}
     second = {"where": {"problem": ["15_255"], "method": "smooth"}}
     each = [
-        {"title": "one", "where": {"problem": ["0_15"]}, "limits": True},
+        {"title": "one", "where": {"problem": ["0_15"]}, "context": True},
         {"where": {"problem": ["15_255"]}},
     ]
     last = {"kind": "workspace", "workspace": "figure2"}

@@ -115,6 +115,21 @@ def test_table_in_the_order_of_the_configuration():
     assert [float(text) for text in table["length: fast"]] == pytest.approx([10, 5], abs=0.2)
 
 
+def test_a_table_in_the_papers_form_shows_small_numbers_and_the_printed_ones_in_its_cells():
+    ours = results()
+    spec = SPEC | {"published": "table1.csv"}
+    ours.runs["length"] /= 1000
+    table = pivot(ours, spec, LABELS)
+    assert list(table) == list(pivot(ours, SPEC, LABELS))[:-1], "no counts of runs"
+    assert table["length: fast"].str.fullmatch(r"0\.0+[1-9]\d\d").all()
+    rows = published().astype(str).assign(value=["10", "10.00", "1000"])
+    laid = tables.alike(rows, pivot_of(spec), LABELS, table)
+    assert laid.index.equals(table.index)
+    assert list(laid) == list(table)
+    assert laid.loc["the long one"].to_list() == ["", "1000", "10", "10.00"]
+    assert laid.loc["brief"].to_list() == [""] * 4
+
+
 def test_failed_runs_are_never_averaged():
     ours = results()
     feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]

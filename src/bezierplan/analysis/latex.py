@@ -119,6 +119,6 @@ def _heads(names: list[str]) -> list[str]:
 
 
 def _is_number(column: pd.Series) -> bool:
-    """Whether a column of text holds numbers, and empty cells at most."""
-    given = column[column != ""]
+    """Whether a column of text holds numbers, and empty cells or dashes at most."""
+    given = column[~column.isin(["", "-"])]
     return bool(len(given)) and bool(pd.to_numeric(given, errors="coerce").notna().all())
