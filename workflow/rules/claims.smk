@@ -21,11 +21,11 @@ rule claims:
     benchmark:
         f"{RESULTS}/logs/claims.tsv"
     priority: 3
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(2000),
         runtime=more(20),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.Claims),
     script:
@@ -69,11 +69,11 @@ rule alternative:
         checks=f"{RESULTS}/sensitivity/{{alternative}}/claim_checks.csv",
     log:
         f"{RESULTS}/logs/sensitivity/{{alternative}}.log",
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(2000),
         runtime=more(20),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.Alternative),
     script:

@@ -27,20 +27,25 @@ script = FORKS.script
 # Snakemake puts the path of its interpreter into commands unquoted, and a folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
+
+def or_exit(work, *of):
+    """What a function returns; a fault ends the program, in one line."""
+    try:
+        return work(*of)
+    except Fault as fault:
+        print(fault, file=sys.stderr)
+        sys.exit(2)
+
+
 CONFIG = "config/config.yaml"
-try:
-    if not config:
-        reading.check_config(CONFIG)
+# In a module, the configuration is that of the workflow which uses it.
+or_exit(reading.check_config, CONFIG if not config else "")
+if Path(CONFIG).is_file():
 
-    if Path(CONFIG).is_file():
+    configfile: CONFIG
 
-        configfile: CONFIG
 
-    STUDIES = reading.load(reading.read_config(config))
-except Fault as fault:
-    print(fault, file=sys.stderr)
-    sys.exit(2)
-
+STUDIES = or_exit(lambda: reading.load(reading.read_config(config)))
 RESULTS = "results/{scale}/{study}"
 # What a module that uses this workflow puts before each path of results: for the page, which looks
 # what there is. Snakemake tells it nowhere else.
@@ -69,6 +74,17 @@ STILL, MOVING = (
     }
     for moves in (False, True)
 )
+
+
+def files_in(scale, folder, study=None):
+    """Files of all tables and figures of one tree: of a study, or of all."""
+    return [
+        file
+        for own in STUDIES.values()
+        if study in (None, own.key)
+        for name in own.named(folder)
+        for file in files_of(scale, own, name)
+    ]
 
 
 def in_trees(names):
@@ -147,9 +163,7 @@ def of_study(files):
     """Files of a study's folder that a job reads: they stay where they are, wherever a module has
     its results.
     """
-    return lambda wildcards: [
-        local(file) for file in files(STUDIES[wildcards.study], wildcards)
-    ]
+    return lambda wildcards: [local(file) for file in files(STUDIES[wildcards.study], wildcards)]
 
 
 def more(least):

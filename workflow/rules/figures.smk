@@ -24,11 +24,11 @@ rule figure:
         f"{RESULTS}/logs/{{tree}}/{{figure}}.log",
     wildcard_constraints:
         study=studies_with(DRAWN),
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(1500),
         runtime=more(5),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.Figure),
         caption=caption,

@@ -15,11 +15,11 @@ rule problems:
     log:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     priority: 4
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(1500),
         runtime=more(5),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.Problems),
     script:
@@ -36,11 +36,11 @@ rule bounds:
     benchmark:
         f"{RESULTS}/logs/bounds/{{experiment}}.tsv"
     priority: 1
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(1500),
         runtime=more(10),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.Bounds),
     script:
@@ -60,11 +60,11 @@ rule runs:
     wildcard_constraints:
         study=studies_with(STILL),
     priority: 2
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(1500),
         runtime=more(20),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.Runs),
     script:

@@ -35,7 +35,9 @@ rule baseline_comparison:
 
 rule summary:
     input:
-        comparisons=[f"results/{{scale}}/{key}/{tree(name)}/{name}.comparison.csv" for key, name in COMPARED],
+        comparisons=[
+            f"results/{{scale}}/{key}/{tree(name)}/{name}.comparison.csv" for key, name in COMPARED
+        ],
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
     output:
@@ -90,9 +92,7 @@ rule page:
             f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         ),
         problems=read(of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(
-            of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
-        ),
+        bounds=read(of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
         artefacts=lambda wildcards: [
             file
             for study in STUDIES.values()

@@ -29,11 +29,11 @@ rule table:
         f"{RESULTS}/logs/{{tree}}/{{table}}.log",
     wildcard_constraints:
         study=studies_with(PRINTED),
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(1500),
         runtime=more(5),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.TableOfRuns),
         caption=caption,
@@ -83,11 +83,11 @@ rule listing:
         f"{RESULTS}/logs/{{tree}}/{{table}}.log",
     wildcard_constraints:
         study=studies_with(LISTED),
+    conda:
+        "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(1500),
         runtime=more(5),
-    conda:
-        "../envs/bezierplan.yaml"
     params:
         **params(jobs.TableWithoutRuns),
         caption=caption,

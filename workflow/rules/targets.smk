@@ -1,28 +1,14 @@
 # Names for what a user may want: the papers, what goes beyond them, a scale, a study, a table or
 # figure. `snakemake --list-target-rules` lists them.
 
-
-def files_in(scale, folder, study=None):
-    """Files of all tables and figures of one tree: of a study, or of all."""
-    return [
-        file
-        for own in STUDIES.values()
-        if study in (None, own.key)
-        for name in own.named(folder)
-        for file in files_of(scale, own, name)
-    ]
-
-
-try:
-    reading.check_names(
-        STUDIES,
-        [
-            *(rule.name for rule in workflow.rules),
-            *("all", "smoke", "beyond", "extended", "alternatives", "published", "default"),
-        ],
-    )
-except Fault as fault:
-    sys.exit(str(fault))
+or_exit(
+    reading.check_names,
+    STUDIES,
+    [
+        *(rule.name for rule in workflow.rules),
+        *("all", "smoke", "beyond", "extended", "alternatives", "default"),
+    ],
+)
 
 
 rule all:
