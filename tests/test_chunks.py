@@ -70,9 +70,9 @@ def test_conditions_with_fewer_runs_leave_the_later_chunks(method, numbers, firs
 
 def test_a_caption_says_where_there_are_fewer_runs():
     own = studies()["song2016"]
-    told = ", 125 where method is smooth (cubic pieces) or smooth (single Bézier)."
-    assert jobs.caption(own, "table1", "extended").endswith(f" on each problem{told}")
-    assert jobs.caption(own, "table1", "full").endswith(" on each problem.")
+    runs = "runs of each method on each problem."
+    assert jobs.caption(own, "table1", "extended").endswith(f"routes: at most 250 {runs}")
+    assert jobs.caption(own, "table1", "full").endswith(f"routes: 100 {runs}")
 
 
 @pytest.mark.parametrize(

@@ -63,9 +63,6 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     assert (
         "settings" not in jobs.job(study, "routes", "shortest_path", "smoke", 0).problems["0_255"]
     )
-    assert "On 0 to 255: genes 5, samples 7, generations 9" in jobs.caption(
-        study, "table1", "smoke"
-    )
     assert all(
         "settings" not in problem
         for problem in jobs.problems_job(study, "routes", "smoke").problems.values()

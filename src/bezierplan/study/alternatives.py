@@ -7,8 +7,6 @@ from typing import Any
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.jobs import Tried
-from bezierplan.planners import PLACE
-from bezierplan.running.chunk import Chunk
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study
@@ -138,62 +136,3 @@ def experiments_of_claims(claims: list[Claim]) -> list[str]:
         one_or_list(value) for claim in claims for value in claim.variants.get("experiment", [])
     )
     return list(dict.fromkeys(named))
-
-
-def in_first_variant(claim: Claim, check: Check) -> dict[str, Any]:
-    """The selection of a check in the primary variant: a column whose first value no check names
-    becomes one more condition.
-    """
-    extra = {}
-    for column, values in claim.variants.items():
-        firsts = one_or_list(values[0])
-        if column not in ("metric", "experiment") and not any(
-            _names(each, column, firsts) for each in claim.checks
-        ):
-            extra[column] = values[0]
-    return getattr(check, "where", {}) | extra
-
-
-def judged_only(chunk: Chunk, claims: list[Claim]) -> Chunk:
-    """A chunk of runs without the problems and varied values that no check of these claims selects
-    in its primary variant.
-    """
-    wheres = [
-        in_first_variant(claim, check)
-        for claim in claims
-        for check in claim.checks
-        if chunk.experiment in check.experiments
-    ]
-
-    def wanted(column: str, value: Any) -> bool:
-        return any(value in one_or_list(where.get(column, [value])) for where in wheres)
-
-    def met(problem: dict) -> bool:
-        columns = problem.keys() & set(PLACE)
-        return any(
-            all(
-                problem[column] in one_or_list(where.get(column, [problem[column]]))
-                for column in columns
-            )
-            for where in wheres
-        )
-
-    problems = {
-        name: problem
-        for name, problem in chunk.problems.items()
-        if met(problem) and ("layout" in problem or wanted("problem", name))
-    }
-    return chunk._replace(
-        problems=problems,
-        vary={
-            column: [value for value in values if wanted(column, value)]
-            for column, values in chunk.vary.items()
-        },
-    )
-
-
-def _names(check: Check, column: str, values: list[Any]) -> bool:
-    named = one_or_list(getattr(check, "where", {}).get(column, []))
-    if column == getattr(check, "across", None):
-        named = [*named, *check.groups_named]
-    return any(value in named for value in values)

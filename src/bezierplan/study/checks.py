@@ -57,8 +57,6 @@ def check(study: Study) -> None:
         if isinstance(table, Pivot) and table.published:
             published.check(design, table, where)
             design.check_where([table.experiment], table.primary, f"{where}: primary")
-        if isinstance(table, Comparison):
-            _check_comparison(design, table, where)
     for name, figure in study.figures.items():
         if name in study.tables:
             raise Fault(f"{location}: figures: {name}: a table has this name already")
@@ -408,20 +406,6 @@ def _check_panel(design: Design, panel: Panel, location: str) -> None:
                 f"{location}: where: method: {method}: its planner "
                 f"{study.methods[method].planner} has no function track"
             )
-
-
-def _check_comparison(design: Design, table: Comparison, location: str) -> None:
-    """The tables that it compares have its metrics, and the columns and values that it selects."""
-    pivots = [design.study.compared()[name] for name in table.of]
-    metrics_of = {entry.metric for pivot in pivots for entry in pivot.values}
-    for metric in table.metrics:
-        check_known(metric, metrics_of, f"{location}: metrics")
-    for column, wanted in table.where.items():
-        having = [each for each in pivots if column in published.keys(design.study, each)]
-        known = [key for each in pivots for key in published.keys(design.study, each)]
-        check_known(column, known, f"{location}: where")
-        experiments = [each.experiment for each in having]
-        design.check_where(experiments, {column: wanted}, f"{location}: where")
 
 
 def _check_claim(

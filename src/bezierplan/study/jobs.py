@@ -28,7 +28,6 @@ from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
 from bezierplan.study.artefacts import Figure as FigureOfStudy
 from bezierplan.study.definition import Study, relative
-from bezierplan.study.experiments import Experiment
 
 Studies = dict[str, Study]
 
@@ -614,65 +613,17 @@ def _planned(study: Study, panel: Panel) -> Panel:
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
-    """The caption of a table or figure: title, and the methods, settings and repeats in force."""
+    """The caption of a table or figure: title, how it mirrors the paper's, and the repeats in
+    force. The page has the settings of each method.
+    """
     spec = study.tables.get(artefact) or study.figures[artefact]
-    sentences = [*filter(None, [spec.title, getattr(spec, "mirrors", None)])]
+    sentences = [spec.title, getattr(spec, "mirrors", None)]
     for experiment in experiments_of(study, artefact):
         content = study.experiments[experiment]
-        methods = [
-            method
-            for method in methods_of(study, artefact, experiment)
-            if method not in study.baselines
-        ]
-        settings = {method: study.resolved(method) for method in methods}
-        first = settings[methods[0]] if methods else {}
-        shared = {
-            name: value
-            for name, value in first.items()
-            if all(own.get(name) == value for own in settings.values())
-        }
-        for method, own in settings.items():
-            apart = {
-                name: value
-                for name, value in own.items()
-                if name not in shared and name not in content.vary
-            }
-            driven = (
-                f", policy {study.methods[method].policy}" if study.methods[method].policy else ""
-            )
-            sentences.append(
-                f"{study.labels.get(method, method)}: "
-                f"{study.planner(method)}{_listed(apart, ' with ')}{driven}"
-            )
-        if shared:
-            sentences.append(
-                f"All:{_listed(shared, ' ')}"
-                if len(methods) > 1
-                else f"Settings:{_listed(shared, ' ')}"
-            )
-        for problem in content.problems:
-            if settings := study.problems[problem].settings:
-                sentences.append(
-                    f"On {study.labels.get(problem, problem)}:{_listed(settings, ' ')}"
-                )
-        sentences.append(
-            f"{content.repeats[scale]} runs of each method on each problem"
-            + (_fewer(study, content, methods) if scale == "extended" else "")
-        )
-    return ". ".join(sentences) + "."
-
-
-def _fewer(study: Study, experiment: Experiment, methods: list[str]) -> str:
-    """Where these methods make fewer runs at scale extended, as the end of a sentence."""
-    end = ""
-    for factor, fewer in experiment.fewer.items():
-        shown = {
-            name: count for name, count in fewer.items() if factor != "method" or name in methods
-        }
-        for count in sorted(set(shown.values())):
-            names = [study.labels.get(name, name) for name, own in shown.items() if own == count]
-            end += f", {count} where {factor.replace('_', ' ')} is {' or '.join(names)}"
-    return end
+        most = "at most " if scale == "extended" and content.fewer else ""
+        repeats = content.repeats[scale]
+        sentences.append(f"{experiment}: {most}{repeats} runs of each method on each problem")
+    return ". ".join(filter(None, sentences)) + "."
 
 
 def escaped(text: str) -> str:
@@ -680,14 +631,6 @@ def escaped(text: str) -> str:
     return "".join(
         f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign
         for sign in " ".join(text.split())
-    )
-
-
-def _listed(settings: dict[str, Any], before: str) -> str:
-    return (
-        before + ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in settings.items())
-        if settings
-        else ""
     )
 
 
@@ -828,7 +771,7 @@ class Alternative(Claims):
         return cls(
             **_claims(content, claims, scale),
             chunks=[
-                (number, alternatives.judged_only(job(tried, name, method, scale, number), claims))
+                (number, job(tried, name, method, scale, number))
                 for name, compared in methods.items()
                 for method in compared
                 if method in changed
