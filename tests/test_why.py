@@ -1,8 +1,5 @@
 """Why a claim has its verdict, in one plain sentence for each kind of test."""
 
-import math
-
-import pandas as pd
 import pytest
 
 from bezierplan.analysis.claims import kinds
@@ -22,9 +19,9 @@ ROW |= {"effect_size": 4.96, "counted": "0 of 10, 10 of 10"}
 SHARE = {
     "test": "share",
     "metric": "generation_5pct",
-    "statistic": math.nan,
+    "statistic": None,
     "unit": "generation",
-    "margin": math.nan,
+    "margin": None,
 }
 SHARE |= {"effect": 0.39, "low95": 0.29, "high95": 0.49}
 OURS = "differences below {} do not count (our choice)."
@@ -55,15 +52,14 @@ SENTENCES = {
         "because seconds differ from machine to machine.",
     ),
     "a superlative": (
-        {"statistic": "rank"},
+        {"statistic": "rank", "comparison": "all 3 together"},
         {"direction": "lower"},
-        "all 3 together",
-        "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cells higher (95 % "
-        "interval 1 to 5); "
-        "the claim says lower in all of them; " + OURS.format("0.5 cells"),
+        "mga lower than ga",
+        "Case 1: in exact arc length, mga is 3 cells higher than ga (95 % interval 1 to 5); "
+        "the claim says lower in all 3 comparisons; " + OURS.format("0.5 cells"),
     ),
     "a stated difference": (
-        {"test": "equal_within", "effect": -0.000331, "low95": math.nan, "margin": 0.01},
+        {"test": "equal_within", "effect": -0.000331, "low95": None, "margin": 0.01},
         {"scale": "relative", "target": 0.0496},
         "bca_q as bca",
         "Case 1: in exact arc length (mean), bca_q is 0.0331 % lower than bca; the claim says by "
@@ -95,7 +91,7 @@ SENTENCES = {
     "a function": (
         {
             "test": "function",
-            "metric": math.nan,
+            "metric": None,
             "unit": "-",
             "effect": 0.235,
             "low95": 0.233,
@@ -106,10 +102,11 @@ SENTENCES = {
         "Case 1: share of the values above 0.7: 0.235 (95 % interval 0.233 to 0.237).",
     ),
     "no value": (
-        {"effect": math.nan},
-        {},
+        {"effect": None},
+        {"direction": "lower"},
         "mga lower than ga",
-        "Case 1: exact arc length (mean), mga lower than ga: a value in 0 of 10 and 10 of 10 runs.",
+        "Case 1: exact arc length (mean) has a value in 0 of 10 runs of mga and in 10 of 10 runs "
+        "of ga; the claim says lower.",
     ),
 }
 
@@ -133,7 +130,7 @@ def check_of(test, **written):
 
 @pytest.mark.parametrize(("row", "check", "name", "sentence"), SENTENCES.values(), ids=SENTENCES)
 def test_each_kind_of_test_has_a_sentence(row, check, name, sentence):
-    given = pd.Series(ROW | row)
+    given = ROW | {"comparison": name} | row
     assert (
         why.why(given, check_of(given["test"], **check), name, "Case 1", own_criterion=False)
         == sentence
@@ -142,7 +139,7 @@ def test_each_kind_of_test_has_a_sentence(row, check, name, sentence):
 
 def test_a_limit_of_ours_is_said_to_be_ours():
     given, check = (
-        pd.Series(ROW | SHARE),
+        ROW | SHARE | {"comparison": ""},
         check_of("share", event={"at_most": 30}, threshold=0.5, direction="at_least"),
     )
     assert why.why(given, check, "", "", own_criterion=True).endswith(
@@ -160,3 +157,18 @@ def test_the_line_in_a_picture_is_what_a_share_is_compared_with():
         == 0.5
     )
     assert why.reference(check_of("lower", direction="lower")) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("holds", "verdict", "count", "words"),
+    [
+        ("any", "supported", "3 of 16", "3 of 16; one suffices"),
+        ("together", "contradicted", "6 of 12", "6 of 12; all are needed together"),
+        ("all", "contradicted", "1 of 4", "1 of 4; none when corrected for their number"),
+        ("all", "partly", "2 of 4", "2 of 4"),
+        ("any", "supported", "1 of 1", "1 of 1"),
+        (None, "untestable", None, ""),
+    ],
+)
+def test_a_count_says_how_many_a_claim_needs(holds, verdict, count, words):
+    assert why.rule(holds, verdict, count) == words

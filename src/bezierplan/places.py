@@ -16,7 +16,7 @@ TREE = PACKAGE.parents[1] if CHECKOUT else PACKAGE / "tree"
 STUDIES = TREE / "config" / "studies"
 """The studies of this project."""
 
-EXTRA = frozenset(("itables", "jinja2", "pyarrow", "seaborn", "snakemake", "vl_convert"))
+EXTRA = frozenset(("jinja2", "pyarrow", "seaborn", "snakemake"))
 """Libraries of the extra `workflow`: those that run whole studies."""
 
 

@@ -123,8 +123,6 @@ rule page:
         "results/{scale}/page.log",
     conda:
         "../envs/bezierplan.yaml"
-    # The last job of a workflow, so the others leave it the cores.
-    threads: 2
     params:
         **params(page.Page, root=PREFIX),
     script:

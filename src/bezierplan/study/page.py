@@ -116,7 +116,7 @@ class Page(Job):
 
     def run(self, input_files, output_files, threads):
         """Write the page."""
-        from bezierplan.figures.page import job
+        from bezierplan.figures.page import build
         from bezierplan.running import inputs
 
         experiments: dict[str, dict[str, ExperimentShown]] = {key: {} for key in self.page.studies}
@@ -135,22 +135,17 @@ class Page(Job):
             key: own._replace(experiments=experiments[key])
             for key, own in self.page.studies.items()
         }
-        job.write(
-            self.page._replace(studies=studies),
-            Path(input_files.verified).parent,
-            list(input_files.summary),
-            output_files.page,
-            threads,
-            input_files.verified,
-        )
+        job, folder = self.page._replace(studies=studies), Path(input_files.verified).parent
+        summary, verified = list(input_files.summary), input_files.verified
+        build.write(job, folder, summary, verified, output_files.page)
 
 
 def _outcome(studies: Studies, scale: str) -> list[str]:
-    """Files of the README's outcome, which the page of scale full shows next to its own, in a clone
-    that has them; none if it shows none of the papers.
+    """Files of the README's outcome, of scale extended, which the page of any other scale shows
+    first, in a clone that has them; none if it shows none of the papers.
     """
     papers = any(study.folder.resolve().is_relative_to(STUDIES) for study in studies.values())
-    shown = scale == "full" and papers and all(file.is_file() for file in page.OUTCOME)
+    shown = scale != "extended" and papers and all(file.is_file() for file in page.OUTCOME)
     return [*map(str, page.OUTCOME)] if shown else []
 
 
@@ -178,6 +173,7 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
             name: MethodShown(study.planner(name), study.resolved(name)) for name in study.methods
         },
         checks={claim.id: claim.checks for claim in study.claims},
+        holds={claim.id: claim.holds for claim in study.claims},
         repeats={each: _repeats(study, each) for each in (scale, "extended")},
         tables={
             name: TableShown(table.title, jobs.caption(study, name, scale), table)

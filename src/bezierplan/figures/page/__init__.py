@@ -1,5 +1,5 @@
-"""One file that shows all results of a scale: its content (`content`, `gather`, `runs`, `answer`),
-and its look (`build`).
+"""One file that shows all results of a scale: what is read (`reader`, `runs`), what is said
+(`answer`, `why`, `charts`), and templates that show it (`build`).
 """
 
 from pathlib import Path

@@ -1,212 +1,106 @@
-"""What follows the headline in a few short sentences, computed from the content of the page: what
-fails in each paper, and how surely.
+"""What the page says first: the outcome, how many runs its results rest on, what fails, and what to
+use on a map of one's own.
 """
 
-from collections import Counter
+from types import SimpleNamespace
+from typing import Any
 
-from bezierplan.figures.page.content import BaselineComparison, Claim, Number, Part, Study
+from bezierplan.figures.page.reader import Row
 
-Sentence = list[Part]
-
-# What the verdict on a claim says in short; any other verdict leaves the claim undecided.
-IN_SHORT = {
-    "supported": "hold",
-    "partly": "hold in part",
-    "contradicted": "fail",
-    "no effect": "fail",
-}
-_OWN = "fail by our criterion alone"
-# Least probability that an experiment of the paper's size shows the same.
-_LIKELY = 0.8
+FAILS = ("contradicted", "no effect")
+"""Verdicts on claims that fail."""
 
 
-def answer(studies: dict[str, Study]) -> list[Sentence]:
-    """Sentences: one of each study, then how certain this is. Without numbers and claims, one that
-    says so.
-    """
-    claims = [claim for study in studies.values() for claim in _sentences(study)]
-    if not claims and not any(_counted(study) for study in studies.values()):
-        shown = [each for study in studies.values() for each in study.shown if not each.problem]
-        runs = sum(each.count for each in shown) or "no"
-        text = (
-            f"A subset that shows how the page works: {runs} runs, too few to judge numbers or "
-            "claims."
-        )
-        return [[Part(text=text)]]
-    of_studies = [
-        _of_study(key, study) for key, study in studies.items() if study.claims or _counted(study)
-    ]
-    sentences = [*of_studies, _replication(claims), _interpretations(claims), _audit(studies)]
-    return [sentence for sentence in sentences if sentence]
+def about_scale(scale: str, repeats: list[dict[str, list[int]]], stored: bool) -> str:
+    """How many runs the results of a scale rest on, and how this differs from the stored outcome.
 
-
-def about_scale(scale: str, repeats: dict[str, list[list[int]]]) -> list[str]:
-    """How many runs the results of a scale rest on, and how this differs from the README's numbers.
-
-    repeats: scale -> of each study, the least and the largest number of runs of a method under a
-    condition.
+    repeats: of each study, scale -> the least and the largest number of runs of a method under a
+    condition. stored: whether the page begins with the stored outcome.
     """
     runs = {
-        name: _span([number for pair in pairs for number in pair])
-        for name, pairs in repeats.items()
+        name: _span([number for each in repeats for number in each.get(name) or []])
+        for name in (scale, "extended")
     }
     first = {
-        "smoke": f"Scale smoke is a small subset, of {runs[scale]} runs per method and condition, "
-        "which shows that everything works.",
-        "full": "Scale full has as many runs as the papers report: "
-        f"{runs[scale]} per method and condition.",
-        "extended": f"Scale extended has {runs[scale]} runs per method and condition, so its "
-        "verdicts are about methods.",
+        "smoke": "a small subset, which shows that everything works",
+        "full": "as many runs as the papers report",
+        "extended": "enough runs to judge methods",
     }[scale]
-    if scale == "extended":
-        return [first, "The README's numbers are of this scale."]
-    return [
-        first,
-        f"The README's numbers rest on scale extended ({runs['extended']} runs; make extended), "
-        "so they can differ from these.",
-    ]
+    text = f"What follows is of scale {scale}, {first}: {runs[scale]} runs per method and condition"
+    if not stored:
+        return f"{text}."
+    return (
+        f"{text}. These are fewer than the {runs['extended']} runs of the outcome above, so "
+        "verdicts can differ and more stays open; each number and claim names both."
+    )
 
 
 def _span(numbers: list[int]) -> str:
-    return (
-        f"{min(numbers):,}"
-        if min(numbers) == max(numbers)
-        else f"{min(numbers):,} to {max(numbers):,}"
-    )
+    low, high = min(numbers, default=0), max(numbers, default=0)
+    return f"{low:,}" if low == high else f"{low:,} to {high:,}"
 
 
-def reliable(studies: dict[str, Study]) -> list[tuple[str, BaselineComparison]]:
-    """Methods that are feasible as often as the baseline, each with the name of its study, the
-    shortest paths first.
+def sentences_of_paper(study: SimpleNamespace) -> list[Row]:
+    """Claims of the paper, without our own findings."""
+    return [claim for claim in study.claims if not claim["finding"]]
+
+
+def failing(study: SimpleNamespace) -> list[Row]:
+    """Sentences of a paper that fail, also those that do by a criterion of ours."""
+    return [claim for claim in sentences_of_paper(study) if claim["verdict"] in FAILS]
+
+
+def counted(study: SimpleNamespace) -> list[Row]:
+    """The numbers of a study that count in the outcome."""
+    return [cell for table in study.tables for cell in table["numbers"] if cell["counted"]]
+
+
+def kind_of(workspace: dict[str, Any]) -> str:
+    """The kind and size of a map in words."""
+    left, right, bottom, top = workspace["bounds"]
+    if workspace.get("rows"):
+        return f"grid of {len(workspace['rows'][0])} × {len(workspace['rows'])} cells"
+    shapes = "circles" if workspace["kind"] == "circles" else "polygons"
+    return f"{shapes} in {right - left:.4g} × {top - bottom:.4g} {workspace['unit']}"
+
+
+def by_map(studies: dict[str, SimpleNamespace], data: dict[str, Any]) -> list[Row]:
+    """By kind and size of map, of the methods whose runs are shown on them: those that always find
+    a free path, or else the one that does most often, the shortest paths first.
+
+    Rows: map, studies, methods (number), best (study, method, share of feasible runs, gap: median
+    length over the exact bound, less 1; CPU time over the baseline's, of the whole study).
     """
-    rows = [
-        (key, row)
-        for key, study in studies.items()
-        for row in study.baseline_comparison
-        if row.feasible >= row.feasible_baseline
-    ]
-    return sorted(rows, key=lambda each: each[1].length or float("inf"))
-
-
-def failing(studies: dict[str, Study]) -> list[tuple[str, Claim]]:
-    """Sentences of papers that fail, each with the name of its study."""
-    return [
-        (key, claim)
-        for key, study in studies.items()
-        for claim in _sentences(study)
-        if _fails(claim)
-    ]
-
-
-def _in_short(claim: Claim) -> str:
-    """What the verdict on a claim says; a sentence that fails by a criterion of ours alone is no
-    failure of the paper.
-    """
-    said = IN_SHORT.get(claim.verdict, "undecided")
-    return _OWN if said == "fail" and claim.own_criterion else said
-
-
-def _fails(claim: Claim) -> bool:
-    return _in_short(claim) == "fail"
-
-
-def _counted(study: Study) -> list[Number]:
-    return [number for table in study.tables for number in table.numbers if number.counted]
-
-
-def _sentences(study: Study) -> list[Claim]:
-    """Sentences of the paper, without our own findings."""
-    return [claim for claim in study.claims if not claim.finding]
-
-
-def _of_study(key: str, study: Study) -> Sentence:
-    """How many numbers of a study agree, how many of its claims are supported, and which fail."""
-    counted, claims = Counter(number.verdict for number in _counted(study)), _sentences(study)
-    failed, said = [claim for claim in claims if _fails(claim)], []
-    if counted:
-        agree, disagree = counted["identified"] + counted["agrees"], counted["disagrees"]
-        said.append(
-            f"{agree} of {counted.total()} numbers {_verb(agree, 'agrees', 'agree')}, "
-            f"{disagree} {_verb(disagree, 'disagrees', 'disagree')}"
-        )
-    if claims:
-        supported = sum(claim.verdict == "supported" for claim in claims)
-        said.append(
-            f"{supported} of {_count(len(claims), 'claim')} {_verb(supported, 'is', 'are')} "
-            f"supported, {'' if failed else 'none fails'}"
-        )
-    parts = [Part(text=key, address=study.address), Part(text=": " + "; ".join(said))]
-    if failed:
-        parts += [
-            *_listed([(claim.id, claim.address) for claim in failed]),
-            Part(text=_verb(len(failed), " fails", " fail")),
+    found: dict[str, dict[tuple[str, str], list[Row]]] = {}
+    for key, study in studies.items():
+        for each in study.shown:
+            if each["problem"]:
+                problem = data["problems"][f"{key}/{each['experiment']}/{each['problem']}"]
+                if problem["world"] is None:
+                    kind = kind_of(data["workspaces"][problem["workspace"]])
+                    found.setdefault(kind, {}).setdefault((key, each["method"]), []).append(each)
+    rows = []
+    for kind, methods in sorted(found.items()):
+        measured = [
+            _measured(studies[key], method, shown) for (key, method), shown in methods.items()
         ]
-    return [*parts, Part(text=".")]
+        best = max(measured, key=lambda row: (row["feasible"], -row["gap"]))
+        always = sum(row["feasible"] == 1 for row in measured)
+        keys = list(dict.fromkeys(key for key, _ in methods))
+        rows.append(
+            {"map": kind, "studies": keys, "methods": len(methods), "always": always, "best": best}
+        )
+    return rows
 
 
-def _replication(claims: list[Claim]) -> Sentence:
-    known = [
-        claim.replication
-        for claim in claims
-        if claim.verdict == "supported" and claim.replication is not None
-    ]
-    if not known:
-        return []
-    likely = sum(share >= _LIKELY for share in known)
-    all_or_some = f"All {likely}" if likely == len(known) > 1 else f"{likely} of {len(known)}"
-    again = (
-        f"would show again in at least {100 * _LIKELY:g}\u00a0% of experiments of the paper's size"
-    )
-    return [Part(text=f"{all_or_some} supported claims that can be resampled {again}.")]
-
-
-def _interpretations(claims: list[Claim]) -> Sentence:
-    several = [claim for claim in claims if claim.interpretations]
-    if not several:
-        return []
-    same = sum(
-        all(interpretation.verdict == claim.verdict for interpretation in claim.interpretations)
-        for claim in several
-    )
-    text = (
-        f"{same} of {_count(len(several), 'claim')} that can be interpreted in more than one way "
-        f"{_verb(same, 'keeps its', 'keep their')} verdict in every interpretation."
-    )
-    return [Part(text=text)]
-
-
-def _audit(studies: dict[str, Study]) -> Sentence:
-    """What is wrong with the printed numbers themselves."""
-    checked = [
-        row for study in studies.values() for row in study.audit if row.consistent is not None
-    ]
-    if not checked:
-        return []
-    bad = sum(not row.consistent for row in checked)
-    where = [
-        (key, f"{study.address}/audit")
-        for key, study in studies.items()
-        if any(row.consistent is False for row in study.audit)
-    ]
-    text = (
-        f"The papers' own numbers contradict each other or an exact bound in {bad} of "
-        f"{_count(len(checked), 'check')}"
-    )
-    return [Part(text=text + (": " if where else "")), *_listed(where), Part(text=".")]
-
-
-def _listed(places: list[tuple[str, str]]) -> Sentence:
-    """Words, each of which leads to its address, in a list."""
-    parts: Sentence = []
-    for n, (words, place) in enumerate(places):
-        parts += [Part(text=" and " if n == len(places) - 1 else ", ")] if n else []
-        parts.append(Part(text=words, address=place))
-    return parts
-
-
-def _verb(count: int, one: str, many: str) -> str:
-    return one if count == 1 else many
-
-
-def _count(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+def _measured(study: SimpleNamespace, method: str, shown: list[Row]) -> Row:
+    """A method on the maps of a kind."""
+    gaps = [each["gap"] for each in shown if each["gap"] is not None]
+    cpu = next((row["cpu"] for row in study.baseline if row["method"] == method), None)
+    return {
+        "study": study,
+        "method": method,
+        "feasible": sum(each["feasible"] for each in shown) / sum(each["count"] for each in shown),
+        "gap": sum(gaps) / len(gaps) if gaps else float("inf"),
+        "cpu": cpu,
+    }

@@ -29,6 +29,7 @@ class FigureShown(NamedTuple):
 
     title: str
     caption: str
+    """Title, methods, their settings and repeats."""
 
 
 class TableShown(NamedTuple):
@@ -77,6 +78,8 @@ class StudyShown(NamedTuple):
     methods: dict[str, MethodShown]
     checks: dict[str, list[Check]]
     """Those of each claim."""
+    holds: dict[str, str]
+    """How many comparisons of each claim have to hold: `all`, `any` or `together`."""
     repeats: dict[str, list[int]]
     """Scale -> the least and the largest number of runs of a method under a condition; empty for a
     study without experiments.
@@ -104,4 +107,4 @@ class PageJob(NamedTuple):
     scale: str
     studies: dict[str, StudyShown]
     outcome: bool
-    """Whether the README's outcome is shown next to that of this scale (`outcome`)."""
+    """Whether the README's outcome is shown, next to that of this scale."""

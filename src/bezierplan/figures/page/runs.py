@@ -1,5 +1,5 @@
 """The runs that the viewer shows: of each method on each problem, and on all of an experiment, some
-of the feasible and the failed.
+of the feasible and the failed. What is made here becomes JSON in the page, for its script.
 
 Runs are ranked by their length over the exact bound of their problem, so that those on different
 problems compare.
@@ -7,14 +7,13 @@ problems compare.
 
 import json
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pyarrow.parquet as parquet
 
 from bezierplan.analysis import results
-from bezierplan.figures.page import content
 from bezierplan.figures.page.page_job import ExperimentShown
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
@@ -38,17 +37,13 @@ _DRAWN = [
 ]
 
 
-class Chosen(NamedTuple):
-    """What the viewer shows of an experiment; a workspace for each problem, by the same name."""
-
-    shown: list[content.Shown]
-    runs: dict[str, content.Run]
-    workspaces: dict[str, dict[str, Any]]
-    problems: dict[str, content.Problem]
+Row = dict[str, Any]
 
 
-def chosen(study: str, experiment: str, described: ExperimentShown) -> Chosen:
-    """The runs of an experiment that the viewer shows. Of the others only the lengths are kept."""
+def chosen(study: str, experiment: str, described: ExperimentShown) -> tuple[list[Row], Row]:
+    """The runs of an experiment that the viewer shows: which of each method on each problem; and
+    the `runs`, `problems` and `workspaces` by their names. Of all other runs only lengths are kept.
+    """
     bounds = parquet.read_table(described.bounds).to_pandas().set_index("problem")
     columns = [*_RANKED, *_DRAWN, *(["steps"] if described.traces else [])]
     tables = {file: parquet.read_table(file, columns=columns) for file in described.runs}
@@ -75,7 +70,7 @@ def chosen(study: str, experiment: str, described: ExperimentShown) -> Chosen:
     named = {
         name
         for each in shown
-        for name in (each.best, each.median, each.worst, *each.failed)
+        for name in (each["best"], each["median"], each["worst"], *each["failed"])
         if name
     }
     kept = [
@@ -96,14 +91,14 @@ def chosen(study: str, experiment: str, described: ExperimentShown) -> Chosen:
     }
     for name, trace in traces.items():
         row = by_name[name]
-        runs[name] = _drive(runs[name], trace, row, moving[row["problem"]].pace)
+        runs[name] |= _drive(runs[name]["path"], trace, row, moving[row["problem"]].pace)
     named = rows["problem"].unique()
     workspaces = {prefix + name: _shapes(made[name]) for name in named}
     problems = {
         prefix + name: _problem(prefix + name, made[name], moving.get(name), bounds.loc[name])
         for name in named
     }
-    return Chosen(shown, runs, workspaces, problems)
+    return shown, {"runs": runs, "workspaces": workspaces, "problems": problems}
 
 
 def _traces(named: list[str], ids: list[str]) -> dict[str, np.ndarray]:
@@ -119,24 +114,24 @@ def _traces(named: list[str], ids: list[str]) -> dict[str, np.ndarray]:
     }
 
 
-def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> content.Shown:
+def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> Row:
+    """Which runs of a method are shown. gap: that of the median run; None without feasible runs."""
     feasible = runs[runs["feasible"]]
     # Much faster than pandas, which first numbers the ids.
-    ordered = [
-        name for _, name in sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
-    ]
-    failed = runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED]
-    return content.Shown(
-        experiment=experiment,
-        problem=problem,
-        method=method,
-        count=len(runs),
-        feasible=len(ordered),
-        best=ordered[0] if ordered else None,
-        median=ordered[(len(ordered) - 1) // 2] if ordered else None,
-        worst=ordered[-1] if ordered else None,
-        failed=failed,
-    )
+    ordered = sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))
+    gap, median = ordered[(len(ordered) - 1) // 2] if ordered else (np.inf, None)
+    return {
+        "experiment": experiment,
+        "problem": problem,
+        "method": method,
+        "count": len(runs),
+        "feasible": len(ordered),
+        "gap": _finite(gap),
+        "best": ordered[0][1] if ordered else None,
+        "median": median,
+        "worst": ordered[-1][1] if ordered else None,
+        "failed": runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED],
+    }
 
 
 def _shapes(problem: Problem) -> dict[str, Any]:
@@ -146,53 +141,53 @@ def _shapes(problem: Problem) -> dict[str, Any]:
     return shapes | {"bounds": list(problem.workspace.bounds)}
 
 
-def _problem(
-    workspace: str, problem: Problem, world: World | None, bound: pd.Series
-) -> content.Problem:
+def _problem(workspace: str, problem: Problem, world: World | None, bound: pd.Series) -> Row:
+    """A workspace with start, target and the exact shortest path (x0, y0, x1, y1, ...)."""
     size = _size(problem.workspace.bounds)
     path = np.reshape(bound["bound_path"], (-1, 2)).astype(float)
-    return content.Problem(
-        workspace=workspace,
-        world=None if world is None else _world(world),
-        start=problem.start,
-        target=problem.target,
-        bound=_finite(bound["bound"]),
-        bound_path=_rounded(_simplified(path, _FLAT * size), size),
-    )
+    return {
+        "workspace": workspace,
+        "world": None if world is None else _world(world),
+        "start": problem.start,
+        "target": problem.target,
+        "bound": _finite(bound["bound"]),
+        "bound_path": _rounded(_simplified(path, _FLAT * size), size),
+    }
 
 
-def _world(world: World) -> content.World:
+def _world(world: World) -> Row:
+    """How obstacles move, time in steps: circles (x, y, velocities, radius), whose centres are
+    reflected at walls; or cells that change at some moments, counted row by row from the top left
+    one.
+    """
     if isinstance(world, MovingCircles):
         table = np.column_stack([world.centres, world.velocities, world.radii])
-        return content.World(
-            walls=list(world.walls),
-            circles=[[float(f"{value:.7g}") for value in circle] for circle in table],
-        )
+        circles = [[float(f"{value:.7g}") for value in circle] for circle in table]
+        return {"walls": list(world.walls), "circles": circles}
     cells = ["".join(grid.to_lines(each)) for each in world.maps]
     changed = [
         [n for n, (was, now) in enumerate(zip(before, after, strict=True)) if was != now]
         for before, after in pairwise(cells)
     ]
-    return content.World(moments=world.moments.tolist(), changed=changed)
+    return {"circles": [], "moments": world.moments.tolist(), "changed": changed}
 
 
-def _drive(run: content.Run, trace: np.ndarray, row: dict[str, Any], pace: float) -> content.Run:
-    """A run with what belongs to a drive; the place of its first collision is where the robot was
-    then.
+def _drive(path: list[float], trace: np.ndarray, row: Row, pace: float) -> Row:
+    """What belongs to a drive: the distance along its path at each step; the place of its first
+    collision is where the robot was then.
     """
     size = float(np.ptp(trace, axis=0).max()) or 1.0
     steps, collision = float(row["steps"]), None
     if np.isfinite(row["collision_at"]):
         times = np.append(np.arange(len(trace) - 1), steps)
-        collision = tuple(float(np.interp(row["collision_at"], times, along)) for along in trace.T)
-    more = {
+        collision = [float(np.interp(row["collision_at"], times, along)) for along in trace.T]
+    return {
         "control": [],
-        "driven": _rounded(_driven(np.reshape(run.path, (-1, 2)), trace, pace), size),
+        "driven": _rounded(_driven(np.reshape(path, (-1, 2)), trace, pace), size),
         "steps": steps,
         "collision": collision,
         "collision_step": _finite(row["collision_at"]),
     }
-    return run.model_copy(update=more)
 
 
 def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
@@ -216,35 +211,30 @@ def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
     return np.array(distances)
 
 
-def _run(
-    row: dict[str, Any], bounds: tuple[float, float, float, float], problem: str
-) -> content.Run:
+def _run(row: Row, bounds: tuple[float, float, float, float], problem: str) -> Row:
+    """A run, its points rounded to what a picture shows. claimed: the planner's own verdict."""
     from bezierplan.figures.panels.paths import steps
 
     path, size = results.path_of(row), _size(bounds)
-    collision = None
-    if (
-        path is not None
-        and "steps" not in row
-        and not row["feasible"]
-        and np.isfinite(row["collision_at"])
-    ):
-        collision = tuple(float(value) for value in curves.point_at(path, row["collision_at"]))
-    return content.Run(
-        problem=problem,
-        feasible=bool(row["feasible"]),
-        claimed=bool(row["claimed_feasible"]),
-        length=_finite(row["length"]),
-        clearance=_finite(row["clearance"]),
-        collision=collision,
-        depth=_finite(row["collision_depth"]),
-        evaluations=int(row["evaluations"]),
-        stop=str(row["stop"]),
-        curve=row["path_curve"] or "",
-        path=[] if path is None else _rounded(_simplified(steps(path), _FLAT * size), size),
-        control=[] if path is None or path.curve == "ferguson" else _rounded(path.points, size),
-        history=_history(row["history"]),
-    )
+    collides = path is not None and not row["feasible"] and np.isfinite(row["collision_at"])
+    return {
+        "problem": problem,
+        "feasible": bool(row["feasible"]),
+        "claimed": bool(row["claimed_feasible"]),
+        "length": _finite(row["length"]),
+        "clearance": _finite(row["clearance"]),
+        "collision": curves.point_at(path, row["collision_at"]).tolist()
+        if collides and "steps" not in row
+        else None,
+        "depth": _finite(row["collision_depth"]),
+        "evaluations": int(row["evaluations"]),
+        "stop": str(row["stop"]),
+        "curve": row["path_curve"] or "",
+        "path": [] if path is None else _rounded(_simplified(steps(path), _FLAT * size), size),
+        "control": [] if path is None or path.curve == "ferguson" else _rounded(path.points, size),
+        "history": _history(row["history"]),
+        "steps": None,
+    }
 
 
 def _size(bounds: tuple[float, float, float, float]) -> float:

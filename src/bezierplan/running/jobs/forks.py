@@ -47,7 +47,7 @@ LATER = (
     "seaborn",
     "matplotlib.backends.backend_agg",
     "matplotlib.backends.backend_svg",
-    "bezierplan.figures.page.job",
+    "bezierplan.figures.page.build",
 )
 ARRIVES = b"\n"
 PROCESS, ENDED = "process", "ended"

@@ -1,39 +1,52 @@
 // Links into closed parts, tooltips by keyboard, search, filters, and tables that sort. Without this script the page shows the same content.
 const find = (id) => document.getElementById(id);
 
-// Libraries: their text is packed, and a blob makes a module of it, which a single file can import.
-
-async function load(id) {
-  const packed = Uint8Array.from(atob(find(id).textContent), (letter) => letter.charCodeAt(0));
-  const text = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
-  return import(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
+// Packed text: data of the viewer, and pictures.
+async function unpack(packed) {
+  const bytes = Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
 }
 
-// Tables
-
-let library;
-
-async function enhance(table) {
-  library ??= load("page-tables");
-  const { jQuery } = await library;
-  const many = table.tBodies[0].rows.length > 8;
-  jQuery(table).DataTable({
-    paging: false, info: false, order: [], autoWidth: false, searching: many,
-    layout: { topStart: many ? "search" : null, topEnd: null, bottomStart: null, bottomEnd: null },
-    language: { search: "Filter rows" },
-  });
+async function unpackPictures() {
+  for (const picture of document.querySelectorAll("[data-packed]")) {
+    const text = await unpack(picture.dataset.packed);
+    delete picture.dataset.packed;
+    Object.assign(picture, { loading: "lazy", src: URL.createObjectURL(new Blob([text], { type: "image/svg+xml" })) });
+  }
 }
 
-function makeVisibleTablesSortable(root) {
-  return Promise.all([...root.querySelectorAll("table.sortable")].filter((table) => table.offsetParent).map((table) => (table.made ??= enhance(table))));
+// Tables that sort: by data-order, or else by what a cell shows; empty cells come last.
+
+for (const heading of document.querySelectorAll("table.sortable thead th")) {
+  const button = Object.assign(document.createElement("button"), { type: "button", className: "sort" });
+  button.append(...heading.childNodes);
+  heading.append(button);
 }
 
-document.addEventListener("toggle", (event) => {
-  if (event.target.open) makeVisibleTablesSortable(event.target);
-}, true);
-makeVisibleTablesSortable(document);
+const orderOf = (row, at) => (row.cells[at].dataset.order ?? row.cells[at].textContent).trim();
 
-// Addresses
+function compare(one, other) {
+  const [a, b] = [parseFloat(one), parseFloat(other)];
+  if (!one || !other) return !one - !other;
+  return Number.isNaN(a) || Number.isNaN(b) ? one.localeCompare(other, "en", { numeric: true }) : a - b;
+}
+
+document.addEventListener("click", (event) => {
+  const heading = event.target.closest(".sort")?.parentElement;
+  if (!heading) return;
+  const sign = heading.ariaSort === "ascending" ? -1 : 1, body = heading.closest("table").tBodies[0], at = heading.cellIndex;
+  for (const each of heading.parentElement.cells) each.removeAttribute("aria-sort");
+  heading.ariaSort = sign > 0 ? "ascending" : "descending";
+  body.append(...[...body.rows].sort((one, other) => {
+    const [a, b] = [orderOf(one, at), orderOf(other, at)];
+    return a && b ? sign * compare(a, b) : compare(a, b);
+  }));
+});
+
+// Addresses. What the script adds may move a page that opens at an address: until a reader acts, it goes there again.
+
+let acted = false;
+for (const kind of ["wheel", "pointerdown", "keydown", "touchstart"]) addEventListener(kind, () => { acted = true; }, { passive: true });
 
 function address() {
   try {
@@ -43,20 +56,22 @@ function address() {
   }
 }
 
-async function openAddress() {
+function openAddress() {
   const place = find(address());
   if (!place) return;
   for (let part = place; part; part = part.parentElement) if (part.tagName === "DETAILS") part.open = true;
-  // The library moves a table, which takes the focus away.
-  await makeVisibleTablesSortable(place.closest("details") ?? place);
   for (const claims of place.closest(".claims")?.querySelectorAll("[aria-pressed=true]") ?? []) claims.click();
   const focus = place.querySelector("summary, a, [tabindex]") ?? place;
   focus.focus({ preventScroll: true });
-  place.scrollIntoView({ block: place.tagName === "TD" ? "center" : "start", behavior: "instant" });
+  place.scrollIntoView({ block: ["TD", "TR", "DT"].includes(place.tagName) ? "center" : "start", behavior: "instant" });
+}
+
+function settle() {
+  if (!acted) openAddress();
 }
 
 addEventListener("hashchange", openAddress);
-openAddress();
+addEventListener("load", () => setTimeout(settle));
 
 addEventListener("beforeprint", () => {
   for (const part of document.querySelectorAll("details:not([open])")) {
@@ -111,46 +126,10 @@ addEventListener("scroll", () => {
   else tip.hidden = true;
 }, { passive: true });
 
-// Charts: the library draws anew what stands there as a picture. A click on a mark leads to its number, method or paper.
-
-async function drawCharts() {
-  await load("page-vega");
-  const specs = JSON.parse(find("page-charts").textContent);
-  for (const place of document.querySelectorAll("[data-chart]")) {
-    const stage = document.createElement("div");
-    const picture = place.firstElementChild;
-    place.append(stage);
-    const tooltip = (handler, event, item, value) => {
-      const words = item?.datum?.address && (item.datum.tip ?? tipOf(find(item.datum.address)));
-      if (value && words) showWords(words, new DOMRect(event.clientX, event.clientY, 0, 12));
-      else tip.hidden = true;
-    };
-    const { view } = await vegaEmbed(stage, specs[place.dataset.chart], { actions: false, defaultStyle: false, renderer: "svg", tooltip });
-    view.addEventListener("click", (event, item) => { if (item?.datum?.address) location.hash = item.datum.address; });
-    stage.chart = view;
-    picture.remove();
-  }
-  chooseMethods();
-}
-
-function chooseMethods() {
-  const form = document.querySelector(".toggles"), chart = document.querySelector("[data-chart=methods] > div")?.chart;
-  if (!form) return;
-  form.hidden = false;
-  form.addEventListener("change", (event) => {
-    const study = event.target.closest("fieldset"), boxes = [...study.querySelectorAll("[value]")];
-    if ("all" in event.target.dataset) for (const box of boxes) box.checked = event.target.checked;
-    else study.querySelector("[data-all]").checked = boxes.some((box) => box.checked);
-    chart.signal("hidden", [...form.querySelectorAll("[value]:not(:checked)")].map((box) => box.value)).runAsync();
-  });
-}
-
-if (find("page-vega")) drawCharts();
-
 // Figures that enlarge
 
 const enlarged = find("page-enlarged"), large = new Image();
-enlarged.append(large);
+enlarged.querySelector(".scroll").append(large);
 
 for (const sheet of document.querySelectorAll(".sheet")) {
   sheet.addEventListener("click", (event) => {
@@ -195,15 +174,43 @@ for (const filter of document.querySelectorAll(".filter")) {
 }
 
 // Search: entries in which most of the words begin a word of theirs; of these, first the ones whose shown text has the words themselves.
+// An entry is an element with data-finds, its kind and further words that find it; or a run.
 
 let index;
 const EMPTY = new Set("a an and are by can did do does for how i in is it its me my of on or s should the to was were what which with".split(" "));
+const LATER = ["method", "comparison", "underspecified detail"];
 const wordsOf = (text) => text.toLowerCase().split(/[^\p{L}\p{N}-]+/u).filter(Boolean);
 const query = find("page-query"), hits = find("page-hits"), found = find("page-found");
 
+function shownText(element, more) {
+  if (element.tagName === "TD") return tipOf(element).split("; ").slice(0, 3).join("; ");
+  if (element.tagName === "DT") return `${element.textContent.trim()}: ${element.nextElementSibling.textContent}`;
+  if (element.tagName === "TR") return more;
+  const parts = [...element.querySelectorAll(":scope > summary > .id, :scope > summary > .statement, :scope > h2, :scope > figcaption > strong")];
+  return [...parts.map((part) => part.textContent), element.tagName === "FIGURE" ? more : ""].join(" ");
+}
+
+function entriesOfPage() {
+  return [...document.querySelectorAll("[data-finds]")].map((element) => {
+    const [kind, ...rest] = element.dataset.finds.split(": "), more = rest.join(": ");
+    return [kind, element.id, shownText(element, more), more, LATER.includes(kind) || element.closest("tr.other")];
+  });
+}
+
+function entriesOfRuns() {
+  return Object.entries(data.studies).flatMap(([study, { shown, labels }]) => shown.flatMap((each) => {
+    const name = (word) => labels[word] ?? word.replaceAll("_", " ");
+    const where = each.problem ? `on ${name(each.problem)}` : "on all problems";
+    const runs = [["best feasible run", each.best], ["median feasible run", each.median], ["worst feasible run", each.worst],
+      [`failed run (${each.count - each.feasible} of ${each.count} fail), worst`, each.failed[0]]];
+    return runs.filter(([, run]) => run).map(([which, run]) => (
+      ["path", run, `${which} of ${name(each.method)} ${where}, ${name(each.experiment)}`, `${study} ${each.method}`, Boolean(each.problem)]));
+  }));
+}
+
 function search() {
   const words = wordsOf(query.value).filter((word) => !EMPTY.has(word));
-  index ??= JSON.parse(find("page-index").textContent).map(([kind, address, text, more, later]) => (
+  index ??= [...entriesOfPage(), ...entriesOfRuns()].map(([kind, address, text, more, later]) => (
     { kind, address, text, later, all: ` ${wordsOf(`${kind} ${address} ${text} ${more}`).join(" ")} `, own: ` ${wordsOf(text).join(" ")} ` }));
   const scored = index.map((each) => [words.filter((word) => each.all.includes(/^\d+$/.test(word) ? ` ${word} ` : ` ${word}`)).length, each]);
   const most = Math.max(...scored.map(([score]) => score));

@@ -1,5 +1,5 @@
 // The path viewer: choose a run, see it in its workspace; a drive plays.
-const data = JSON.parse(document.getElementById("page-data").textContent);
+const data = JSON.parse(await unpack(find("page-data").textContent));
 const form = document.getElementById("viewer");
 const SVG = "http://www.w3.org/2000/svg";
 const ALL = "all problems";
@@ -200,10 +200,13 @@ function narrow(wanted) {
     left = left.filter((each) => each[name] === form[name].value);
   }
   const [shown] = left;
-  const named = ["best", "median", "worst"].filter((which) => shown[which]).map((which) => [shown[which], which]);
-  fill(form.run, [...named, ...shown.failed.map((id, n) => [id, `failed ${n + 1}`])], wanted.run);
+  const where = (id) => ` (${label(form.study.value, id.split("/")[2])})`;
+  const named = [["best", "best"], ["median", "median"], ["worst", "worst feasible"]].filter(([which]) => shown[which]);
+  fill(form.run, [...named.map(([which, words]) => [shown[which], words + where(shown[which])]),
+    ...shown.failed.map((id, n) => [id, `failed ${n + 1}${where(id)}`])], wanted.run);
   document.getElementById("viewer-stage").hidden = false;
-  document.getElementById("viewer-note").textContent = `${shown.feasible} of ${shown.count} ${shown.count === 1 ? "run is" : "runs are"} feasible.`;
+  document.getElementById("viewer-note").textContent = `${shown.feasible} of ${shown.count} ${shown.count === 1 ? "run is" : "runs are"} feasible` +
+    `${shown.failed.length ? `; the worst are the failed ones, of which ${shown.failed.length} can be chosen` : ""}. Map: ${label(form.study.value, data.runs[form.run.value].problem.split("/").at(-1))}.`;
   const run = data.runs[form.run.value], problem = data.problems[run.problem];
   drawn = { problem, run };
   player.hidden = run.steps === null;
@@ -235,7 +238,7 @@ function openRun() {
 if (form) {
   form.hidden = false;
   narrow({});
-  openRun();
+  if (!acted) openRun();
   addEventListener("hashchange", openRun);
   form.addEventListener("change", (event) => { if (event.target !== clock) narrow(chosen()); });
   clock.addEventListener("input", () => showTime(Number(clock.value)));
@@ -245,3 +248,6 @@ if (form) {
   });
   form.addEventListener("submit", (event) => event.preventDefault());
 }
+
+settle();
+unpackPictures();

@@ -1,0 +1,322 @@
+"""What the page shows of each study: rows of the csv files of a scale, as mappings whose empty
+cells are None. Columns keep their names; what is added to a row stands in the functions below.
+"""
+
+import ast
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bezierplan import planners
+from bezierplan.analysis import baseline_comparison, sensitivity
+from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.figures import style
+from bezierplan.figures.page import why
+from bezierplan.figures.page.addresses import address, of_cells
+from bezierplan.figures.page.page_job import FILES, PageJob, StudyShown, TableShown
+from bezierplan.running.inputs import tree
+
+Row = dict[str, Any]
+
+NEAR = 0.1
+"""A number of ours this near to the published one, as a share of it, counts as near."""
+
+
+def read(file: str | Path) -> pd.DataFrame:
+    """A csv file in which only an empty cell is a missing value."""
+    return pd.read_csv(file, keep_default_na=False, na_values=[""], low_memory=False)
+
+
+def records(table: pd.DataFrame) -> list[Row]:
+    """The rows of a table; None for a missing or infinite value."""
+    table = table.replace([np.inf, -np.inf], np.nan).astype(object)
+    return table.where(table.notna(), None).to_dict("records")
+
+
+def of_study(table: pd.DataFrame | None, study: str) -> pd.DataFrame:
+    """The rows of a study; none of no table."""
+    return pd.DataFrame() if table is None else table[table["study"] == study]
+
+
+def studies(
+    job: PageJob,
+    folder: Path,
+    summary: list[pd.DataFrame] | None,
+    stored: list[pd.DataFrame] | None,
+) -> dict[str, SimpleNamespace]:
+    """All studies, from the files in the folder of a scale.
+
+    summary: numbers, claims and comparisons with the baseline of all studies, if the scale has
+    them. stored: those of the README's outcome, if it is shown beside this scale's.
+    """
+    numbers, _, measured = summary or [None] * 3
+    other_numbers, other_claims, _ = stored or [None] * 3
+    shown = {}
+    for key, own in job.studies.items():
+        files = {name: read(folder / key / FILES[name]) for name in own.files}
+        claims = _claims(key, own, files, of_study(other_claims, key))
+        counted = of_study(numbers, key), of_study(other_numbers, key)
+        tables = [
+            _table(key, name, each, folder, own, *counted) for name, each in own.tables.items()
+        ]
+        baseline = of_study(measured, key)
+        gaps = [
+            cell["gap"]
+            for table in tables
+            for cell in table["numbers"]
+            if cell["counted"] and cell["gap"] is not None
+        ]
+        shown[key] = SimpleNamespace(
+            key=key,
+            job=own,
+            claims=claims,
+            tables=tables,
+            figures=[_figure(key, name, each, folder) for name, each in own.figures.items()],
+            methods=[_method(key, name, each) for name, each in own.methods.items()],
+            assumptions=[_assumption(key, each._asdict(), claims) for each in own.assumptions],
+            audit=records(files.get("audit", pd.DataFrame())),
+            baseline=records(baseline.assign(cornered=np.isinf(baseline["curvature"])))
+            if len(baseline)
+            else [],
+            baseline_in_words=baseline_comparison.sentence(baseline) if len(baseline) else "",
+            gap=float(np.median(gaps)) if gaps else None,
+            shown=[],
+        )
+    return shown
+
+
+def _method(study: str, name: str, method: Any) -> Row:
+    """A method, with what its planner does: the head of the planner's file, which is read and not
+    imported.
+    """
+    planner = method.planner
+    file = (
+        Path(planner)
+        if planners.is_file(planner)
+        else Path(planners.__file__).with_name(f"{planner}.py")
+    )
+    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    about = [" ".join(paragraph.replace("`", "").split()) for paragraph in text.split("\n\n")]
+    return method._asdict() | {
+        "name": name,
+        "address": address(study, "method", name),
+        "about": about,
+    }
+
+
+def _artefact(study: str, name: str, shown: Any) -> Row:
+    """A table or figure: its title, caption, address, and the path of its files without endings."""
+    return {
+        "name": name,
+        "address": address(study, name),
+        "title": shown.title,
+        "settings": shown.caption.removeprefix(f"{shown.title}.").strip(),
+        "stem": f"{study}/{tree(name)}/{name}",
+        "of_paper": tree(name) == "paper",
+    }
+
+
+def _figure(study: str, name: str, shown: Any, folder: Path) -> Row:
+    """A figure, with the runs that it shows and what is lowest and highest in it, in words."""
+    row = _artefact(study, name, shown)
+    text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8").strip()
+    runs, _, extremes = text.partition("\n")
+    return row | {"runs": runs, "extremes": extremes}
+
+
+def _table(
+    study: str,
+    name: str,
+    shown: TableShown,
+    folder: Path,
+    own: StudyShown,
+    counted: pd.DataFrame,
+    stored: pd.DataFrame,
+) -> Row:
+    """A table: its numbers next to published ones, or its columns and rows."""
+    row, spec = _artefact(study, name, shown), shown.spec
+    compared = isinstance(spec, Pivot) and bool(spec.published)
+    row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
+    table = read(folder / row["csv"])
+    if not compared:
+        return row | {"numbers": [], "columns": list(table), "rows": records(table)}
+    counted, stored = (
+        each[each["table"] == name] if len(each) else each for each in (counted, stored)
+    )
+    return row | {"numbers": _numbers(row["address"], table, spec, counted, stored, own.labels)}
+
+
+def _numbers(
+    table: str,
+    compared: pd.DataFrame,
+    spec: Pivot,
+    counted: pd.DataFrame,
+    stored: pd.DataFrame,
+    labels: dict[str, str],
+) -> list[Row]:
+    """The cells of a table: those with a published number, and what other methods have in the same
+    column. Added: keys, row, column (as printed), address, beside (ours as the paper's number of
+    runs would print it), apart (relative to the published number), near, stored (the row of the
+    README's outcome).
+    """
+    keys = list(compared.columns[: compared.columns.get_loc("metric")])
+    what = ["metric", "statistic"]
+    published = compared["value_published"].notna()
+    # `summary.numbers` keeps the order of a table's rows.
+    compared["counted"] = False
+    if len(counted):
+        compared.loc[published, "counted"] = counted["counted"].to_numpy()
+    printed = compared.loc[published, what].drop_duplicates()
+    cells = records(compared.merge(printed, on=what))
+    places = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
+    others = {address(*(row[name] for name in places[0])): row for row in records(stored)}
+    for cell, place, name in zip(cells, places, of_cells(table, places, spec.primary), strict=True):
+        scaled, number = cell["value_ours_scaled"], cell["value_published"]
+        beside = cell["value_ours"] if scaled is None else scaled
+        apart = beside / number - 1 if number and beside is not None else None
+        cell |= {
+            "keys": {key: place[key] for key in keys},
+            "row": ", ".join(printed_key(key, place[key], labels) for key in keys),
+            "column": _heading(cell["metric"], cell["statistic"], spec, labels),
+            "address": name,
+            "beside": beside,
+            "apart": apart,
+            "near": apart is not None and abs(apart) <= NEAR + 1e-9,
+            "stored": others.get(address(*place.values())),
+        }
+    return cells
+
+
+def printed_key(column: str, value: Any, labels: dict[str, str]) -> str:
+    """The value of a key column as printed; a number is named."""
+    if value is None or isinstance(value, bool):
+        return "" if value is None else str(value)
+    return style.printed(value, column, labels)
+
+
+def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -> str:
+    """Metric and statistic as the table prints them; one that the paper does not state stands
+    beside our median.
+    """
+    beside = {statistic, "median"} if statistic == "unstated" else {statistic}
+    for value in spec.values:
+        if value.metric == metric and beside & set(value.statistics):
+            return value.label + (f": {statistic}" if len(value.statistics) > 1 else "")
+    return f"{style.column_name(metric, labels)}: {statistic}"
+
+
+def _claims(
+    study: str, own: StudyShown, files: dict[str, pd.DataFrame], stored: pd.DataFrame
+) -> list[Row]:
+    """Claims in their primary variant. Added: address, rule (what its count means), why,
+    comparisons, interpretations (its other variants), choices (alternatives that were tried),
+    shown_in, stored (the row of the README's outcome).
+    """
+    if "claims" not in files:
+        return []
+    compared: dict[tuple, list[Row]] = {}
+    for row in records(files.get("checks", pd.DataFrame())):
+        compared.setdefault((row["id"], row["variant"]), []).append(row)
+    tried = records(files.get("sensitivity", pd.DataFrame()))
+    others = {row["id"]: row for row in records(stored) if row["primary"]}
+    claims, there = [], own.tables.keys() | own.figures.keys()
+    for _, rows in files["claims"].groupby("id", sort=False):
+        every = records(rows)
+        claim = next(row for row in every if row["primary"])
+        # Alternatives that were judged beside another verdict than today's are out of date.
+        choices = [
+            row
+            | {"changed": sensitivity.changed(row["verdict"], row["verdict_alternative"]) is True}
+            for row in tried
+            if row["claim"] == claim["id"] and row["verdict"] == claim["verdict"]
+        ]
+        comparisons = compared.get((claim["id"], claim["variant"]), [])
+        checks = own.checks.get(claim["id"], [])
+        for each in comparisons:
+            check = checks[each["check"] - 1] if each["check"] <= len(checks) else None
+            each["reference"] = why.reference(check) if check else 0.0
+            each["name"] = ", ".join(
+                labelled(words, own.labels)
+                for words in (each["comparison"], each["condition"])
+                if words
+            )
+        claims.append(
+            claim
+            | {
+                "address": address(study, claim["id"]),
+                "rule": why.rule(own.holds.get(claim["id"]), claim["verdict"], claim["holds"]),
+                "why": _why(claim, comparisons, checks, own.labels),
+                "comparisons": comparisons,
+                "variant": labelled(claim["variant"] or "", own.labels),
+                "interpretations": [
+                    row | {"variant": labelled(row["variant"], own.labels)}
+                    for row in every
+                    if not row["primary"]
+                ],
+                "choices": choices,
+                "shown_in": [
+                    name
+                    for name in (claim["artefact"] or "").replace(",", " ").split()
+                    if name in there
+                ],
+                "stored": others.get(claim["id"]),
+            }
+        )
+    return claims
+
+
+def _why(claim: Row, comparisons: list[Row], checks: list, labels: dict[str, str]) -> str:
+    """The sentence that says why (`why`), from the decisive comparison; empty without one, or for a
+    check that the study has no more. Of comparisons taken together, one of them decided.
+    """
+    row = next((each for each in comparisons if each["decisive"]), None)
+    if row is None or row["check"] > len(checks):
+        return ""
+    alike = ("check", "condition", "effect", "counted", "low95")
+    single = next(
+        (
+            each
+            for each in comparisons
+            if " together" in row["comparison"]
+            and " together" not in each["comparison"]
+            and all(each[name] == row[name] for name in alike)
+        ),
+        row,
+    )
+    return why.why(
+        row,
+        checks[row["check"] - 1],
+        labelled(single["comparison"] or "", labels),
+        labelled(row["condition"] or "", labels),
+        bool(claim["own_criterion"]),
+    )
+
+
+def labelled(words: str, labels: dict[str, str]) -> str:
+    """Words such as `mga lower than prm` or `problem=0_15, obstacles=5` with names as they are
+    printed.
+    """
+    parts = []
+    for part in words.split(", "):
+        key, equals, value = part.partition("=")
+        if equals:
+            parts.append(labels.get(value) or f"{style.column_name(key, labels)} {value}")
+        else:
+            parts.append(" ".join(style.column_name(word, labels) for word in part.split(" ")))
+    return ", ".join(parts)
+
+
+def _assumption(study: str, row: Row, claims: list[Row]) -> Row:
+    """A detail that the paper leaves open, with the alternatives that were tried on claims."""
+    default = row["default"]
+    if isinstance(default, dict):
+        default = ", ".join(f"{name}: {value}" for name, value in default.items())
+    tried = [each for claim in claims for each in claim["choices"]]
+    return row | {
+        "address": address(study, row["id"]),
+        "default": default,
+        "choices": [each for each in tried if each["assumption"] == row["id"]],
+    }
