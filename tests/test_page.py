@@ -199,7 +199,7 @@ def test_a_number_whose_statistic_is_not_stated_has_the_name_of_the_column_besid
     headings = [
         reader._heading(metric, "unstated", table, {}) for metric in ("objective", "length")
     ]
-    assert headings == ["objective value", "length: unstated"]
+    assert headings == ["Objective value", "length: unstated"]
 
 
 def test_a_scale_says_how_many_runs_it_has_and_that_they_are_fewer():

@@ -71,16 +71,16 @@ def by_map(studies: dict[str, SimpleNamespace], data: dict[str, Any]) -> list[Ro
     Rows: map, studies, methods (number), best (study, method, share of feasible runs, gap: median
     length over the exact bound, less 1; CPU time over the baseline's, of the whole study).
     """
-    found: dict[str, dict[tuple[str, str], list[Row]]] = {}
+    by_kind: dict[str, dict[tuple[str, str], list[Row]]] = {}
     for key, study in studies.items():
         for each in study.shown:
             if each["problem"]:
                 problem = data["problems"][f"{key}/{each['experiment']}/{each['problem']}"]
                 if problem["world"] is None:
                     kind = kind_of(data["workspaces"][problem["workspace"]])
-                    found.setdefault(kind, {}).setdefault((key, each["method"]), []).append(each)
+                    by_kind.setdefault(kind, {}).setdefault((key, each["method"]), []).append(each)
     rows = []
-    for kind, methods in sorted(found.items()):
+    for kind, methods in sorted(by_kind.items()):
         measured = [
             _measured(studies[key], method, shown) for (key, method), shown in methods.items()
         ]

@@ -55,12 +55,13 @@ def studies(
     numbers, _, measured = summary or [None] * 3
     other_numbers, other_claims, _ = stored or [None] * 3
     shown = {}
-    for key, own in job.studies.items():
-        files = {name: read(folder / key / FILES[name]) for name in own.files}
-        claims = _claims(key, own, files, of_study(other_claims, key))
+    for key, described in job.studies.items():
+        files = {name: read(folder / key / FILES[name]) for name in described.files}
+        claims = _claims(key, described, files, of_study(other_claims, key))
         counted = of_study(numbers, key), of_study(other_numbers, key)
         tables = [
-            _table(key, name, each, folder, own, *counted) for name, each in own.tables.items()
+            _table(key, name, each, folder, described.labels, *counted)
+            for name, each in described.tables.items()
         ]
         baseline = of_study(measured, key)
         gaps = [
@@ -71,12 +72,14 @@ def studies(
         ]
         shown[key] = SimpleNamespace(
             key=key,
-            job=own,
+            job=described,
             claims=claims,
             tables=tables,
-            figures=[_figure(key, name, each, folder) for name, each in own.figures.items()],
-            methods=[_method(key, name, each) for name, each in own.methods.items()],
-            assumptions=[_assumption(key, each._asdict(), claims) for each in own.assumptions],
+            figures=[_figure(key, name, each, folder) for name, each in described.figures.items()],
+            methods=[_method(key, name, each) for name, each in described.methods.items()],
+            assumptions=[
+                _assumption(key, each._asdict(), claims) for each in described.assumptions
+            ],
             audit=records(files.get("audit", pd.DataFrame())),
             baseline=records(baseline.assign(cornered=np.isinf(baseline["curvature"])))
             if len(baseline)
@@ -132,7 +135,7 @@ def _table(
     name: str,
     shown: TableShown,
     folder: Path,
-    own: StudyShown,
+    labels: dict[str, str],
     counted: pd.DataFrame,
     stored: pd.DataFrame,
 ) -> Row:
@@ -146,7 +149,7 @@ def _table(
     counted, stored = (
         each[each["table"] == name] if len(each) else each for each in (counted, stored)
     )
-    return row | {"numbers": _numbers(row["address"], table, spec, counted, stored, own.labels)}
+    return row | {"numbers": _numbers(row["address"], table, spec, counted, stored, labels)}
 
 
 def _numbers(
@@ -171,21 +174,23 @@ def _numbers(
         compared.loc[published, "counted"] = counted["counted"].to_numpy()
     printed = compared.loc[published, what].drop_duplicates()
     cells = records(compared.merge(printed, on=what))
-    places = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
-    others = {address(*(row[name] for name in places[0])): row for row in records(stored)}
-    for cell, place, name in zip(cells, places, of_cells(table, places, spec.primary), strict=True):
+    positions = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
+    others = {address(*(row[name] for name in positions[0])): row for row in records(stored)}
+    for cell, position, name in zip(
+        cells, positions, of_cells(table, positions, spec.primary), strict=True
+    ):
         scaled, number = cell["value_ours_scaled"], cell["value_published"]
         beside = cell["value_ours"] if scaled is None else scaled
         apart = beside / number - 1 if number and beside is not None else None
         cell |= {
-            "keys": {key: place[key] for key in keys},
-            "row": ", ".join(printed_key(key, place[key], labels) for key in keys),
+            "keys": {key: position[key] for key in keys},
+            "row": ", ".join(printed_key(key, position[key], labels) for key in keys),
             "column": _heading(cell["metric"], cell["statistic"], spec, labels),
             "address": name,
             "beside": beside,
             "apart": apart,
             "near": apart is not None and abs(apart) <= NEAR + 1e-9,
-            "stored": others.get(address(*place.values())),
+            "stored": others.get(address(*position.values())),
         }
     return cells
 
@@ -209,7 +214,7 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
 
 
 def _claims(
-    study: str, own: StudyShown, files: dict[str, pd.DataFrame], stored: pd.DataFrame
+    study: str, described: StudyShown, files: dict[str, pd.DataFrame], stored: pd.DataFrame
 ) -> list[Row]:
     """Claims in their primary variant. Added: address, rule (what its count means), why,
     comparisons, interpretations (its other variants), choices (alternatives that were tried),
@@ -222,7 +227,7 @@ def _claims(
         compared.setdefault((row["id"], row["variant"]), []).append(row)
     tried = records(files.get("sensitivity", pd.DataFrame()))
     others = {row["id"]: row for row in records(stored) if row["primary"]}
-    claims, there = [], own.tables.keys() | own.figures.keys()
+    claims, there = [], described.tables.keys() | described.figures.keys()
     for _, rows in files["claims"].groupby("id", sort=False):
         every = records(rows)
         claim = next(row for row in every if row["primary"])
@@ -234,12 +239,12 @@ def _claims(
             if row["claim"] == claim["id"] and row["verdict"] == claim["verdict"]
         ]
         comparisons = compared.get((claim["id"], claim["variant"]), [])
-        checks = own.checks.get(claim["id"], [])
+        checks = described.checks.get(claim["id"], [])
         for each in comparisons:
             check = checks[each["check"] - 1] if each["check"] <= len(checks) else None
             each["reference"] = why.reference(check) if check else 0.0
             each["name"] = ", ".join(
-                labelled(words, own.labels)
+                labelled(words, described.labels)
                 for words in (each["comparison"], each["condition"])
                 if words
             )
@@ -247,12 +252,14 @@ def _claims(
             claim
             | {
                 "address": address(study, claim["id"]),
-                "rule": why.rule(own.holds.get(claim["id"]), claim["verdict"], claim["holds"]),
-                "why": _why(claim, comparisons, checks, own.labels),
+                "rule": why.rule(
+                    described.holds.get(claim["id"]), claim["verdict"], claim["holds"]
+                ),
+                "why": _why(claim, comparisons, checks, described.labels),
                 "comparisons": comparisons,
-                "variant": labelled(claim["variant"] or "", own.labels),
+                "variant": labelled(claim["variant"] or "", described.labels),
                 "interpretations": [
-                    row | {"variant": labelled(row["variant"], own.labels)}
+                    row | {"variant": labelled(row["variant"], described.labels)}
                     for row in every
                     if not row["primary"]
                 ],
