@@ -24,8 +24,6 @@ from bezierplan.study import alternatives, experiments, jobs, page, reading
 # cost each job one to two seconds.
 FORKS = forks.Forks(sys.executable, script)
 script = FORKS.script
-# Snakemake puts the path of its interpreter into commands unquoted, and a folder may have any name.
-sys.executable = shlex.quote(sys.executable)
 
 
 def or_exit(work, *of):
@@ -46,6 +44,9 @@ if Path(CONFIG).is_file():
 
 
 STUDIES = or_exit(lambda: reading.load(reading.read_config(config)))
+# Snakemake puts the path of its interpreter into commands unquoted, and a folder may have any name.
+# Planners of studies, which that interpreter reads, are known by now.
+sys.executable = shlex.quote(sys.executable)
 RESULTS = "results/{scale}/{study}"
 # What a module that uses this workflow puts before each path of results: for the page, which looks
 # what there is. Snakemake tells it nowhere else.

@@ -49,9 +49,7 @@ use rule table as unprinted_table with:
         ),
         problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        published=of_study(
-            lambda study, job: list(filter(None, [study.published_file(job.table)]))
-        ),
+        published=of_study(lambda study, job: list(filter(None, [study.published_file(job.table)]))),
     output:
         table=report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
