@@ -137,6 +137,7 @@ def method_page(
         f"{rest}\n",
         f"*Maps:* {', '.join(served) if served else 'every kind'}.\n",
     ]
+    parts += [algorithm(name, studies)]
     parts += ["## Call it\n", call(name, users, studies)]
     parts += ["## Settings\n", settings_table(name, module, users, studies)]
     parts += [
@@ -150,6 +151,21 @@ def method_page(
     ]
     parts += [f"```{{eval-rst}}\n.. autofunction:: bezierplan.planners.{name}.plan\n```\n"]
     return "\n".join(part for part in parts if part)
+
+
+def algorithm(name: str, studies: dict) -> str:
+    """The algorithms of `docs/algorithms` that a planner's kernels compute."""
+    shown = ""
+    for key, study in studies.items():
+        file = HERE / "algorithms" / f"{key}.py"
+        method = re.search(rf'^METHOD = "{key}/(\w+)"$', file.read_text(encoding="utf-8"), re.M)
+        if study.planner(method[1]) == name:
+            shown += (
+                "## The algorithm on one page\n\nThe default reading of the paper in plain Python; "
+                f"a test compares its paths with those of `{key}/{method[1]}`, bit for bit.\n\n"
+                f"```{{literalinclude}} ../algorithms/{key}.py\n:language: python\n```\n"
+            )
+    return shown
 
 
 def call(name: str, users: dict[str, list[str]], studies: dict) -> str:

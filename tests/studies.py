@@ -10,8 +10,11 @@ import pandas as pd
 
 from bezierplan.analysis import results
 from bezierplan.analysis.papers import drawings
+from bezierplan.running import problems
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
+from bezierplan.study.jobs import problems_job
+from bezierplan.workspaces.problem import Problem
 
 FOLDER = Path(__file__).parents[1] / "config" / "studies"
 KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
@@ -47,3 +50,12 @@ def drawing(key: str, name: str) -> pd.DataFrame:
     """The marks of a drawing of a study, from its file."""
     file = FOLDER / key / "published" / f"{name}.csv"
     return drawings.marks({name: results.published_table(file)}, drawing=name)
+
+
+def built(study: Study, experiment: str, name: str) -> Problem:
+    """A problem of an experiment, without the others."""
+    every = problems_job(study, experiment, "smoke")
+    alone = every.problems[name]
+    home = alone["workspace"]
+    described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})
+    return problems.build_all(described, study.folder)[name]

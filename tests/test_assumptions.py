@@ -7,10 +7,10 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
-from studies import studies
+from studies import built, studies
 
 from bezierplan.geometry.region import region
-from bezierplan.running import execution, problems
+from bezierplan.running import execution
 from bezierplan.running.chunk import conditions
 from bezierplan.study.alternatives import (
     alternatives,
@@ -18,7 +18,7 @@ from bezierplan.study.alternatives import (
     methods_of_claims,
     with_alternative,
 )
-from bezierplan.study.jobs import job, problems_job
+from bezierplan.study.jobs import job
 
 STUDIES = studies()
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
@@ -26,15 +26,6 @@ FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
 # Alternatives that matter only under others: how often a roadmap is drawn, where one has few links.
 UNDER = {("elhoseny2017", "O15q_100"): {"prm": {"neighbours": 1}}}
-
-
-def built(study, experiment, name):
-    """A problem of an experiment, without the others."""
-    every = problems_job(study, experiment, "smoke")
-    alone = every.problems[name]
-    home = alone["workspace"]
-    described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})
-    return problems.build_all(described, study.folder)[name]
 
 
 def found(study, experiment, method, place=-1):
