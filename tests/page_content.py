@@ -67,16 +67,9 @@ LOWER |= {"margin": 0.5, "direction": "lower"}
 
 
 def job() -> PageJob:
-    """A study `one` with three claims, four numbers, two tables, a figure, an open choice."""
-    table = pivot_of(
-        {
-            "index": ["method"],
-            "values": [
-                {"metric": metric, "statistic": "mean"} for metric in ("length", "objective")
-            ],
-            "published": "table1.csv",
-        }
-    )
+    """A study `one` with three claims, four numbers, three tables, a figure, an open choice."""
+    values = [{"metric": metric, "statistic": "mean"} for metric in ("length", "objective")]
+    table = pivot_of({"index": ["method"], "values": values, "published": "table1.csv"})
     claims = ("C1", "C2", "C3")
     study = StudyShown(
         title=HOSTILE,
@@ -87,8 +80,9 @@ def job() -> PageJob:
         holds=dict.fromkeys(claims, "any"),
         repeats={"smoke": [2, 3], "extended": [250, 4000]},
         tables={
-            "table1": TableShown(HOSTILE, f"{HOSTILE}. Ten runs.", table),
-            "listed": TableShown("a list", "a list.", SimpleNamespace()),
+            "table1": TableShown(HOSTILE, f"{HOSTILE}. Ten runs.", table, {}),
+            "more": TableShown("more", "more. Ten runs.", table.but(extends="table1"), {}),
+            "listed": TableShown("a list", "a list.", SimpleNamespace(), {}),
         },
         figures={"figure1": FigureShown("Lengths", f"Lengths. {HOSTILE}")},
         assumptions=[
@@ -104,7 +98,8 @@ def page(folder: Path) -> SimpleNamespace:
     """The page, from files that are written to a folder; with three runs and two drives."""
     for tree in ("paper", "beyond"):
         (folder / "one" / tree).mkdir(parents=True, exist_ok=True)
-    numbers = pd.DataFrame([NUMBER | row for row in NUMBERS])
+    numbers = pd.DataFrame([row | NUMBER | row for row in NUMBERS])
+    printed, laid = numbers["value_published"].notna(), pd.DataFrame({"method": ["a", "b"]})
     claims = pd.DataFrame([CLAIM | row for row in CLAIMS])
     checks = [CHECK | {"id": f"C{n}"} | more for n in (1, 2, 3) for more in ({}, OPEN)]
     row = {"study": "one", "baseline": "rounded", "conditions": 3, "feasible": 0.9, "cpu": 20.0}
@@ -121,13 +116,12 @@ def page(folder: Path) -> SimpleNamespace:
                 tried | {"verdict_alternative": "contradicted", "verdict": "undecided"},
             ]
         ),
-        "one/paper/table1.comparison": numbers[
-            ["method", "metric", *numbers.columns.drop(["method", "metric"])]
-        ],
+        "one/paper/table1.comparison": numbers[printed],
+        "one/paper/table1": laid.assign(length=["10.715", "14.000"], objective=["10.715", ""]),
+        "one/paper/table1.published": laid.assign(length="10.51", objective=["10.51", ""]),
+        "one/beyond/more.comparison": numbers,
         "one/beyond/listed": pd.DataFrame({"x": range(12), HOSTILE: HOSTILE}),
-        "numbers": numbers[numbers["value_published"].notna()].assign(
-            study="one", table="table1", counted=True
-        ),
+        "numbers": numbers[printed].assign(study="one", table="table1", counted=True),
         "claims": claims,
         "baseline_comparison": pd.DataFrame(
             [row | {"method": "a", "curvature": 1.25}, row | {"method": "c", "curvature": "inf"}]

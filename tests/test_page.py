@@ -134,7 +134,8 @@ def test_addresses_of_different_cells_differ(keys, primary):
 
 
 def test_numbers_stand_beside_published_ones_with_how_near_they_are(content):
-    first, second, third, other = content.studies["one"].tables[0]["numbers"]
+    table, more, _ = content.studies["one"].tables
+    (first, second, third), other = table["numbers"], more["numbers"][-1]
     assert (first["address"], first["near"], second["near"]) == (
         "one/table1/a/length/mean",
         True,
@@ -143,6 +144,16 @@ def test_numbers_stand_beside_published_ones_with_how_near_they_are(content):
     assert math.isclose(second["apart"], 14 / 10.51 - 1)
     assert [cell["counted"] for cell in (first, second, third, other)] == [True] * 3 + [False]
     assert (other["value_published"], other["apart"]) == (None, None)
+
+
+def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_each_cell(content):
+    first, second, third = content.studies["one"].tables[0]["numbers"]
+    laid = content.studies["one"].tables[0]["laid"]
+    assert laid["head"] == ["method", "length", "objective"]
+    assert laid["rows"] == [
+        (["a"], [("10.51", "10.715", first), ("10.51", "10.715", third)]),
+        (["b"], [("10.51", "14.000", second), ("", "", None)]),
+    ]
 
 
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():
@@ -161,9 +172,8 @@ def test_numbers_and_claims_stand_beside_those_of_the_stored_outcome(content, fo
     stored = [*tables, None]
     own = reader.studies(job(), folder, None, stored)["one"]
     assert [cell["stored"] and cell["stored"]["n_ours"] for cell in own.tables[0]["numbers"]] == [
-        *(4000,) * 3,
-        None,
-    ]
+        4000
+    ] * 3
     assert {claim["stored"]["verdict"] for claim in own.claims} == {"partly"}
     assert {claim["verdict"] for claim in own.claims} == {"supported", "contradicted", "undecided"}
 
@@ -182,15 +192,15 @@ def test_claims_that_fail_are_those_of_the_paper(content, text):
 
 
 def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(content):
-    laid = build.grid(content.studies["one"].tables[0], {})
+    laid = build.grid(content.studies["one"].tables[1], {})
     assert (laid.head, laid.decimals) == (["method", "length", "objective"], [2, 2])
     assert [
         (primary, keys, [cell and cell["address"] for cell in cells])
         for primary, keys, cells in laid.rows
     ] == [
-        (True, [("a", "one/method/a")], [f"one/table1/a/{m}/mean" for m in laid.head[1:]]),
-        (True, [("b", "one/method/b")], ["one/table1/b/length/mean", None]),
-        (False, [("c", "one/method/c")], ["one/table1/c/length/mean", None]),
+        (True, [("a", "one/method/a")], [f"one/more/a/{m}/mean" for m in laid.head[1:]]),
+        (True, [("b", "one/method/b")], ["one/more/b/length/mean", None]),
+        (False, [("c", "one/method/c")], ["one/more/c/length/mean", None]),
     ]
 
 

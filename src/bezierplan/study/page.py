@@ -176,9 +176,14 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
         holds={claim.id: claim.holds for claim in study.claims},
         repeats={each: _repeats(study, each) for each in (scale, "extended")},
         tables={
-            name: TableShown(table.title, jobs.caption(study, name, scale), table)
+            name: TableShown(
+                study.tables[name].title,
+                jobs.caption(study, name, scale),
+                study.whole(name) if name in study.compared() else study.tables[name],
+                jobs.labels_of(study, name),
+            )
             for name in names
-            if (table := study.tables.get(name))
+            if name in study.tables
         },
         figures={
             name: FigureShown(figure.title, jobs.caption(study, name, scale))

@@ -38,6 +38,9 @@ class TableShown(NamedTuple):
     title: str
     caption: str
     spec: Table
+    """With what the one that it extends says of published numbers."""
+    labels: dict[str, str]
+    """Those with which the table is made."""
 
 
 class AssumptionShown(NamedTuple):

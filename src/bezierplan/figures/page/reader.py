@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import baseline_comparison, sensitivity
+from bezierplan.analysis import baseline_comparison, sensitivity, tables
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import why
@@ -59,14 +59,14 @@ def studies(
         files = {name: read(folder / key / FILES[name]) for name in described.files}
         claims = _claims(key, described, files, of_study(other_claims, key))
         counted = of_study(numbers, key), of_study(other_numbers, key)
-        tables = [
+        own_tables = [
             _table(key, name, each, folder, described.labels, *counted)
             for name, each in described.tables.items()
         ]
         baseline = of_study(measured, key)
         gaps = [
             cell["gap"]
-            for table in tables
+            for table in own_tables
             for cell in table["numbers"]
             if cell["counted"] and cell["gap"] is not None
         ]
@@ -74,7 +74,7 @@ def studies(
             key=key,
             job=described,
             claims=claims,
-            tables=tables,
+            tables=own_tables,
             figures=[_figure(key, name, each, folder) for name, each in described.figures.items()],
             methods=[_method(key, name, each) for name, each in described.methods.items()],
             assumptions=[
@@ -145,11 +145,34 @@ def _table(
     row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
     table = read(folder / row["csv"])
     if not compared:
-        return row | {"numbers": [], "columns": list(table), "rows": records(table)}
+        return row | {"numbers": [], "laid": None, "columns": list(table), "rows": records(table)}
     counted, stored = (
         each[each["table"] == name] if len(each) else each for each in (counted, stored)
     )
-    return row | {"numbers": _numbers(row["address"], table, spec, counted, stored, labels)}
+    cells = _numbers(row["address"], table, spec, counted, stored, labels)
+    laid = _laid(folder / row["stem"], table, shown, cells) if spec.printed else None
+    return row | {"numbers": cells, "laid": laid}
+
+
+def _laid(stem: Path, compared: pd.DataFrame, shown: TableShown, cells: list[Row]) -> Row:
+    """A table as the paper prints it. head: of its columns. rows: the names of each, and its cells:
+    printed, ours, and the number (None where there is none).
+    """
+    ours, printed = (
+        pd.read_csv(f"{stem}{ending}.csv", dtype=str, keep_default_na=False)
+        for ending in ("", ".published")
+    )
+    names = list(ours.columns[: len(shown.spec.index)])
+    ours, printed = ours.set_index(names), printed.set_index(names)
+    numbered = compared.assign(value=np.arange(len(compared)))
+    which = tables.alike(numbered, shown.spec, shown.labels, like=ours)
+    rows = [
+        [(text, own, cells[int(n)] if n else None) for text, own, n in zip(*row, strict=True)]
+        for row in zip(printed.to_numpy(), ours.to_numpy(), which.to_numpy(), strict=True)
+    ]
+    firsts = ours.reset_index()[names].to_numpy().tolist()
+    head = [*names, *ours.columns]
+    return {"head": head, "rows": list(zip(firsts, rows, strict=True)), "note": shown.spec.note}
 
 
 def _numbers(
