@@ -69,13 +69,13 @@ def _planner(planner: str, warm: bool, task: worker.Task, taken: list[str]) -> r
 
     def planned(seen: Problem, last: Any) -> tuple[Plan, Any]:
         if warm:
-            answer = module.resume(seen, rng, last, **task.settings)
-            if not isinstance(answer, tuple) or len(answer) != 2:
+            pair = module.resume(seen, rng, last, **task.settings)
+            if not isinstance(pair, tuple) or len(pair) != 2:
                 raise TypeError(
-                    f"resume returns a {type(answer).__name__}; expected a Plan and what the next "
+                    f"resume returns a {type(pair).__name__}; expected a Plan and what the next "
                     "call gets as last"
                 )
-            plan, state = answer
+            plan, state = pair
         else:
             plan, state = module.plan(seen, rng, **task.settings), None
         try:
