@@ -16,6 +16,7 @@ import itertools
 import math
 from collections.abc import Iterator, Mapping
 
+import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import identified, possible
@@ -25,6 +26,7 @@ from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
 from bezierplan.analysis.results import groups, published_table
 from bezierplan.analysis.table_kinds import Layout, Monotone
 from bezierplan.running import problems
+from bezierplan.workspaces.seeds import generator
 
 # Statistics that need not be the value of any single path.
 _SPREADS = ("std", "iqr", "range")
@@ -39,6 +41,15 @@ _LEAST_SPREAD = 10
 """A decimal counts if the numbers of its metric have a standard deviation of so many of its units:
 then each digit is about equally likely, whatever is measured.
 """
+
+LEVEL = 0.05
+"""Of Friedman's test."""
+
+LEAST_MEANS = 5
+"""Means beside minimum and maximum that a table needs."""
+
+DRAWN = 4000
+"""Sets of normal numbers from which the distribution of means within their ranges is drawn."""
 
 DIGITS_LEVEL = 0.01
 """Decimals are inconsistent if chance makes digits as uneven less often."""
@@ -109,7 +120,7 @@ def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, Layout]) ->
         rows += of_ranks(name, table, layouts[name].columns)
         for rule in layouts[name].monotone:
             rows += of_orders(name, table, rule)
-    return [*rows, *of_digits(tables)]
+    return [*rows, *of_middles(tables), *of_digits(tables)]
 
 
 def of_cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[dict]:
@@ -209,6 +220,31 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> Iterator[dic
             told = f"1 <= {row['printed']} <= {count}"
             of_row = place(row, [*keys, "metric"])
             yield checked(item, of_row, rule, row["value"], limit, fits, told)
+        sizes = group["n"].unique()
+        if possible.are_ranks(numbers) and len(sizes) == 1 and sizes[0] > 1:
+            apart, critical, chi_square, p = friedman(group["value"].to_numpy(), int(sizes[0]))
+            rule = "the mean ranks tell rows apart: Friedman's test from the ranks and n, at 5 %"
+            told = (
+                f"chi-square {chi_square:.3g} with {count - 1} degrees of freedom, p = {p:.2g}; "
+                f"the largest difference is {apart:.2g}, the critical one {critical:.3g}"
+            )
+            yield checked(item, location, rule, apart, critical, bool(p < LEVEL), told)
+
+
+def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float]:
+    """The largest difference of mean ranks (k,) of n units, the critical one of Nemenyi, and
+    Friedman's chi-square with its p, without ties.
+
+    Source: Demšar (2006), "Statistical comparisons of classifiers over multiple data sets", Journal
+    of Machine Learning Research 7, 1.
+    """
+    from scipy import stats
+
+    k = len(ranks)
+    chi_square = 12 * n / (k * (k + 1)) * float(((ranks - (k + 1) / 2) ** 2).sum())
+    quantile = float(stats.studentized_range.ppf(1 - LEVEL, k, np.inf)) / math.sqrt(2)
+    critical = quantile * math.sqrt(k * (k + 1) / (6 * n))
+    return float(np.ptp(ranks)), critical, chi_square, float(stats.chi2.sf(chi_square, k - 1))
 
 
 def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
@@ -218,6 +254,7 @@ def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
     others = [key for key in keys if key != rule.along]
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
+    kept, chances = 0, []
     for group in groups(own, others):
         ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
@@ -226,6 +263,47 @@ def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
             where = place(row, [*keys, "metric", "statistic"])
             told = f"{before['printed']} {sign} {row['printed']}"
             yield checked(item, where, words, row["value"], before["value"], fits, told)
+        values = np.array([float(row["value"]) for row in ordered])
+        steps = np.diff(values if rule.direction == "up" else -values)
+        kept += bool((steps > 0).all())
+        chances.append(1 / math.factorial(len(ordered)))
+    if len(chances) > 1:
+        chance = identified.at_least(kept, chances)
+        told = f"{kept} of {len(chances)} rows without an exception; the chance of as many, if all "
+        told += f"orders were equally likely: {chance:.2g}"
+        where = f"metric={rule.metric}, statistic={rule.statistic}, all rows"
+        fits = True if kept == len(chances) else None
+        yield checked(item, where, words, kept, len(chances), fits, told)
+
+
+def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
+    """Where means lie between minimum and maximum: the root mean square distance from the middle,
+    in ranges, beside that of as many sets of normal numbers.
+
+    Numbers with a tail lie farther from the middle than normal ones.
+    """
+    for item, table in tables.items():
+        keys = [*_keys(table), "metric"]
+        own = table[table["statistic"].isin(["min", "mean", "max"])]
+        if "n" not in own or own.empty or own["n"].nunique() != 1 or own["n"].iloc[0] < 2:
+            continue
+        wide = own.pivot_table(index=keys, columns="statistic", values="value")
+        if not {"min", "mean", "max"} <= set(wide) or len(wide := wide.dropna()) < LEAST_MEANS:
+            continue
+        n, count = int(own["n"].iloc[0]), len(wide)
+        apart = float(_from_middle(*wide[["min", "mean", "max"]].to_numpy().T))
+        drawn = generator(f"audit/middles/{n}").normal(size=(DRAWN, count, n))
+        sets = _from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
+        p = float(np.mean(sets <= apart))
+        rule = f"means of {n} values lie as far from the middle of their range as normal ones do"
+        told = f"{apart:.3g} ranges, normal ones {np.median(sets):.3g}; p = {p:.2g}"
+        where, median = f"{count} means", float(np.median(sets))
+        yield checked(item, where, rule, apart, median, p >= DIGITS_LEVEL, told)
+
+
+def _from_middle(low: np.ndarray, mean: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Root mean square distance of means (..., k) from the middle of their range, in ranges."""
+    return np.sqrt(np.mean(((mean - low) / (high - low) - 0.5) ** 2, axis=-1))
 
 
 def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
