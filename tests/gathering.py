@@ -187,12 +187,15 @@ def gathering(given: Studies) -> Iterator[Made]:
     )
     baseline = f"{folder}/baseline_comparison.csv"
     yield Made(compared, given_to(compared, ""), {"made": baseline})
-    output = {"numbers": "numbers.csv", "claims": "claims.csv", "summary": "summary.md"}
+    output = {"numbers": "numbers.csv", "claims": "claims.csv", "wholes": "wholes.csv"}
     output = {name: f"{folder}/{file}" for name, file in output.items()}
+    output["summary"] = f"{folder}/summary.md"
     files = {
         "comparisons": [f"{folder}/{key}/beyond/lengths.comparison.csv" for key in given],
         "claims": [f"{folder}/{key}/claims.csv" for key in given],
         "baseline_comparison": baseline,
+        "audits": [],
+        "verdicts": [],
     }
     yield Made(summary, files, output)
     verified = page.Verified.of(given, SCALE)

@@ -1,5 +1,6 @@
 # All studies together: the summary, and the page that shows everything.
 COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
+FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
@@ -40,9 +41,12 @@ rule summary:
         ],
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
+        audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
+        verdicts=[local(STUDIES[key].verdict_file()) for key in FOLLOWING],
     output:
         numbers="results/{scale}/numbers.csv",
         claims="results/{scale}/claims.csv",
+        wholes="results/{scale}/wholes.csv",
         summary=report(
             "results/{scale}/summary.md",
             category="summary",
@@ -55,6 +59,33 @@ rule summary:
         "../envs/bezierplan.yaml"
     params:
         **params(jobs.Summary),
+    script:
+        "../scripts/job.py"
+
+
+# A few sentences and a small table for each paper, which stand in the summary as well.
+rule verdict:
+    input:
+        summary=[
+            f"results/{{scale}}/{name}.csv" for name in ("numbers", "claims", "baseline_comparison")
+        ],
+        audit=f"{RESULTS}/audit.csv",
+        verdict=of_study(lambda study, job: [study.verdict_file()]),
+    output:
+        report(
+            f"{RESULTS}/verdict.md",
+            category="{study}",
+            labels={"item": "verdict", "shows": "what follows for the paper"},
+            caption="../report/summary.rst",
+        ),
+    log:
+        f"{RESULTS}/logs/verdict.log",
+    wildcard_constraints:
+        study=one_of(FOLLOWING),
+    conda:
+        "../envs/bezierplan.yaml"
+    params:
+        **params(jobs.Verdict),
     script:
         "../scripts/job.py"
 
@@ -115,6 +146,7 @@ rule page:
             table=["numbers", "claims", "baseline_comparison"] if COMPARED else [],
             allow_missing=True,
         ),
+        verdicts=expand("results/{scale}/{study}/verdict.md", study=FOLLOWING, allow_missing=True),
         verified="results/{scale}/verified.json",
     output:
         # Not part of the report, which has a page of its own.

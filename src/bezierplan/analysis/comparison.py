@@ -89,7 +89,7 @@ UNDEFINED = "quantity that the paper does not define"
 alone.
 """
 
-_COLUMNS = [
+COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published"),
     *("n_ours", "n_asked", "value_ours", "value_ours_scaled"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
@@ -158,7 +158,7 @@ def compare(
         for row in both.to_dict("records")
     ]
     described = pd.DataFrame(rows, index=both.index)
-    table = both.join(described).reindex(columns=keys + _COLUMNS)
+    table = both.join(described).reindex(columns=keys + COLUMNS)
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["identified"] = pd.Series(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],

@@ -30,6 +30,8 @@ class SummaryJob(NamedTuple):
     """Study and table of each comparison with published numbers, in order."""
     titles: dict[str, str]
     """Those of the studies."""
+    verdicts: dict[str, str]
+    """Study -> the digest of its sentences of what follows, of those that have any."""
 
 
 class MeasuredJob(NamedTuple):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import baseline_comparison, headline
+from bezierplan.analysis import baseline_comparison, headline, verdict, wholes
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.jobs import SummaryJob
 from bezierplan.analysis.markdown import table_text
@@ -19,10 +19,13 @@ HEADING = "# Outcome at scale "
 
 
 class Summary(NamedTuple):
-    """The numbers and claims of all studies, and the report on them as Markdown."""
+    """The numbers and claims of all studies, columns of numbers as wholes, and the report on all of
+    them as Markdown.
+    """
 
     numbers: pd.DataFrame
     claims: pd.DataFrame
+    wholes: pd.DataFrame
     report: str
 
 
@@ -31,9 +34,13 @@ def gathered(
     comparison_files: Mapping[str, str],
     claims_files: list[str],
     baseline_comparison_file: str,
+    verdict_files: dict[str, str],
+    audit_files: list[str],
     scale: str,
 ) -> Summary:
-    """The summary of all studies. comparison_files: each by `study/table`."""
+    """The summary of all studies. comparison_files: each by `study/table`. verdict_files: by study.
+    audit_files: of the same studies.
+    """
     everything = numbers(
         {
             (study, table): pd.read_csv(comparison_files[f"{study}/{table}"])
@@ -41,11 +48,25 @@ def gathered(
         }
     )
     claims = read_claims(claims_files)
-    return Summary(
-        everything,
-        claims,
-        report(everything, claims, pd.read_csv(baseline_comparison_file), job.titles, scale),
-    )
+    measured, whole = pd.read_csv(baseline_comparison_file), wholes.of_numbers(everything)
+    follow = verdicts(everything, claims, measured, verdict_files, audit_files)
+    text = report(everything, claims, measured, job.titles, follow, scale)
+    return Summary(everything, claims, whole, text)
+
+
+def verdicts(
+    numbers: pd.DataFrame,
+    claims: pd.DataFrame,
+    measured: pd.DataFrame,
+    files: dict[str, str],
+    audit_files: list[str],
+) -> dict[str, str]:
+    """By study, what follows. files: by study, that of its sentences; audit_files: their audits."""
+    if not files:
+        return {}
+    audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
+    tables = {"numbers": numbers, "claims": claims, "baseline": measured, "audit": audits}
+    return verdict.of_studies(files, tables | {"wholes": wholes.of_numbers(numbers)})
 
 
 def read_claims(files: list[str]) -> pd.DataFrame:
@@ -126,15 +147,18 @@ def report(
     claims: pd.DataFrame,
     measured: pd.DataFrame,
     titles: dict[str, str],
+    follow: dict[str, str],
     scale: str,
 ) -> str:
-    """The summary of a scale as markdown: the headline, the methods compared with the baseline,
-    then the claims of each study with their verdicts.
+    """The summary of a scale as markdown: what follows for each study, the headline, the methods
+    compared with the baseline, then the claims of each study with their verdicts.
 
-    measured: rows with the columns `baseline_comparison.COLUMNS`.
+    measured: rows with the columns `baseline_comparison.COLUMNS`. follow: as from `verdicts`.
     """
     parts = [
         f"{HEADING}{scale}",
+        *(f"## What follows: {titles[key]}\n\n{text.strip()}" for key, text in follow.items()),
+        "## In numbers" if follow else "",
         headline.markdown(headline.headline(numbers, claims, measured, titles)),
         "A published number counts if it can be tested and is not derivable from other published "
         "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
@@ -154,7 +178,7 @@ def report(
             parts += [f"## {title}", _listed(primary[~found])]
         if found.any():
             parts += ["Additional findings, not claimed by the paper:", _listed(primary[found])]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(part for part in parts if part) + "\n"
 
 
 def _listed(claims: pd.DataFrame) -> str:

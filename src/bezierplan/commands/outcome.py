@@ -21,6 +21,7 @@ DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhosen
 BLOCK = "outcome"
 # The table of alternatives of each study at scale full.
 SENSITIVITY = "sensitivity.csv"
+AUDIT = "audit.csv"
 BASELINE_COMPARISON = "baseline_comparison.csv"
 NUMBERS_FULL = "numbers_papers_size.csv"
 SCALES = {
@@ -54,8 +55,11 @@ def write() -> None:
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
     shutil.copyfile(FULL / "numbers.csv", KEPT / NUMBERS_FULL)
+    for key in titles:
+        shutil.copyfile(RESULTS / key / "audit.csv", KEPT / f"{key}_{AUDIT}")
+    follow = following(KEPT, numbers, claims, measured)
     (KEPT / "summary.md").write_text(
-        summary.report(numbers, claims, measured, titles, RESULTS.name), encoding="utf-8"
+        summary.report(numbers, claims, measured, titles, follow, RESULTS.name), encoding="utf-8"
     )
     for key in titles:
         kept, file = KEPT / f"{key}_{SENSITIVITY}", FULL / key / SENSITIVITY
@@ -73,13 +77,26 @@ def write() -> None:
     )
 
 
+def following(kept: Path, *tables: pd.DataFrame) -> dict[str, str]:
+    """By study, what follows, from tables of numbers, claims and measures and a folder's audits."""
+    files = {key: study.verdict_file() for key, study in studies_of().items()}
+    files = {key: file for key, file in files.items() if file}
+    return summary.verdicts(*tables, files, [str(kept / f"{key}_{AUDIT}") for key in files])
+
+
 def table(kept: Path) -> str:
-    """The README's headline, from a folder's tables, and the scale, from its summary."""
+    """The README's sentences and headline, from a folder's tables, and the scale, from its
+    summary.
+    """
     titles = {key: study.title for key, study in studies_of().items()}
-    overview = headline.headline(
-        *(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", BASELINE_COMPARISON)),
-        titles,
+    tables = [
+        pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
+    ]
+    overview = headline.headline(*tables, titles)
+    follow = "\n".join(
+        f"- {titles[key].partition(':')[0]}: {text.partition(chr(10))[0]}"
+        for key, text in following(kept, *tables).items()
     )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
-    return f"{headline.markdown(overview)}\n\nScale `{scale}`: {SCALES[scale]}"
+    return f"{follow}\n\n{headline.markdown(overview)}\n\nScale `{scale}`: {SCALES[scale]}"

@@ -188,6 +188,11 @@ class Study:
         tables = {getattr(panel, "printed", None) for panel in panels}
         return [file for file in files if Path(file).stem in tables]
 
+    def verdict_file(self) -> str | None:
+        """Its sentences of what follows, relative to the working folder, or None."""
+        file = self.folder / "verdict.yaml"
+        return relative(file) if file.is_file() else None
+
     def published_files(self) -> list[str]:
         """All files of published numbers, relative to the working folder."""
         return [relative(file) for file in sorted((self.folder / "published").glob("*.csv"))]

@@ -932,9 +932,10 @@ class Summary(Job):
         tables = [
             (key, name) for key, content in studies.items() for name in content.with_published()
         ]
-        return cls(
-            scale, SummaryJob(tables, {key: content.title for key, content in studies.items()})
-        )
+        titles = {key: content.title for key, content in studies.items()}
+        texts = {key: content.verdict_file() for key, content in studies.items()}
+        digests = {key: content_digest(file) for key, file in texts.items() if file}
+        return cls(scale, SummaryJob(tables, titles, digests))
 
     def run(self, input_files, output_files, threads):
         """Gather them."""
@@ -951,11 +952,39 @@ class Summary(Job):
             files,
             list(input_files.claims),
             input_files.baseline_comparison,
+            dict(zip(self.summary.verdicts, input_files.verdicts, strict=True)),
+            list(input_files.audits),
             self.scale,
         )
         for table, file in (
             (summed.numbers, output_files.numbers),
             (summed.claims, output_files.claims),
+            (summed.wholes, output_files.wholes),
         ):
             table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
         Path(output_files.summary).write_text(summed.report, encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Verdict(Job):
+    """What follows for a paper."""
+
+    study: str
+    text: str
+    """Digest of its sentences."""
+
+    @classmethod
+    def of(cls, studies, scale, study):
+        """That of a study."""
+        return cls(study, content_digest(studies[study].verdict_file()))
+
+    def run(self, input_files, output_files, threads):
+        """Put the numbers into the sentences."""
+        import pandas as pd
+
+        from bezierplan.analysis import summary
+
+        tables = [pd.read_csv(file) for file in input_files.summary]
+        files = {self.study: input_files.verdict[0]}
+        texts = summary.verdicts(*tables, files, [input_files.audit])
+        Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")

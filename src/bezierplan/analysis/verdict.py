@@ -1,0 +1,136 @@
+"""What follows for a paper: a few sentences and one small table, from a study's `verdict.yaml`.
+
+Its sentences have values in braces, each taken from a table of results, and conditions without
+which they do not follow: a sentence whose conditions fail is left out.
+"""
+
+import operator
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+import pandas as pd
+from pydantic import Field
+
+from bezierplan.analysis.markdown import table_text
+from bezierplan.analysis.results import select
+from bezierplan.schema import checked
+from bezierplan.schema.model import Model, parsed
+
+RELATIONS = {
+    "<": operator.lt,
+    "<=": operator.le,
+    "==": operator.eq,
+    ">=": operator.ge,
+    ">": operator.gt,
+}
+TAKES = {
+    "min": pd.Series.min,
+    "max": pd.Series.max,
+    "mean": pd.Series.mean,
+    "median": pd.Series.median,
+    "sum": pd.Series.sum,
+    "count": len,
+    "only": pd.Series.item,
+}
+Source = Literal["numbers", "claims", "audit", "wholes", "baseline"]
+
+
+class Value(Model):
+    """A value of a sentence: of the rows of a table of results, a column, and what is taken."""
+
+    of: Source
+    where: dict[str, Any] = Field({})
+    column: str
+    take: Literal[tuple(TAKES)] = Field("only")
+    part: str = Field(None)
+    """A pattern whose group in the column's text is the number; cells without it do not count."""
+
+    def found(self, tables: dict[str, pd.DataFrame]) -> Any:
+        """The value in tables of results."""
+        column = select(tables[self.of], self.where)[self.column]
+        if self.part:
+            column = column.str.extract(self.part, expand=False).dropna().astype(float)
+        return TAKES[self.take](column)
+
+
+class Sentence(Model):
+    """A sentence: its text, its values by name, and conditions, such as `p < 0.05`."""
+
+    text: str
+    values: dict[str, Value] = Field({})
+    holds: list[str] = Field([])
+
+
+class Shown(Model):
+    """The small table: rows of a table of results, and its columns by heading."""
+
+    of: Source
+    where: dict[str, Any] = Field({})
+    columns: dict[str, str]
+
+
+class Verdict(Model):
+    """What follows for a paper."""
+
+    sentences: list[Sentence]
+    table: Shown
+
+
+class Follows(NamedTuple):
+    """A sentence with its values, and the condition that fails, if one does."""
+
+    text: str
+    fails: str | None
+
+
+def read(file: str | Path) -> Verdict:
+    """The verdict of a study, from its file. Raises Fault."""
+    return parsed(Verdict, checked.read(Path(file)), str(file))
+
+
+def sentences(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> list[Follows]:
+    """The sentences of a study with their values. tables: those of the study, by `Source`."""
+    return [_sentence(each, tables) for each in verdict.sentences]
+
+
+def _sentence(sentence: Sentence, tables: dict[str, pd.DataFrame]) -> Follows:
+    try:
+        values = {name: value.found(tables) for name, value in sentence.values.items()}
+    except (ValueError, KeyError) as error:
+        return Follows(sentence.text, f"a value is missing: {error}")
+    for condition in sentence.holds:
+        first, relation, second = condition.split(maxsplit=2)
+        sides = [values[first], values.get(second, second)]
+        if not isinstance(sides[0], str):
+            sides[1] = float(sides[1])
+        if not RELATIONS[relation](*sides):
+            return Follows(sentence.text, f"{condition}: {sides[0]} and {sides[1]}")
+    return Follows(sentence.text.format(**values), None)
+
+
+def markdown(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> str:
+    """The sentences that follow, and the table."""
+    follow = [each.text for each in sentences(verdict, tables) if each.fails is None]
+    rows = select(tables[verdict.table.of], verdict.table.where)
+    headings = {column: heading for heading, column in verdict.table.columns.items()}
+    shown = rows[list(headings)].rename(columns=headings)
+    for heading in shown.select_dtypes("number"):
+        shown[heading] = [f"{value:.5g}" for value in shown[heading]]
+    shown = shown.fillna("").replace("nan", "")
+    first, *_ = shown
+    return " ".join(follow) + "\n\n" + table_text(shown.set_index(first)) + "\n"
+
+
+def of_studies(files: dict[str, str], tables: dict[str, pd.DataFrame]) -> dict[str, str]:
+    """By study, what follows as markdown. files: by study, that of its sentences. tables: those of
+    all studies, by `Source`, of which rows that are not primary do not count.
+    """
+    return {study: markdown(read(file), own_rows(tables, study)) for study, file in files.items()}
+
+
+def own_rows(tables: dict[str, pd.DataFrame], study: str) -> dict[str, pd.DataFrame]:
+    """The rows of one study that count."""
+    own = {name: table[table["study"] == study] for name, table in tables.items()}
+    return own | {
+        name: own[name][own[name]["primary"].astype(bool)] for name in ("numbers", "claims")
+    }

@@ -1,0 +1,93 @@
+"""What follows for each paper: the sentences of the kept outcome, and their conditions."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from bezierplan.analysis import summary, verdict, wholes
+from bezierplan.commands import outcome, studies_of
+from bezierplan.places import TREE
+
+KEPT = TREE / outcome.KEPT
+
+
+@pytest.fixture(scope="module")
+def kept():
+    files = {
+        "numbers": "numbers.csv",
+        "claims": "claims.csv",
+        "baseline": "baseline_comparison.csv",
+    }
+    tables = {name: pd.read_csv(KEPT / file) for name, file in files.items()}
+    audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in studies_of()]
+    return tables | {"wholes": wholes.of_numbers(tables["numbers"]), "audit": pd.concat(audits)}
+
+
+@pytest.mark.parametrize("study", ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"])
+def test_sentences_follow_from_the_kept_outcome(kept, study):
+    """A sentence whose condition fails has to be written anew."""
+    template = verdict.read(TREE / f"config/studies/{study}/verdict.yaml")
+    found = verdict.sentences(template, verdict.own_rows(kept, study))
+    assert 3 <= len(found) <= 5
+    assert [each.fails for each in found] == [None] * len(found)
+    text = (KEPT / "summary.md").read_text(encoding="utf-8")
+    assert all(each.text in text for each in found)
+
+
+def test_a_sentence_whose_numbers_change_is_computed_again(kept):
+    rows = verdict.own_rows(kept, "ma2020")
+    template = verdict.read(TREE / "config/studies/ma2020/verdict.yaml")
+    numbers = rows["numbers"].copy()
+    named = numbers.index[numbers["verdict"] == "identified"]
+    numbers.loc[named[0], "verdict"] = "disagrees"
+    first, *_ = verdict.sentences(template, rows | {"numbers": numbers})
+    assert first.text.startswith("6 of 8 shortest lengths")
+    numbers.loc[named, "verdict"] = "disagrees"
+    first, *_ = verdict.sentences(template, rows | {"numbers": numbers})
+    assert first.fails == "named > 4: 0 and 4.0"
+    assert "8 shortest" not in verdict.markdown(template, rows | {"numbers": numbers})
+
+
+def test_values_that_are_not_there_take_the_sentence_away(kept):
+    rows = verdict.own_rows(kept, "tharwat2018")
+    template = verdict.read(TREE / "config/studies/tharwat2018/verdict.yaml")
+    first, *_ = verdict.sentences(template, rows | {"audit": rows["audit"].iloc[:0]})
+    assert first.fails.startswith("a value is missing")
+
+
+def test_a_study_without_sentences_has_no_verdict(kept):
+    assert summary.verdicts(kept["numbers"], kept["claims"], kept["baseline"], {}, []) == {}
+
+
+# Columns as wholes
+
+
+@pytest.mark.parametrize("size", [4, 6])
+def test_rank_correlation_and_its_chance(size):
+    rng = np.random.default_rng(size)
+    first, second = rng.normal(size=(2, size))
+    found, chance = wholes.rank_correlation(first, second)
+    assert found == pytest.approx(stats.spearmanr(first, second).statistic)
+    exact = stats.permutation_test(
+        (first,),
+        lambda each: stats.spearmanr(each, second).statistic,
+        permutation_type="pairings",
+        n_resamples=np.inf,
+    )
+    assert chance == pytest.approx(exact.pvalue, abs=1e-9)
+
+
+def test_printed_means_of_tharwat2018_are_in_the_reverse_order(kept):
+    found = kept["wholes"].query("study == 'tharwat2018' and metric == 'objective'")
+    found = found.set_index(["table", "quantity"])
+    order = found.loc[("table3", "order")]
+    assert order["printed"] == pytest.approx(-0.786, abs=1e-3)
+    assert order["chance"] == pytest.approx(0.028, abs=1e-3)
+    assert found.loc[("table3", "level"), "printed"] == pytest.approx(10.925, abs=1e-3)
+    assert found.loc[("table3", "spread"), "printed"] == pytest.approx(0.316, abs=1e-3)
+
+
+def test_columns_of_few_methods_are_no_wholes(kept):
+    three = kept["numbers"].query("table == 'table3' and metric == 'objective'").iloc[:3]
+    assert wholes.of_numbers(three).empty
