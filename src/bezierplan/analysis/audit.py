@@ -48,7 +48,7 @@ LEVEL = 0.05
 LEAST_MEANS = 5
 """Means beside minimum and maximum that a table needs."""
 
-DRAWN = 4000
+DRAWN = 2000
 """Sets of normal numbers from which the distribution of means within their ranges is drawn."""
 
 DIGITS_LEVEL = 0.01
@@ -249,13 +249,13 @@ def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float]:
 
 def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
     """Numbers that must rise or fall along a column: each beside the one before it."""
-    own = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
+    numbers = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
     keys = _keys(table)
     others = [key for key in keys if key != rule.along]
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
     kept, chances = 0, []
-    for group in groups(own, others):
+    for group in groups(numbers, others):
         ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
             pair = [possible.printed(each["printed"]) for each in (before, row)]
@@ -284,13 +284,13 @@ def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     """
     for item, table in tables.items():
         keys = [*_keys(table), "metric"]
-        own = table[table["statistic"].isin(["min", "mean", "max"])]
-        if "n" not in own or own.empty or own["n"].nunique() != 1 or own["n"].iloc[0] < 2:
+        ends = table[table["statistic"].isin(["min", "mean", "max"])]
+        if "n" not in ends or ends.empty or ends["n"].nunique() != 1 or ends["n"].iloc[0] < 2:
             continue
-        wide = own.pivot_table(index=keys, columns="statistic", values="value")
+        wide = ends.pivot_table(index=keys, columns="statistic", values="value")
         if not {"min", "mean", "max"} <= set(wide) or len(wide := wide.dropna()) < LEAST_MEANS:
             continue
-        n, count = int(own["n"].iloc[0]), len(wide)
+        n, count = int(ends["n"].iloc[0]), len(wide)
         apart = float(_from_middle(*wide[["min", "mean", "max"]].to_numpy().T))
         drawn = generator(f"audit/middles/{n}").normal(size=(DRAWN, count, n))
         sets = _from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
