@@ -131,6 +131,9 @@ def page(folder: Path) -> SimpleNamespace:
         table.to_csv(folder / f"{name}.csv", index=False)
     (folder / "one/paper/figure1.svg").write_text(SVG)
     (folder / "one/paper/figure1.txt").write_text("(a) run one/first/p/b/0.\n(a) lowest mean: b.\n")
+    (folder / "one/verdict.md").write_text(
+        f"One fails. {HOSTILE}\n\n| paths | printed |\n| --- | --- |\n|  | 4 |\n"
+    )
     summary = [str(folder / f"{name}.csv") for name in ("numbers", "claims", "baseline_comparison")]
     made = build.page(job(), folder, summary)
     made.data |= viewed()

@@ -221,6 +221,13 @@ def test_a_scale_says_how_many_runs_it_has_and_that_they_are_fewer():
     assert second.startswith("These are fewer than the 250 to 4,000 runs of the outcome above")
 
 
+def test_what_follows_for_a_paper_stands_at_its_head(text):
+    head, _, _ = text.partition('id="page-claims/one"')
+    assert ">One fails. &lt;/script&gt;" in head
+    assert '<th scope="col">printed</th></tr></thead><tbody>' in head
+    assert "<td></td><td>4</td>" in head
+
+
 def test_the_page_says_what_to_use_by_kind_of_map_with_a_command_on_a_map_that_exists(
     content, text
 ):

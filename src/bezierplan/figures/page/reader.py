@@ -63,7 +63,7 @@ def studies(
             _table(key, name, each, folder, described.labels, *counted)
             for name, each in described.tables.items()
         ]
-        baseline = of_study(measured, key)
+        baseline, verdict = of_study(measured, key), folder / key / "verdict.md"
         gaps = [
             cell["gap"]
             for table in own_tables
@@ -87,6 +87,7 @@ def studies(
             baseline_in_words=baseline_comparison.sentence(baseline) if len(baseline) else "",
             gap=float(np.median(gaps)) if gaps else None,
             shown=[],
+            verdict=verdict.read_text(encoding="utf-8") if verdict.is_file() else "",
         )
     return shown
 

@@ -186,6 +186,7 @@ function shownText(element, more) {
   if (element.tagName === "TD") return tipOf(element).split("; ").slice(0, 3).join("; ");
   if (element.tagName === "DT") return `${element.textContent.trim()}: ${element.nextElementSibling.textContent}`;
   if (element.tagName === "TR") return more;
+  if (element.tagName === "P") return element.textContent;
   const parts = [...element.querySelectorAll(":scope > summary > .id, :scope > summary > .statement, :scope > h2, :scope > figcaption > strong")];
   return [...parts.map((part) => part.textContent), element.tagName === "FIGURE" ? more : ""].join(" ");
 }
