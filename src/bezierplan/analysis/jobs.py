@@ -13,8 +13,6 @@ class AuditJob(NamedTuple):
     """A paper's own numbers, checked against each other and against exact bounds."""
 
     study: str
-    module: str | None
-    """That of the study, with checks of its own."""
     tables: dict[str, str]
     """Table of published numbers -> the experiment that reproduces it."""
     primary: dict[str, dict]
