@@ -91,3 +91,15 @@ def test_printed_means_of_tharwat2018_are_in_the_reverse_order(kept):
 def test_columns_of_few_methods_are_no_wholes(kept):
     three = kept["numbers"].query("table == 'table3' and metric == 'objective'").iloc[:3]
     assert wholes.of_numbers(three).empty
+
+
+def test_a_value_that_is_no_number_takes_the_sentence_away():
+    sentence = {
+        "text": "{mean:.1f}",
+        "values": {"mean": {"of": "numbers", "column": "value_ours", "take": "mean"}},
+    }
+    shown = {"of": "numbers", "columns": {"ours": "value_ours"}}
+    template = verdict.Verdict.model_validate({"sentences": [sentence], "table": shown})
+    rows = {"numbers": pd.DataFrame({"value_ours": [np.nan]})}
+    (only,) = verdict.sentences(template, rows)
+    assert only.fails == "a value is missing: mean"

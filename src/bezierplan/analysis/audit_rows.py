@@ -8,7 +8,7 @@ COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "
 NOT_KEYS = ("metric", "statistic", "n", "unit", "value", "printed")
 """Columns of a table of published numbers that do not tell its rows apart."""
 
-_RELATIONS = {
+RELATIONS = {
     "<": operator.lt,
     "<=": operator.le,
     "==": operator.eq,
@@ -42,4 +42,4 @@ def compared(
     item: str, location: str, rule: str, printed: float, relation: str, limit: float
 ) -> dict:
     """The row of a number that should be <, <=, ==, >= or > than its limit."""
-    return checked(item, location, rule, printed, limit, bool(_RELATIONS[relation](printed, limit)))
+    return checked(item, location, rule, printed, limit, bool(RELATIONS[relation](printed, limit)))

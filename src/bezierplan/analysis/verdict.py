@@ -4,25 +4,18 @@ Its sentences have values in braces, each taken from a table of results, and con
 which they do not follow: a sentence whose conditions fail is left out.
 """
 
-import operator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import pandas as pd
 from pydantic import Field
 
+from bezierplan.analysis.audit_rows import RELATIONS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.results import select
 from bezierplan.schema import checked
 from bezierplan.schema.model import Model, parsed
 
-RELATIONS = {
-    "<": operator.lt,
-    "<=": operator.le,
-    "==": operator.eq,
-    ">=": operator.ge,
-    ">": operator.gt,
-}
 TAKES = {
     "min": pd.Series.min,
     "max": pd.Series.max,
@@ -96,8 +89,10 @@ def sentences(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> list[Follows
 def _sentence(sentence: Sentence, tables: dict[str, pd.DataFrame]) -> Follows:
     try:
         values = {name: value.found(tables) for name, value in sentence.values.items()}
-    except (ValueError, KeyError) as error:
+    except (ValueError, KeyError, AttributeError) as error:
         return Follows(sentence.text, f"a value is missing: {error}")
+    if missing := [name for name, value in values.items() if value != value]:
+        return Follows(sentence.text, f"a value is missing: {', '.join(missing)}")
     for condition in sentence.holds:
         first, relation, second = condition.split(maxsplit=2)
         sides = [values[first], values.get(second, second)]
