@@ -23,8 +23,9 @@ import yaml
 from bezierplan.commands.digest import run_tables, table_digest
 
 ROOT = Path(__file__).parents[1]
-GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single", "random_search")
-METHODS = (*GENETIC, "shortest_path", "straight_line", "rounded")
+# Those of the paper, and the baseline that all studies share.
+GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single")
+METHODS = (*GENETIC, "rounded")
 EXPERIMENTS = "config/studies/song2016/experiments.yaml"
 SMALL = {
     "population: 200": "population: 10",
@@ -217,7 +218,7 @@ EDITS = {
         {},
     ),
     "how a job is logged": (
-        "src/bezierplan/running/log.py",
+        "src/bezierplan/running/jobs/log.py",
         'LAST = "CRITICAL "',
         'LAST = "CRITICAL " + ""',
         {},
