@@ -8,7 +8,8 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import drawings, results
+from bezierplan.analysis import results
+from bezierplan.analysis.papers import drawings
 from bezierplan.running import problems
 from bezierplan.study import reading
 from bezierplan.study.definition import Study

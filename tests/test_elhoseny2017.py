@@ -11,9 +11,8 @@ from studies import studies, study
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.claims.kinds import function
+from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
-from bezierplan.papers.elhoseny2017 import audit as own_audit
-from bezierplan.papers.elhoseny2017 import functions as elhoseny2017
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Condition
 from bezierplan.study import jobs
@@ -90,7 +89,7 @@ def test_the_example_agrees_with_the_text():
 
 @pytest.fixture(scope="module")
 def rows():
-    return audit.table("elhoseny2017", own_audit.audit(PUBLISHED))
+    return audit.table("elhoseny2017", elhoseny2017.audit(PUBLISHED))
 
 
 def broken(rows, rule):
@@ -165,7 +164,7 @@ def test_lengths_of_the_counting_rule_pass():
         lengths = own["obstacles"].map(dict(zip((5, 10, 15, 20, 25), values)))
         own.loc[own["method"] == "mga", "value"] = lengths
         given[name] = own
-    rows = audit.table("elhoseny2017", own_audit.audit(given))
+    rows = audit.table("elhoseny2017", elhoseny2017.audit(given))
     assert rows.loc[rows["rule"].str.contains("chi-square|can be such"), "consistent"].all()
 
 
@@ -251,5 +250,5 @@ def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
     ],
 )
 def test_numbers_to_which_a_map_was_fitted_are_not_compared_with_its_bound(key, fitted):
-    layouts = jobs.Audit.of(studies(), "smoke", key).audit.layouts
+    layouts = jobs.Audit.of(studies(), "smoke", key).layouts
     assert {name for name, layout in layouts.items() if layout.fitted} == fitted

@@ -67,6 +67,13 @@ def test_caption_is_one_line_that_says_just_what_it_says():
     assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"
 
 
+def test_a_study_with_another_setting_is_marked_as_changed():
+    """The others are not: the settings of the outcome are those of today."""
+    assert [own.key for own in studies().values() if page.changed(own)] == []
+    turned = dataclasses.replace(SONG, settings=SONG.settings | {"population": 198})
+    assert "population of smooth is 198, in the README's outcome 200" in page.changed(turned)
+
+
 # Files that jobs write
 
 

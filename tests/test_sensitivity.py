@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from bezierplan.analysis import audit, sensitivity
-from bezierplan.analysis.jobs import Tried
+from bezierplan.analysis.sensitivity import Tried
 
 
 def claims(**verdicts):

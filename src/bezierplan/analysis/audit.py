@@ -11,16 +11,17 @@ the order of rows, `of_digits` the decimals of all numbers. `analysis.possible` 
 forms.
 """
 
+import importlib
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import identified, possible
 from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked, place
-from bezierplan.analysis.jobs import AuditJob
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
 from bezierplan.analysis.results import groups, published_table
 from bezierplan.analysis.table_kinds import Layout, Monotone
@@ -342,13 +343,12 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
 
 
 def audited(
-    job: AuditJob,
-    own: Callable[[dict[str, pd.DataFrame]], list[dict]],
+    job: Any,
     problem_files: Mapping[str, str],
     bound_files: Mapping[str, str],
     files: Mapping[str, str],
 ) -> pd.DataFrame:
-    """The audit of a paper as a table with `COLUMNS`.
+    """The audit of a paper as a table with `COLUMNS`. job: what `study.jobs.Audit` holds.
 
     problem_files and bound_files: by experiment, problems of those alone whose printed lengths are
     identified. files: of published numbers, by table.
@@ -368,7 +368,9 @@ def audited(
         rows += identified.of_table(
             name, published[name], layout.identify, made.get(job.tables[name], {})
         )
-    return table(job.study, rows + own(published))
+    if job.module:
+        rows += importlib.import_module(job.module).audit(published)
+    return table(job.study, rows)
 
 
 def read_published(file: str) -> pd.DataFrame:

@@ -22,7 +22,6 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics
-from bezierplan.analysis.jobs import MeasuredJob
 from bezierplan.analysis.results import Results, read
 from bezierplan.running.inputs import Files
 
@@ -76,18 +75,21 @@ def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
     return rows.reset_index().reindex(columns=COLUMNS[1:])
 
 
-def of_studies(job: Mapping[str, MeasuredJob], files: Mapping[str, Files]) -> pd.DataFrame:
+def of_studies(
+    baselines: Mapping[str, str], repeats: Mapping[str, int], files: Mapping[str, Files]
+) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
-    job: by study. files: of experiments, each by `study/experiment`.
+    baselines: by study. repeats, files: of experiments, each by `study/experiment`.
     """
     tables = []
-    for study, own in job.items():
+    for study, baseline in baselines.items():
         experiments = {
-            name: read(files[f"{study}/{name}"], number, name)
-            for name, number in own.repeats.items()
+            place.partition("/")[2]: read(files[place], number, place.partition("/")[2])
+            for place, number in repeats.items()
+            if place.startswith(f"{study}/")
         }
-        tables.append(measured(experiments, own.baseline).assign(study=study))
+        tables.append(measured(experiments, baseline).assign(study=study))
     rows = pd.concat(tables) if tables else pd.DataFrame()
     return rows.reindex(columns=COLUMNS)
 

@@ -7,10 +7,20 @@ effect_alternative (of the decisive comparison).
 """
 
 import json
+from typing import NamedTuple
 
 import pandas as pd
 
-from bezierplan.analysis.jobs import Tried
+
+class Tried(NamedTuple):
+    """An alternative that is tried on claims, as its table describes it."""
+
+    study: str
+    assumption: str
+    detail: str
+    setting: str | None
+    default: object
+    alternative: object
 
 
 def sensitivity(

@@ -11,7 +11,6 @@ import pandas as pd
 
 from bezierplan.analysis import baseline_comparison, headline, verdict, wholes
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
-from bezierplan.analysis.jobs import SummaryJob
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
 
@@ -30,27 +29,22 @@ class Summary(NamedTuple):
 
 
 def gathered(
-    job: SummaryJob,
-    comparison_files: Mapping[str, str],
+    comparison_files: Mapping[tuple[str, str], str],
+    titles: dict[str, str],
     claims_files: list[str],
     baseline_comparison_file: str,
     verdict_files: dict[str, str],
     audit_files: list[str],
     scale: str,
 ) -> Summary:
-    """The summary of all studies. comparison_files: each by `study/table`. verdict_files: by study.
-    audit_files: of the same studies.
+    """The summary of all studies. comparison_files: by study and table. titles: of the studies.
+    verdict_files: by study. audit_files: of the same studies.
     """
-    everything = numbers(
-        {
-            (study, table): pd.read_csv(comparison_files[f"{study}/{table}"])
-            for study, table in job.tables
-        }
-    )
+    everything = numbers({name: pd.read_csv(file) for name, file in comparison_files.items()})
     claims = read_claims(claims_files)
     measured, whole = pd.read_csv(baseline_comparison_file), wholes.of_numbers(everything)
     follow = verdicts(everything, claims, measured, verdict_files, audit_files)
-    text = report(everything, claims, measured, job.titles, follow, scale)
+    text = report(everything, claims, measured, titles, follow, scale)
     return Summary(everything, claims, whole, text)
 
 

@@ -12,6 +12,7 @@ import pandas as pd
 from bezierplan.analysis import headline, summary
 from bezierplan.commands import replay, studies_of
 from bezierplan.schema.checked import Fault
+from bezierplan.study.page import settings_of
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
@@ -58,6 +59,10 @@ def write() -> None:
     for key in titles:
         shutil.copyfile(RESULTS / key / "audit.csv", KEPT / f"{key}_{AUDIT}")
     follow = following(KEPT, numbers, claims, measured)
+    settings = [(key, *row) for key, each in studies.items() for row in settings_of(each)]
+    pd.DataFrame(settings, columns=["study", "method", "setting", "value"]).to_csv(
+        KEPT / "settings.csv", index=False
+    )
     (KEPT / "summary.md").write_text(
         summary.report(numbers, claims, measured, titles, follow, RESULTS.name), encoding="utf-8"
     )

@@ -6,7 +6,7 @@ from typing import Any
 
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.jobs import Tried
+from bezierplan.analysis.sensitivity import Tried
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study

@@ -15,71 +15,56 @@ from bezierplan.schema.model import (
     Model,
     Name,
     Setting,
-    at_most,
+    expected,
     first_fault,
     listed,
     mapping_or,
     one_of,
+    shown,
     wrong,
 )
 from bezierplan.study.experiments import Settings
 
-
-class Each(Model):
-    """The part of a panel that makes it several."""
-
-    each: list[dict[str, Any]] = Field(min_length=2, description=EACH)
-
-
 _PANEL = TypeAdapter(Annotated[Panel, one_of("kind", kinds())])
-
-
-def _expanded(entry: Any) -> dict[str, Panel]:
-    """The panels that an entry in a list of panels stands for, by the keys that lead to them."""
-    if not isinstance(entry, dict) or "each" not in entry:
-        return {"": _PANEL.validate_python(entry)}
-    panels = {}
-    for number, part in enumerate(Each(each=entry["each"]).each):
-        location = f"each: {number}"
-        try:
-            joined = _joined(part, entry, location)
-            panels[location] = _PANEL.validate_python(
-                {key: value for key, value in joined.items() if key != "each"}
-            )
-        except ValidationError as error:
-            path = first_fault(error)
-            key = path[0].split(":")[0]
-            raise wrong(
-                ": ".join(path if key in entry and key not in part else [location, *path])
-            ) from None
-    return panels
-
-
-def _joined(part: dict[str, Any], shared: dict[str, Any], location: str) -> dict[str, Any]:
-    """The keys of both; mappings that stand in both are joined likewise."""
-    joined = part | shared
-    for key in part.keys() & shared.keys():
-        if not (isinstance(part[key], dict) and isinstance(shared[key], dict)):
-            raise wrong(
-                f"{location}: {key}: is given beside each as well; "
-                "expected it in one of the two places"
-            )
-        joined[key] = _joined(part[key], shared[key], f"{location}: {key}")
-    return joined
-
-
-_ENTRIES = TypeAdapter(
-    Annotated[list[Annotated[Any, PlainValidator(_expanded)]], Field(min_length=1)]
+_PARTS = TypeAdapter(
+    Annotated[list[dict[str, Any]], Field(min_length=2)], config=ConfigDict(strict=True)
 )
-_LIST = TypeAdapter(Annotated[list[Any], at_most(MOST_PANELS)], config=ConfigDict(strict=True))
 
 
-def _panels(given: Any) -> list[Panel]:
-    """The panels of a figure, each with its place in the list that is given."""
+def _joined(part: dict[str, Any], shared: dict[str, Any]) -> dict[str, Any]:
+    """The keys of both; mappings that stand in both are joined likewise."""
+    both = {
+        key: _joined(part[key], shared[key])
+        for key in part.keys() & shared.keys()
+        if isinstance(part[key], dict) and isinstance(shared[key], dict)
+    }
+    return shared | part | both
+
+
+def _expanded(entry: Any) -> dict[str, Any]:
+    """What an entry in a list of panels stands for, by the keys that lead there."""
+    if not isinstance(entry, dict) or "each" not in entry:
+        return {"": entry}
+    shared = {key: value for key, value in entry.items() if key != "each"}
+    try:
+        parts = _PARTS.validate_python(entry["each"])
+    except ValidationError:
+        raise wrong(f"each: {shown(entry['each'])}: expected {EACH}") from None
+    return {f": each: {number}": _joined(part, shared) for number, part in enumerate(parts)}
+
+
+def _panels(entries: Any) -> list[Panel]:
+    """The panels of a figure, each with its place in the list of the file."""
     panels = []
-    for number, entry in enumerate(_ENTRIES.validate_python(_LIST.validate_python(given))):
-        for location, panel in entry.items():
-            panel._place = f"{number}: {location}" if location else str(number)
+    if not isinstance(entries, list) or not entries:
+        raise expected("a list of panels")
+    for number, entry in enumerate(entries):
+        for place, content in _expanded(entry).items():
+            try:
+                panel = _PANEL.validate_python(content)
+            except ValidationError as error:
+                raise wrong(": ".join([f"{number}{place}", *first_fault(error)])) from None
+            panel._place = f"{number}{place}"
             panels.append(panel)
     if len(panels) > MOST_PANELS:
         raise wrong(f"{len(panels)} panels; expected at most {MOST_PANELS}, one a letter")

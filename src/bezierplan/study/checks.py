@@ -2,6 +2,7 @@
 free places, matching published numbers. Every fault is reported in one line.
 """
 
+import importlib
 import inspect
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
@@ -11,11 +12,11 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from bezierplan.analysis import metrics, statistics, study_code
+from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Comparison, Pivot
-from bezierplan.figures.panels import Panel
+from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import columns, problems, worlds
 from bezierplan.running.chunk import conditions
@@ -44,7 +45,7 @@ a setting of that name adds nothing.
 def check(study: Study) -> None:
     """Raise Fault for anything wrong in a study whose files are each valid on their own."""
     _check_experiments(study, relative(study.folder / "experiments.yaml"))
-    design, functions = Design(study), study_code.functions(study.code_for("functions"))
+    design, functions = Design(study), _functions(study)
     for file in study.published_files():
         published.read(Path(file))
     location = relative(study.folder / "artefacts.yaml")
@@ -79,6 +80,14 @@ def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], location: str) -
     for number, identity in enumerate(ids):
         if identity in ids[:number]:
             raise Fault(f"{location}: {identity}: another one has this id already")
+
+
+def _functions(study: Study) -> dict[str, Callable]:
+    """The public functions of a study's module, by name."""
+    names = vars(importlib.import_module(study.module())) if study.module() else {}
+    return {
+        name: value for name, value in names.items() if callable(value) and not name.startswith("_")
+    }
 
 
 # experiments.yaml
@@ -186,10 +195,10 @@ def _check_shared_settings(study: Study, used: set[str], location: str) -> None:
 def _check_problem(study: Study, name: str, location: str) -> None:
     """A problem has the keys of its kind of workspace."""
     problem, home = study.problems[name], study.workspace_of(name)
-    if not home.planar:
+    if home.kind == "spheres":
         raise Fault(
             f"{location}: workspace: {problem.workspace}: has three dimensions; a panel of kind "
-            f"{home.kind} plans there, and no experiment"
+            "spheres plans there, and no experiment"
         )
     for key, needed in (("layouts", bool(home.drawn)), ("side", home.with_side)):
         if needed != (getattr(problem, key) is not None):
@@ -361,19 +370,19 @@ def _check_arguments(function: Callable, arguments: dict[str, Any], location: st
 
 
 def _check_panel(design: Design, panel: Panel, location: str) -> None:
-    """A panel's runs are of the kind that it shows, of one problem and one method if it shows one
-    run, and of enough methods; what it plans itself is valid.
+    """A panel's runs are of the kind that it shows, of one method if it shows one run, and of
+    enough methods; what it plans itself is valid.
     """
     study = design.study
     if panel.plans:
         check_known(panel.method, study.methods, f"{location}: method")
-        check_known(study.methods[panel.method].planner, [panel.plans], f"{location}: method")
+        check_known(study.methods[panel.method].planner, [spheres.PLANNER], f"{location}: method")
         for setting in panel.settings:
             check_known(setting, study.accepted(panel.method), f"{location}: settings")
         settings = study.resolved(panel.method) | panel.settings
-        check_settings(planner_module(panel.plans), settings, f"{location}: settings")
+        check_settings(planner_module(spheres.PLANNER), settings, f"{location}: settings")
         home = files.load(study.workspaces[panel.workspace].plain(), study.folder)
-        _valid(location, panel.check, home)
+        _valid(location, spheres.problem, home, panel.start, panel.target)
     if not getattr(panel, "experiment", None):
         return
     if panel.drives and not study.moves(panel.experiment):
@@ -381,22 +390,14 @@ def _check_panel(design: Design, panel: Panel, location: str) -> None:
             f"{location}: experiment: {panel.experiment}: nothing moves there; expected an "
             "experiment of drives"
         )
-    shown = design.shown(panel.experiment, panel.where)
-    for column in panel.one:
-        if len(shown[column]) > 1 and getattr(panel, "hue", None) != column:
-            some = ", ".join(sorted(shown[column])[:3])
-            raise Fault(
-                f"{location}: where: selects {len(shown[column])} values of {column} ({some}, "
-                "...); expected one, which is shown"
-            )
-    if len(shown["method"]) < panel.fewest_methods:
+    methods = one_or_list(panel.where.get("method", study.experiments[panel.experiment].methods))
+    if "method" in panel.one and len(methods) > 1 and getattr(panel, "hue", None) != "method":
+        raise Fault(
+            f"{location}: where: selects {len(methods)} values of method; expected one, which is "
+            "shown"
+        )
+    if len(methods) < panel.fewest_methods:
         raise Fault(f"{location}: where: expected at least {panel.fewest_methods} methods")
-    for method in sorted(shown["method"]) if panel.tracks else []:
-        if not hasattr(planner_module(study.planner(method)), "track"):
-            raise Fault(
-                f"{location}: where: method: {method}: its planner "
-                f"{study.methods[method].planner} has no function track"
-            )
 
 
 def _check_claim(

@@ -209,30 +209,6 @@ class Design:
             values |= dict.fromkeys(every[column])
         return list(values)
 
-    def shown(self, experiment: str, where: dict[str, Any]) -> dict[str, set[str]]:
-        """The problems and methods of the runs that a panel selects."""
-        methods = one_or_list(where.get("method", self.study.experiments[experiment].methods))
-        rows = [
-            row for row in self.rows(experiment) if row["method"] in methods and fits(row, where)
-        ]
-        problems = {row["problem"] for row in rows if "layout" not in row}
-        if any("layout" in row for row in rows):
-            places = {
-                key: one_or_list(values)
-                for key, values in where.items()
-                if key in (*PLACE, "problem")
-            }
-            problems |= {
-                name
-                for name, problem in self.study.problems_of(experiment, "full").items()
-                if "layout" in problem
-                and all(
-                    (problem | {"problem": name}).get(key) in values
-                    for key, values in places.items()
-                )
-            }
-        return {"problem": problems, "method": {row["method"] for row in rows}}
-
 
 def _type(values: list[Any]) -> str:
     """The type of a column of settings or places with these values."""

@@ -8,14 +8,14 @@ must run again. Files stand in the rules alone.
 
 import hashlib
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Self
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Shown
-from bezierplan.analysis.jobs import AuditJob, MeasuredJob, SummaryJob, Tried
+from bezierplan.analysis.sensitivity import Tried
 from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.panels import Panel
@@ -28,7 +28,6 @@ from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
 from bezierplan.study.artefacts import Figure as FigureOfStudy
 from bezierplan.study.definition import Study, relative
-from bezierplan.workspaces.kinds import kind_of
 
 Studies = dict[str, Study]
 
@@ -52,7 +51,7 @@ class Job:
         """Do the work with the files of a rule, by their names there."""
         raise NotImplementedError
 
-    def modules(self) -> Iterable[str]:
+    def modules(self) -> Iterable[str | None]:
         """Modules that `run` imports by name, because of the values."""
         return ()
 
@@ -67,26 +66,8 @@ class Job:
             for name, function in inspect.getmembers(type(self), inspect.isfunction)
             if not name.startswith("__") and name != "modules"
         )
-        code = function_digest(works, *sorted(set(self.modules())))
+        code = function_digest(works, *sorted(set(filter(None, self.modules()))))
         return f"{hashlib.sha256(values.encode()).hexdigest()[:16]} {code}"
-
-
-@dataclass(frozen=True)
-class Analysis(Job):
-    """A job for which the code of a study itself is needed."""
-
-    code: list[str] = field(default_factory=list, kw_only=True)
-    """Its modules."""
-
-    def modules(self) -> Iterable[str]:
-        """Those of the study."""
-        return self.code
-
-    def load(self) -> dict[str, Callable[..., Any]]:
-        """Load the study's own code; its functions by name."""
-        from bezierplan.analysis import study_code
-
-        return study_code.functions(self.code)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -108,7 +89,7 @@ def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
 
 def kinds_of_workspace(workspaces: dict[str, dict]) -> list[str]:
     """Modules of the kinds of some workspaces."""
-    return [kind_of(each).__name__ for each in workspaces.values()]
+    return [f"bezierplan.workspaces.kinds.{each['kind']}" for each in workspaces.values()]
 
 
 @dataclass(frozen=True)
@@ -363,7 +344,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
 
 
 @dataclass(frozen=True)
-class TableOfRuns(Analysis):
+class TableOfRuns(Job):
     """A table of runs, and its comparison with published numbers."""
 
     name: str
@@ -402,7 +383,6 @@ class TableOfRuns(Analysis):
             repeats=experiment.repeats[scale],
             published=content_digest(file) if file else "",
             shows=shown_by(content, table, scale),
-            code=content.code_for("metrics"),
         )
 
     def run(self, input_files, output_files, threads):
@@ -412,7 +392,6 @@ class TableOfRuns(Analysis):
         from bezierplan.analysis import comparison, results, tables
         from bezierplan.running import inputs
 
-        self.load()
         ((experiment, files),) = inputs.experiments(self.shows, input_files).items()
         runs = results.read(files, self.repeats, experiment)
         file = input_files.published[0] if self.published else None
@@ -435,11 +414,13 @@ class TableOfRuns(Analysis):
 
 
 @dataclass(frozen=True)
-class TableWithoutRuns(Analysis):
+class TableWithoutRuns(Job):
     """What a paper prints, what follows from it, or several comparisons."""
 
     spec: Table
     """Without its title."""
+    module: str | None
+    """That of the study, whose function makes the table."""
     labels: dict[str, str]
     published: str
     """Digest of files of published numbers."""
@@ -449,17 +430,25 @@ class TableWithoutRuns(Analysis):
         """The table of a name."""
         content = studies[study]
         spec = content.tables[table].but(title=table)
-        code = content.code_for("functions") if spec.kind == "function" else []
+        module = content.module() if spec.kind == "function" else None
         published = content_digest(*content.published_of(table))
-        return cls(spec, labels_of(content, table), published, code=code)
+        return cls(spec, module, labels_of(content, table), published)
+
+    def modules(self):
+        """That of the study."""
+        return [self.module]
 
     def run(self, input_files, output_files, threads):
         """Make the table."""
+        import importlib
+
         from bezierplan.analysis import listing
         from bezierplan.running import inputs
 
-        published = inputs.by_table(input_files.published)
-        table = listing.table(self.spec, published, self.load(), self.labels)
+        functions = vars(importlib.import_module(self.module)) if self.module else {}
+        table = listing.table(
+            self.spec, inputs.by_table(input_files.published), functions, self.labels
+        )
         table.to_csv(output_files[0], index=False, float_format="%.10g", lineterminator="\n")
 
 
@@ -497,7 +486,7 @@ class Latex(Job):
 
 
 @dataclass(frozen=True)
-class Figure(Analysis):
+class Figure(Job):
     """A figure: pictures, exactly the data drawn in them, and what its caption says of the runs."""
 
     study: str
@@ -505,6 +494,8 @@ class Figure(Analysis):
     width: str
     """Of the sheet, a key of `style.WIDTHS`."""
     panels: list[Panel]
+    module: str | None
+    """That of the study, with the functions that panels name."""
     labels: dict[str, str]
     """Name -> how it is printed."""
     looks: dict[str, str]
@@ -542,6 +533,7 @@ class Figure(Analysis):
             columns=spec.columns,
             width=spec.width,
             panels=[_planned(content, panel) for panel in spec.panels],
+            module=content.module() if any_method else None,
             labels=labels_of(content, figure),
             looks={
                 name: look for name, look in looks(content).items() if any_method or name in methods
@@ -559,21 +551,22 @@ class Figure(Analysis):
             folder=relative(content.folder),
             sources=content_digest(*content.maps(bare), *content.published_drawn(figure)),
             shows=shown_by(content, figure, scale),
-            code=content.code_for("metrics", *(["functions"] if any_method else [])),
         )
 
     def modules(self):
-        """Kinds of panel and workspace, and planners that run again."""
+        """Kinds of panel and workspace, the study's, and planners that run again."""
         again = [chunk.planner for methods in self.chunks.values() for chunk in methods.values()]
         return [
-            *super().modules(),
-            *(type(panel).__module__ for panel in self.panels),
+            self.module,
+            *(f"bezierplan.figures.panels.{panel.kind}" for panel in self.panels),
             *map(module_of, again),
             *kinds_of_workspace(self.workspaces),
         ]
 
     def run(self, input_files, output_files, threads):
         """Draw the figure from its data, which are first written and read back."""
+        import importlib
+
         from bezierplan.analysis import results
         from bezierplan.figures import sheet
         from bezierplan.figures.panels import Sources
@@ -595,8 +588,9 @@ class Figure(Analysis):
             for name, described in self.workspaces.items()
         }
         problems = {name: runs.problems for name, runs in experiments.items()}
+        functions = vars(importlib.import_module(self.module)) if self.module else {}
         scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks)
-        sources = Sources(experiments, workspaces, self.load(), published, self.study)
+        sources = Sources(experiments, workspaces, functions, published, self.study)
         sheet.write_data(sheet.data(self.panels, sources), output_files.data)
         figure = sheet.draw(
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
@@ -645,10 +639,12 @@ def escaped(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class Claims(Analysis):
+class Claims(Job):
     """The claims of a study, judged on the runs of some experiments."""
 
     study: str
+    module: str | None
+    """That of the study, with the functions that claims name."""
     claims: list[Claim]
     artefacts: dict[str, list[Shown]]
     """What each table and figure shows of runs."""
@@ -676,9 +672,9 @@ class Claims(Analysis):
         return cls(**_claims(content, content.claims, scale), shows=shows)
 
     def modules(self):
-        """Kinds of check as well."""
+        """That of the study, and kinds of check."""
         kinds = {check.test for claim in self.claims for check in claim.checks}
-        return [*super().modules(), *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
+        return [self.module, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
     def files(self, input_files, output_files):
         """Files of the results by experiment."""
@@ -688,6 +684,8 @@ class Claims(Analysis):
 
     def run(self, input_files, output_files, threads):
         """Judge the claims."""
+        import importlib
+
         from bezierplan.analysis import results
         from bezierplan.analysis.claims import judge
         from bezierplan.running import inputs
@@ -701,7 +699,7 @@ class Claims(Analysis):
             },
             self.artefacts,
             self.study,
-            self.load(),
+            vars(importlib.import_module(self.module)) if self.module else {},
             variant_of=self.variant_of,
             paired=self.paired,
             repeats=self.paper_repeats,
@@ -718,7 +716,7 @@ def _claims(study: Study, claims: list[Claim], scale: str) -> dict[str, Any]:
     }
     return {
         "study": study.key,
-        "code": study.code_for("metrics", "functions"),
+        "module": study.module(),
         "claims": claims,
         "artefacts": {
             name: parts
@@ -826,10 +824,18 @@ class Sensitivity(Job):
 
 
 @dataclass(frozen=True)
-class Audit(Analysis):
+class Audit(Job):
     """A paper's own numbers, checked against each other and against exact bounds."""
 
-    audit: AuditJob
+    study: str
+    module: str | None
+    """That of the study, with checks of its own."""
+    tables: dict[str, str]
+    """Table of published numbers -> the experiment that reproduces it."""
+    primary: dict[str, dict]
+    """By table, the rows that count as the paper's interpretation: column -> value."""
+    layouts: dict[str, Layout]
+    """By table."""
     identified: list[str]
     """Experiments among whose paths printed lengths are sought."""
     published: str
@@ -841,28 +847,28 @@ class Audit(Analysis):
         content = studies[study]
         tables = {Path(each.published).stem: each for each in content.with_published().values()}
         return cls(
-            AuditJob(
-                study,
-                {name: table.experiment for name, table in tables.items()},
-                {name: table.primary for name, table in tables.items()},
-                {name: Layout.of(table) for name, table in tables.items()},
-            ),
+            study,
+            content.module(),
+            {name: table.experiment for name, table in tables.items()},
+            {name: table.primary for name, table in tables.items()},
+            {name: Layout.of(table) for name, table in tables.items()},
             sorted({table.experiment for table in tables.values() if table.identify}),
             content_digest(*content.published_files()),
-            code=content.code_for("metrics", "audit"),
             shows={name: {} for name in sorted({each.experiment for each in tables.values()})},
         )
 
+    def modules(self):
+        """That of the study."""
+        return [self.module]
+
     def run(self, input_files, output_files, threads):
         """Check the numbers."""
-        from bezierplan.analysis import audit, study_code
+        from bezierplan.analysis import audit
         from bezierplan.running import inputs
 
-        self.load()
         files = inputs.experiments(self.shows, input_files)
         table = audit.audited(
-            self.audit,
-            study_code.audit(self.code),
+            self,
             {name: files[name].problems for name in self.identified},
             {name: each.bounds for name, each in files.items()},
             inputs.by_table(input_files.published),
@@ -878,35 +884,24 @@ class Audit(Analysis):
 class BaselineComparison(Job):
     """The methods of all studies beside the baselines that the studies name."""
 
-    measured: dict[str, MeasuredJob]
+    baselines: dict[str, str]
     """By study."""
+    repeats: dict[str, int]
+    """By study/experiment."""
 
     @classmethod
     def of(cls, studies, scale):
         """The studies that name a baseline."""
-        measured = {key: study for key, study in studies.items() if study.baseline_comparison}
-        return cls(
-            {
-                key: MeasuredJob(
-                    study.baseline_comparison.baseline,
-                    {
-                        name: study.experiments[name].repeats[scale]
-                        for name in study.baseline_comparison.experiments
-                    },
-                )
-                for key, study in measured.items()
-            },
-            shows={
-                f"{key}/{name}": chunks_of(
-                    study,
-                    name,
-                    [*study.experiments[name].methods, study.baseline_comparison.baseline],
-                    scale,
-                )
-                for key, study in measured.items()
-                for name in study.baseline_comparison.experiments
-            },
-        )
+        baselines, repeats, shows = {}, {}, {}
+        for key, study in studies.items():
+            if compared := study.baseline_comparison:
+                baselines[key] = compared.baseline
+                for name in compared.experiments:
+                    content = study.experiments[name]
+                    methods = [*content.methods, compared.baseline]
+                    repeats[f"{key}/{name}"] = content.repeats[scale]
+                    shows[f"{key}/{name}"] = chunks_of(study, name, methods, scale)
+        return cls(baselines, repeats, shows=shows)
 
     def run(self, input_files, output_files, threads):
         """Measure the methods."""
@@ -914,17 +909,22 @@ class BaselineComparison(Job):
         from bezierplan.running import inputs
 
         rows = baseline_comparison.of_studies(
-            self.measured, inputs.experiments(self.shows, input_files)
+            self.baselines, self.repeats, inputs.experiments(self.shows, input_files)
         )
         rows.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 
 
 @dataclass(frozen=True)
-class Summary(Analysis):
+class Summary(Job):
     """The numbers and claims of all studies."""
 
     scale: str
-    summary: SummaryJob
+    tables: list[tuple[str, str]]
+    """Study and table of each comparison with published numbers, in order."""
+    titles: dict[str, str]
+    """Those of the studies."""
+    verdicts: dict[str, str]
+    """Study -> the digest of its sentences of what follows, of those that have any."""
 
     @classmethod
     def of(cls, studies, scale):
@@ -935,26 +935,18 @@ class Summary(Analysis):
         titles = {key: content.title for key, content in studies.items()}
         texts = {key: content.verdict_file() for key, content in studies.items()}
         digests = {key: content_digest(file) for key, file in texts.items() if file}
-        code = [module for content in studies.values() for module in content.code_for("metrics")]
-        return cls(scale, SummaryJob(tables, titles, digests), code=code)
+        return cls(scale, tables, titles, digests)
 
     def run(self, input_files, output_files, threads):
         """Gather them."""
         from bezierplan.analysis import summary
 
-        self.load()
-        files = {
-            f"{study}/{table}": file
-            for (study, table), file in zip(
-                self.summary.tables, input_files.comparisons, strict=True
-            )
-        }
         summed = summary.gathered(
-            self.summary,
-            files,
+            dict(zip(self.tables, input_files.comparisons, strict=True)),
+            self.titles,
             list(input_files.claims),
             input_files.baseline_comparison,
-            dict(zip(self.summary.verdicts, input_files.verdicts, strict=True)),
+            dict(zip(self.verdicts, input_files.verdicts, strict=True)),
             list(input_files.audits),
             self.scale,
         )

@@ -1,5 +1,6 @@
 """The jobs that show all results of a scale: the page, and the check of what it shows."""
 
+import csv
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,7 +23,10 @@ from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
 from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
-from bezierplan.study.jobs import Analysis, Job, Studies
+from bezierplan.study.jobs import Job, Studies
+
+SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
+"""The settings of all studies behind the README's outcome."""
 
 
 def shown_of(study: Study, scale: str, root: str = "") -> list[str]:
@@ -93,7 +97,7 @@ class Verified(Job):
 
 
 @dataclass(frozen=True)
-class Page(Analysis):
+class Page(Job):
     """The page of a scale."""
 
     page: PageJob
@@ -112,7 +116,6 @@ class Page(Analysis):
             [place for place in behind if studies[place.split("/")[0]].moves(place.split("/")[1])],
             content_digest(*page.files(), *outcome),
             shows=behind,
-            code=[module for own in studies.values() for module in own.code_for("metrics")],
         )
 
     def run(self, input_files, output_files, threads):
@@ -120,7 +123,6 @@ class Page(Analysis):
         from bezierplan.figures.page import build
         from bezierplan.running import inputs
 
-        self.load()
         experiments: dict[str, dict[str, ExperimentShown]] = {key: {} for key in self.page.studies}
         for place, files in inputs.experiments(self.shows, input_files).items():
             key, _, name = place.partition("/")
@@ -200,8 +202,31 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
             for each in study.assumptions
         ],
         files=[name for name, there in files.items() if there],
+        changed=changed(study),
         experiments=behind,
     )
+
+
+def settings_of(study: Study) -> list[tuple[str, str, str]]:
+    """Method, setting and value of all that a study sets."""
+    return [
+        (method, setting, str(value))
+        for method in study.methods
+        for setting, value in study.resolved(method).items()
+    ]
+
+
+def changed(study: Study) -> list[str]:
+    """The settings of a study of this project that are not those of the README's outcome."""
+    if not SETTINGS.is_file() or not study.folder.resolve().is_relative_to(STUDIES):
+        return []
+    with SETTINGS.open(encoding="utf-8", newline="") as rows:
+        before = {(m, s): value for key, m, s, value in csv.reader(rows) if key == study.key}
+    return [
+        f"{setting} of {method} is {value}, in the README's outcome {before.get(place, 'absent')}"
+        for method, setting, value in settings_of(study)
+        if before.get(place := (method, setting)) != value
+    ]
 
 
 def has_audit(study: Study) -> bool:

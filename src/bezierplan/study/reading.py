@@ -8,8 +8,6 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from bezierplan.analysis import study_code
-from bezierplan.machine.modules import code_of
 from bezierplan.places import STUDIES
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
@@ -99,7 +97,6 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
     changed: settings that take the place of those of the same name in experiments.yaml; those of
     one planner are taken one by one.
     """
-    study_code.functions(code_of(folder.resolve().name, relative(folder)).values())
     experiments = _read(folder, "experiments", ExperimentsFile)
     for name, value in (changed or {}).items():
         own = experiments.settings.get(name)
@@ -115,32 +112,24 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
                 f"{relative(folder / 'experiments.yaml')}: "
                 f"baselines: {name}: a method has this name already"
             )
+    shared = experiments.settings
+    of_planners = {name: each for name, each in shared.items() if isinstance(each, dict)}
+    declared = {
+        name: getattr(file, name)
+        for file in (experiments, artefacts)
+        for name in type(file).model_fields
+        if name not in ("settings", "methods", "baselines")
+    }
     return Study(
         key=folder.resolve().name,
         folder=folder,
-        title=experiments.title,
         methods=experiments.methods | experiments.baselines,
         baselines=frozenset(experiments.baselines),
-        settings={
-            name: value
-            for name, value in experiments.settings.items()
-            if not isinstance(value, dict)
-        },
-        planner_settings={
-            name: value for name, value in experiments.settings.items() if isinstance(value, dict)
-        },
-        presets=experiments.presets,
-        policies=experiments.policies,
-        workspaces=experiments.workspaces,
-        problems=experiments.problems,
-        experiments=experiments.experiments,
-        baseline_comparison=experiments.baseline_comparison,
-        labels=artefacts.labels,
-        looks=artefacts.looks,
-        tables=artefacts.tables,
-        figures=artefacts.figures,
+        settings={name: each for name, each in shared.items() if name not in of_planners},
+        planner_settings=of_planners,
         claims=claims.claims if claims else [],
         assumptions=assumptions.assumptions if assumptions else [],
+        **declared,
     )
 
 

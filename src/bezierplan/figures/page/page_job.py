@@ -92,6 +92,8 @@ class StudyShown(NamedTuple):
     assumptions: list[AssumptionShown]
     files: list[str]
     """Which of `FILES` there are."""
+    changed: list[str]
+    """Settings that are not those of the README's outcome, in words."""
     experiments: dict[str, ExperimentShown]
 
 

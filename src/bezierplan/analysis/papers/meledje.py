@@ -1,6 +1,7 @@
-"""meledje: an audit of its Tables 2 to 5.
+"""meledje: the drawings of its Figures 2 to 4, and an audit of its Tables 2 to 5.
 
-Numbers of equations, sections, tables and figures are the paper's.
+Numbers of equations, sections, tables and figures are the paper's. Drawings use the operators of
+the planner itself.
 """
 
 import itertools
@@ -9,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import rules
 from bezierplan.analysis.audit_rows import checked, compared
+from bezierplan.analysis.papers import rules
+from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.statistics import holm
 
 if TYPE_CHECKING:

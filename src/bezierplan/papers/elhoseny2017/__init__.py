@@ -1,1 +1,0 @@
-"""Code of elhoseny2017 alone."""

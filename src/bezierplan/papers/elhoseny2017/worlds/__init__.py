@@ -1,1 +1,0 @@
-"""Kinds of workspace of elhoseny2017 alone (`workspaces.kinds`)."""

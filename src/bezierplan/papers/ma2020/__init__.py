@@ -1,1 +1,0 @@
-"""Code of ma2020 alone."""

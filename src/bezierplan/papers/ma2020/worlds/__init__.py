@@ -1,1 +1,0 @@
-"""Kinds of workspace of ma2020 alone (`workspaces.kinds`)."""

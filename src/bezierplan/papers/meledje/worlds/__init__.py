@@ -1,1 +1,0 @@
-"""Kinds of workspace of meledje alone (`workspaces.kinds`)."""

@@ -1,1 +1,0 @@
-"""Code of song2016 alone."""

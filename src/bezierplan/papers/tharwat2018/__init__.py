@@ -1,1 +1,0 @@
-"""Code of tharwat2018 alone."""

@@ -1,1 +1,0 @@
-"""Kinds of panel of tharwat2018 alone (`figures.panels`)."""

@@ -1,1 +1,0 @@
-"""Kinds of workspace of tharwat2018 alone (`workspaces.kinds`)."""
