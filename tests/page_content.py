@@ -45,16 +45,20 @@ NUMBERS[2]["why"] = "interval without an end on that side"
 CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "finding": False}
 CLAIM |= {"own_criterion": False, "place": "IV, Table I", "holds": "1 of 2", "n": 10}
 CLAIM |= {"where_it_holds": "for a", "published": "2 of 2", "reason": HOSTILE, "artefact": "table1"}
-CLAIM |= {"replication_probability": 0.9, "units_to_decide": None}
 OTHER = {"variant": "metric=objective", "primary": False, "holds": "0 of 2"}
 CLAIMS = [
-    {"id": identity, "statement": f"Method a is the best ({identity}).", "verdict": verdict} | more
+    {"id": identity, "statement": f"Method a is the best ({identity}).", "verdict": verdict}
+    | {"finding": finding}
+    | more
     for identity, verdict, finding in (
         ("C1", "supported", False),
         ("C2", "contradicted", False),
         ("C3", "undecided", True),
     )
-    for more in ({"finding": finding}, OTHER | {"finding": finding, "verdict": "contradicted"})
+    for more in (
+        {"finding": finding, "own_criterion": identity == "C2"},
+        OTHER | {"finding": finding, "verdict": "contradicted"},
+    )
 ]
 
 CHECK = {"variant": "metric=length", "check": 1, "primary": True, "decisive": True, "test": "lower"}

@@ -17,10 +17,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parent))
-from page_content import HOSTILE, SVG, job, page
-from studies import study
+from page_content import SVG, job, page
 
-from bezierplan.figures.page import HERE, addresses, answer, build, charts, reader, runs
+from bezierplan.figures.page import addresses, answer, build, charts, reader, runs
 from bezierplan.figures.page.page_job import ExperimentShown
 from bezierplan.figures.panels import paths
 from bezierplan.geometry import curves
@@ -57,11 +56,6 @@ def elements(text):
     return found
 
 
-def test_hostile_words_stay_words(elements):
-    assert not [tag for tag, attributes in elements if "onerror" in attributes]
-    assert sum(tag == "script" for tag, _ in elements) == 2
-
-
 def test_page_asks_for_no_other_file_while_scripts_run(text):
     shown = re.sub("<noscript>.*?</noscript>", "", text, flags=re.DOTALL)
     sources = re.findall(r'\b(?:src|srcset|poster)="([^"]*)"', shown)
@@ -85,31 +79,8 @@ def test_pictures_have_their_size_before_they_are_unpacked(elements):
     assert zlib.decompress(b64decode(picture["data-packed"])).decode() == SVG
 
 
-def test_same_files_give_the_same_bytes_whose_blanks_mean_something(text, content, folder):
-    assert build.html(content, folder) == text
-    assert "\n  " not in re.sub("<(script|style|pre).*?</(script|style|pre)>", "", text, flags=re.S)
-
-
-def test_scripts_never_insert_markup():
-    for file in HERE.glob("static/*.js"):
-        assert not re.search(
-            r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", file.read_text()
-        )
-
-
 # --------------------------------------------------------------------------------------------------
 # Addresses
-
-
-def test_cell_is_named_by_what_distinguishes_it_from_the_primary_interpretation():
-    cells = [
-        {"method": method, "workspace": room, "profile": "default"}
-        | {"metric": "objective", "statistic": "mean"}
-        for method in ("singer", "gauss")
-        for room in ("equal", "other")
-    ]
-    found = addresses.of_cells("t/table3", cells, {"workspace": "equal"})
-    assert found[:2] == ["t/table3/singer/objective/mean", "t/table3/singer/other/objective/mean"]
 
 
 @given(
@@ -184,13 +155,6 @@ def test_alternative_judged_beside_another_verdict_is_out_of_date(content):
     assert not any(claim["choices"] for claim in others)
 
 
-def test_claims_that_fail_are_those_of_the_paper(content, text):
-    own = content.studies["one"]
-    assert [claim["id"] for claim in answer.failing(own)] == ["C2"]
-    assert [claim["id"] for claim in answer.sentences_of_paper(own)] == ["C1", "C2"]
-    assert "The claim that fails, and why" in text
-
-
 def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(content):
     laid = build.grid(content.studies["one"].tables[1], {})
     assert (laid.head, laid.decimals) == (["method", "length", "objective"], [2, 2])
@@ -202,14 +166,6 @@ def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(c
         (True, [("b", "one/method/b")], ["one/more/b/length/mean", None]),
         (False, [("c", "one/method/c")], ["one/more/c/length/mean", None]),
     ]
-
-
-def test_a_number_whose_statistic_is_not_stated_has_the_name_of_the_column_beside_it():
-    table = study("song2016").tables["table1"]
-    headings = [
-        reader._heading(metric, "unstated", table, {}) for metric in ("objective", "length")
-    ]
-    assert headings == ["Objective value", "length: unstated"]
 
 
 def test_a_scale_says_how_many_runs_it_has_and_that_they_are_fewer():
@@ -236,16 +192,6 @@ def test_the_page_says_what_to_use_by_kind_of_map_with_a_command_on_a_map_that_e
     assert math.isclose(row["best"]["feasible"], 2 / 3)
     (map_file,) = re.findall(r"bezierplan plan (\S+) --start", text)
     assert (Path(__file__).parents[1] / map_file).is_file()
-
-
-def test_what_was_judged_again_stands_on_the_page(content, folder, text):
-    assert "were judged again" not in text
-    content.verified = {"runs": 1234, "paths": 567, "bounds": 89, "digest": "0123abcd"}
-    content.verified["versions"] = {"numba": "1.2", "numpy": "3.4"}
-    words = " ".join(build.html(content, folder).split())
-    content.verified = None
-    assert "All 1,234 runs shown here, 567 different paths, were judged again" in words
-    assert "digest 0123abcd, with numba 1.2, numpy 3.4." in words
 
 
 # --------------------------------------------------------------------------------------------------
@@ -275,15 +221,6 @@ def test_interval_far_beyond_the_effects_is_cut_and_an_unknown_effect_is_not_dra
     (rows,) = charts.forests(rows)
     assert [row["strip"]["cut"] for row in rows] == [True, False, False]
     assert (rows[2]["strip"]["effect"], rows[2]["strip"]["low95"]) == (None, None)
-
-
-def test_ratios_are_places_on_a_logarithmic_axis(content):
-    (row,) = charts.ratios(list(content.studies.values()))
-    places = [dot["at"] for dot in row["dots"]]
-    assert places == sorted(places)
-    assert len(places) == 3
-    assert [charts.along(ratio, 1 / 8, 8.0) for ratio in (0.01, 1, 8)] == [0, 50, 100]
-    assert HOSTILE not in str(places)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -329,12 +266,6 @@ def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):
     assert (shown["best"], shown["count"]) == ("s/e/room/m/0", 1)
 
 
-def test_method_without_a_feasible_run_has_failed_ones_only(tmp_path):
-    (shown,), _ = runs.chosen("s", "e", stored(tmp_path, [5.0, 4.0], [False, False]))
-    assert [shown[name] for name in ("best", "median", "worst", "gap")] == [None] * 4
-    assert len(shown["failed"]) == 2
-
-
 def test_place_of_a_drive_is_found_where_its_way_crosses_itself():
     # To the right, back through the same places, then up; the robot waits at the first place.
     path = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 0.0], [0.0, 1.5]])
@@ -362,14 +293,6 @@ def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
     assert (moving["moments"], moving["changed"]) == ([2.0], [[0, 11]])
 
 
-def test_equal_workspaces_stand_once():
-    data = {"workspaces": {"a": {"x": 1}, "b": {"x": 2}, "c": {"x": 1}}}
-    data["problems"] = {name: {"workspace": name} for name in "abc"}
-    build._share_workspaces(data)
-    assert data["workspaces"] == {"a": {"x": 1}, "b": {"x": 2}}
-    assert [each["workspace"] for each in data["problems"].values()] == ["a", "b", "a"]
-
-
 @given(
     # Thousandths, because shapely's simplification fails on numbers near the smallest.
     st.lists(st.tuples(st.integers(0, 10**5), st.integers(0, 10**5)), min_size=4, max_size=8),
@@ -383,14 +306,3 @@ def test_drawn_path_stays_within_its_tolerance(points, kind):
     exact = curves.sample_matrix(kind, len(points), 301) @ path.points
     # The straight steps from which points are left out are themselves within 0.01 of the curve.
     assert shapely.distance(shapely.points(exact), shapely.LineString(drawn)).max() <= 0.05 + 0.01
-
-
-def test_a_shortest_path_has_as_few_points_as_show_it():
-    workspace = from_lines(["..."] * 3, 1.0, "cell")
-    arc = np.linspace(0, np.pi / 2, 1001)
-    points = 0.2 + 2.6 * np.column_stack([np.sin(arc), 1 - np.cos(arc)])
-    bound = pd.Series({"bound": 4.1, "bound_path": points.ravel()})
-    ends = tuple(points[0]), tuple(points[-1])
-    drawn = runs._problem("one", Problem("one", workspace, *ends), None, bound)["bound_path"]
-    assert 4 < len(drawn) < 100
-    assert np.allclose([drawn[:2], drawn[-2:]], ends, atol=1e-4)
