@@ -222,7 +222,7 @@ QUESTIONS = [
     ("What should I use instead?", ["page-use"], "What should I use?"),
     ("What is the mean objective of a?", ["one/table1/a/objective/mean"], "published 10.51"),
     ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best"),
-    ("Why do claims fail", ["page-failures", "one/C2"], "The claim that fails, and why"),
+    ("Why do claims fail", ["page-failures"], "The claim that fails, and why"),
     ("What does inconclusive mean?", ["page-word/inconclusive"], "the interval is too wide"),
     ("the path of a's worst feasible run", ["one/first/p/a/1"], "worst feasible run"),
     ("a's worst failed run", ["one/first/p/a/2"], "failed run (1 of 3 fail), worst"),
