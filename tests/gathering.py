@@ -22,7 +22,7 @@ import pyarrow.parquet as parquet
 import yaml
 
 from bezierplan.places import TREE
-from bezierplan.running import execution, problems
+from bezierplan.running import execution, problems, rows
 from bezierplan.running.inputs import experiments
 from bezierplan.study import jobs, page, reading
 from bezierplan.study.definition import Study
@@ -103,7 +103,7 @@ def repeated(made: pa.Table, repeats: range) -> pa.Table:
 
     made: rows in the order of conditions and repeats, `MADE` of each condition.
     """
-    rows = np.concatenate(
+    numbers = np.concatenate(
         [first + np.arange(len(repeats)) % MADE for first in range(0, len(made), MADE)]
     )
     stems = [name.rpartition("/")[0] for name in made["id"].to_pylist()[::MADE]]
@@ -111,7 +111,7 @@ def repeated(made: pa.Table, repeats: range) -> pa.Table:
         "id": [f"{stem}/{repeat}" for stem in stems for repeat in repeats],
         "repeat": [*repeats] * len(stems),
     }
-    table = made.take(rows)
+    table = made.take(numbers)
     for name in new.keys() & set(made.column_names):
         table = table.set_column(made.column_names.index(name), name, pa.array(new[name]))
     return table
@@ -134,7 +134,7 @@ def write_runs(study: Study) -> None:
         )
         for file in map(Path, files.runs[method]):
             first, last = jobs.job(study, "all", method, SCALE, int(file.stem)).repeats
-            parquet.write_table(repeated(runs, range(first, last)), file)
+            rows.write(repeated(runs, range(first, last)), str(file))
             parquet.write_table(
                 repeated(times, range(first, last)), file.with_suffix(".times.parquet")
             )
@@ -160,6 +160,18 @@ def given_to(job: Job, key: str, **more: Any) -> dict[str, Any]:
             for chunk in range(number)
         ],
     } | more
+
+
+def input_files(named: dict[str, Any]) -> Any:
+    """Input files as a script gets them: one list, of which parts have names."""
+    from snakemake.iocontainers import InputFiles
+
+    files = InputFiles()
+    for name, values in named.items():
+        start, several = len(files), not isinstance(values, str)
+        files.extend(values if several else [values])
+        files._set_name(name, start, end=len(files) if several else None)
+    return files
 
 
 def files_of(study: Study) -> Any:
@@ -198,8 +210,15 @@ def gathering(given: Studies) -> Iterator[Made]:
         "verdicts": [],
     }
     yield Made(summary, files, output)
+    judgements = []
+    for key, study in given.items():
+        for method in study.methods_of("all"):
+            judgement = jobs.Judgement.of(given, SCALE, key, "all", method)
+            judgements.append(f"{folder}/{key}/runs/all/{method}/judgement.json")
+            yield Made(judgement, given_to(judgement, key), {"made": judgements[-1]})
     verified = page.Verified.of(given, SCALE)
-    yield Made(verified, given_to(verified, ""), {"made": f"{folder}/verified.json"})
+    files = given_to(verified, "", judgements=judgements)
+    yield Made(verified, files, {"made": f"{folder}/verified.json"})
     files = given_to(
         shown,
         "",
@@ -258,13 +277,13 @@ def _peak(job: Made, folder: str) -> float:
     """Run a job in this process, and return the most memory that it ever had, in bytes, with that
     of each process that it starts.
     """
-    from snakemake.iocontainers import InputFiles, OutputFiles, Params
+    from snakemake.iocontainers import OutputFiles, Params
 
     with contextlib.chdir(folder):
         for file in job.output.values():
             Path(file).parent.mkdir(parents=True, exist_ok=True)
         given = SimpleNamespace(
-            input=InputFiles(fromdict=job.input),
+            input=input_files(job.input),
             output=OutputFiles(fromdict=job.output),
             params=Params(fromdict={"job": job.job}),
             log=["job.log"],

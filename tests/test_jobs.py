@@ -229,7 +229,7 @@ def many(gathering, tmp_path_factory):
             for file in made.values():
                 Path(file).parent.mkdir(parents=True, exist_ok=True)
             output = OutputFiles(fromdict=made)
-            job.run(SimpleNamespace(**given), output, 1)
+            job.run(gathering.input_files(given), output, 1)
     return folder / "results/full"
 
 

@@ -1,21 +1,254 @@
-"""`python -m bezierplan verify`: results are what their points say, and every edit of them is told
-in one line.
+"""`python -m bezierplan verify`: results follow from studies and runs, and every edit of them is
+named.
 """
 
+import contextlib
+import json
+import random
 import shutil
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
+import starts
 
 from bezierplan.__main__ import main
+from bezierplan.places import TREE
 from bezierplan.running import execution, problems, rides, rows, worlds
 from bezierplan.running.chunk import Chunk
+from bezierplan.running.judge import recheck
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
+
+BEND = """
+import numpy as np
+from bezierplan.geometry import curves
+from bezierplan.planners import Path, Plan
+
+workspaces = ("circles",)
+
+def plan(problem, rng):
+    {seed}
+    middle = [0.0, 5.0 + rng.normal(0, 0.1)]
+    path = Path("bezier", np.array([problem.start, middle, problem.target]))
+    length = curves.length(path)
+    return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]),
+                stop="one", extra={{}})
+"""
+STUDY = {
+    "experiments.yaml": """
+title: A bend round a disc
+methods: {bend: {planner: bend.py}, line: {planner: straight_line}}
+settings: {}
+workspaces: {disc: {kind: circles, unit: m, bounds: [-5, 5, -5, 5], circles: [[0, 0, 1]]}}
+problems: {across: {workspace: disc, start: [-4, 0], target: [4, 0]}}
+experiments:
+  bends: {problems: [across], methods: [bend, line], repeats: {smoke: 6, full: 6, extended: 6},
+    chunk: {smoke: 3, full: 3, extended: 3}}
+""",
+    "artefacts.yaml": """
+tables:
+  table1: {title: Lengths, kind: pivot, experiment: bends, published: lengths.csv, index: [method],
+    columns: [value], values: [{metric: length, statistic: mean, label: length, decimals: 2}]}
+figures:
+  figure1: {title: Lengths, columns: 1, panels: [
+    {kind: boxes, experiment: bends, metric: length}]}
+""",
+    "claims.yaml": """
+claims:
+  - {id: C1, place: Table 1, statement: The line is shorter., artefact: table1, checks: [
+      {test: lower, experiment: bends, metric: length, groups: [line], than: [bend],
+       direction: lower, margin: 0.01}]}
+""",
+    "published/lengths.csv": "method,metric,statistic,n,unit,value\nbend,length,mean,6,m,10.0\n",
+}
+RUNS = "bend/runs/bends/bend/0.parquet"
+
+
+def started(folder: Path, seed: str):
+    """The workflow in a folder with the study `bend`, whose planner has one more line."""
+    study = folder / "bend"
+    (study / "published").mkdir(parents=True)
+    for name, text in (STUDY | {"bend.py": BEND.format(seed=seed)}).items():
+        (study / name).write_text(text)
+    words = ("--snakefile", str(TREE / "Snakefile"), "--config", 'studies=["./bend"]')
+    return starts.snakemake(folder, "smoke", *words, "--cores", "2", "--workflow-profile", "none")
+
+
+@pytest.fixture(scope="module")
+def original(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("verified")
+    done = started(folder, "")
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture
+def results(original, tmp_path):
+    """The folder of a scale, as the workflow made it."""
+    shutil.copytree(original, tmp_path, dirs_exist_ok=True)
+    with contextlib.chdir(tmp_path):
+        yield Path("results/smoke")
+
+
+def verified(capsys, *words):
+    """The status of the command, and the lines that it printed, and those about faults."""
+    try:
+        main(["verify", *map(str, words), "--cores", "1"])
+        status = 0
+    except SystemExit as end:
+        status = end.code
+    printed = capsys.readouterr()
+    return status, printed.out.splitlines(), printed.err.splitlines()
+
+
+def edited(file, column, change, digest=True):
+    """Change a column of a file by a function of its list; with a digest like an honest file."""
+    table = parquet.read_table(file)
+    place = table.column_names.index(column)
+    changed = table.set_column(
+        place, column, pa.array(change(table[column].to_pylist()), table.schema.field(column).type)
+    )
+    rows.write(changed, str(file)) if digest else parquet.write_table(changed, file)
+
+
+def listed(folder, name):
+    """Give the list of digests that of a file as it is now."""
+    file = folder / "verified.json"
+    content = json.loads(file.read_text())
+    content["sha256"][name] = recheck.sha256(folder / name)
+    recheck.write(content, str(file))
+
+
+def unlisted(folder):
+    """Take the page away, and the list of digests that it needs."""
+    for name in ("index.html", "verified.json"):
+        (folder / name).unlink()
+
+
+def test_untouched_results_are_sound_and_all_runs_can_be_made_again(results, capsys):
+    status, lines, _ = verified(capsys, results, "--studies", "bend", "--all")
+    assert (status, lines[-1]) == (0, "sound")
+    assert lines[0] == "12 runs in 4 files: 7 different paths judged again, 1 bounds computed again"
+    assert lines[1] == "12 runs made again"
+    page = (results / "index.html").read_text()
+    assert recheck.sha256(results / "verified.json") in page
+
+
+def test_each_edit_of_one_byte_is_named(results, capsys):
+    """Of any file, at any place."""
+    endings = {".csv", ".json", ".parquet"}
+    files = [file for file in sorted(results.rglob("*")) if file.suffix in endings]
+    files = [file for file in files if file.name != "verified.json"]
+    assert len(files) > 15
+    draw = random.Random(1)
+    for file in files:
+        content = file.read_bytes()
+        place = draw.randrange(len(content))
+        other = draw.choice([byte for byte in range(256) if byte != content[place]])
+        file.write_bytes(content[:place] + bytes([other]) + content[place + 1 :])
+        status, lines, _ = verified(capsys, results, "--studies", "bend")
+        assert status == 1
+        assert lines[0].startswith(f"{file}: all bytes: SHA-256: stored "), (file, place)
+        file.write_bytes(content)
+
+
+@pytest.mark.parametrize("name", ["verified.json", "index.html"])
+def test_an_edit_of_the_page_or_of_the_list_is_named(results, capsys, name):
+    file = results / name
+    file.write_text(file.read_text().replace("numba", "number", 1))
+    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    assert status == 1
+    assert lines[0].startswith(f"{results / 'index.html'}: all bytes: SHA-256: stored ")
+
+
+def test_a_list_that_is_none_and_a_missing_file_are_one_line(results, capsys):
+    (results / RUNS).unlink()
+    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    assert (status, lines[-1]) == (1, "1 files are missing")
+    (results / "verified.json").rename(results / "kept.json")
+    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    assert (status, lines[-1]) == (1, "1 files are missing")
+    (results / "verified.json").write_text("{")
+    status, _, told = verified(capsys, results, "--studies", "bend")
+    assert status == 2
+    assert told[-1].startswith(f"{results / 'verified.json'}: not a list of digests")
+
+
+def test_a_claim_that_was_edited_together_with_the_list_is_named(results, capsys):
+    file = results / "bend/claims.csv"
+    file.write_text(file.read_text().replace("shorter", "longer"))
+    listed(results, "bend/claims.csv")
+    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    assert status == 1
+    assert any(line.startswith(f"{file}: all bytes: ") for line in lines)
+
+
+FORGED = {
+    "dropped": lambda table: table.slice(0, 2),
+    "doubled": lambda table: pa.concat_tables([table, table.slice(0, 1)]),
+    "copied": lambda table: table.take([0, 0, 0]),
+}
+
+
+@pytest.mark.parametrize("case", FORGED)
+def test_rows_that_were_dropped_doubled_or_copied_are_named(results, capsys, case):
+    rows.write(FORGED[case](rows.read(str(results / RUNS))), str(results / RUNS))
+    unlisted(results)
+    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    assert status == 1
+    assert lines[0].startswith(f"{results / RUNS}: ")
+    assert ": id: stored " in lines[0]
+
+
+def test_only_a_run_that_is_made_again_shows_a_history_that_was_edited(results, capsys):
+    edited(results / RUNS, "history", lambda values: [[each[0] / 2] for each in values])
+    unlisted(results)
+    status, lines, _ = verified(capsys, results, "--studies", "bend", "--all")
+    assert status == 1
+    assert lines[0].startswith(f"{results / RUNS}: bend/bends/across/bend/0: history: stored [")
+
+
+def test_what_another_program_wrote_is_one_line_also_in_the_workflow(results, capsys):
+    table = rows.read(str(results / RUNS)).replace_schema_metadata()
+    names = table.column_names
+    for name in ("id", "path_curve"):
+        table = table.set_column(names.index(name), name, table[name].cast(pa.large_string()))
+    parquet.write_table(table, results / RUNS)
+    unlisted(results)
+    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    assert status == 1
+    assert lines[0].startswith(
+        f"{results / RUNS}: all rows: digest: stored none: another program wrote it, recomputed "
+    )
+
+
+SLIPS = {
+    "a seed of its own": "rng = np.random.default_rng(42)",
+    "a generator that is reset": "rng.bit_generator.state = type(rng.bit_generator)(1).state",
+    "random numbers of another module": "np.random.seed(1); rng = np.random",
+    "a constant": "rng = type('', (), {'normal': lambda *_: 0.0})",
+}
+
+
+@pytest.mark.parametrize("case", SLIPS)
+def test_a_planner_whose_repeats_are_all_alike_ends_in_one_line(tmp_path, case):
+    done = started(tmp_path, SLIPS[case])
+    assert done.returncode == 1
+    lines = {line for line in done.stderr.splitlines() if "full account:" in line}
+    assert len(lines) == 1
+    (line,) = lines
+    assert "planner bend/bend.py: history, path_points: stored the same in all 6 repeats" in line
+
+
+# --------------------------------------------------------------------------------------------------
+# Values
+
 
 CIRCLES = Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
 MADE = {
@@ -34,96 +267,6 @@ CHUNK = Chunk(
     seeds="own",
     repeats=[0, 2],
 )
-RUNS, BOUNDS = "s/runs/e/line/0.parquet", "s/problems/e.bounds.parquet"
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("results") / "full"
-    (folder / RUNS).parent.mkdir(parents=True)
-    (folder / BOUNDS).parent.mkdir(parents=True)
-    problems.write(MADE, dict.fromkeys(MADE, "field"), str(folder / "s/problems/e.parquet"))
-    parquet.write_table(problems.bounds_of(MADE), folder / BOUNDS)
-    rows.write(execution.run_chunk(MADE, CHUNK)[0], str(folder / RUNS))
-    return folder
-
-
-@pytest.fixture
-def results(kept, tmp_path):
-    return shutil.copytree(kept, tmp_path / "full")
-
-
-def edited(file, column, change, digest=False):
-    """Change a column of a file by a function of its list; with a digest like an honest file."""
-    table = parquet.read_table(file)
-    place = table.column_names.index(column)
-    changed = table.set_column(
-        place, column, pa.array(change(table[column].to_pylist()), table.schema.field(column).type)
-    )
-    rows.write(changed, str(file)) if digest else parquet.write_table(changed, file)
-
-
-def verified(capsys, *words):
-    """The status of the command, and the lines that it printed."""
-    try:
-        main(["verify", *map(str, words), "--cores", "1"])
-        status = 0
-    except SystemExit as end:
-        status = end.code
-    told = capsys.readouterr()
-    return status, told.out.splitlines(), told.err.splitlines()
-
-
-def test_untouched_results_are_sound(results, capsys):
-    status, lines, progress = verified(capsys, results)
-    assert status == 0
-    assert lines[0] == "4 runs in 1 files: 2 different paths judged again, 2 bounds computed again"
-    assert "numba " in lines[1]
-    assert lines[-1] == "sound"
-    assert progress == ["2 of 2 tables checked, 0 faults"]
-
-
-EDITS = {
-    "feasible": lambda values: [True] * len(values),
-    "length": lambda values: [value - 1e-6 for value in values],
-    "clearance": lambda values: [value + 0.1 for value in values],
-    "path_points": lambda values: [[1.0, 8.0, 5.0, 9.0, 9.0, 8.0]] * len(values),
-    "repeat": lambda values: [value + 1 for value in values],
-    "method": lambda values: ["other"] * len(values),
-    "generations": lambda values: [7] * len(values),
-}
-
-
-@pytest.mark.parametrize("column", EDITS)
-def test_an_edit_is_told_with_file_run_column_and_both_values(results, capsys, column):
-    edited(results / RUNS, column, EDITS[column], digest=True)
-    status, lines, _ = verified(capsys, results)
-    assert status == 1
-    named = {"path_points": "length", "repeat": "id"}.get(column, column)
-    shown = [
-        line
-        for line in lines
-        if line.startswith(f"{results / RUNS}: s/e/") and f": {named}: stored " in line
-    ]
-    assert shown
-    assert all(", recomputed " in line for line in shown)
-    assert lines[-1].endswith(" values differ")
-
-
-def test_an_edit_of_what_no_path_determines_shows_in_the_digest(results, capsys):
-    edited(results / RUNS, "evaluations", lambda values: [value + 1 for value in values])
-    status, lines, _ = verified(capsys, results)
-    assert status == 1
-    assert lines[0].startswith(f"{results / RUNS}: all rows: digest: stored ")
-
-
-def test_a_bound_that_was_edited_is_told(results, capsys):
-    edited(results / BOUNDS, "bound", lambda values: [5.0] * len(values))
-    status, lines, _ = verified(capsys, results)
-    assert status == 1
-    assert lines[0].startswith(f"{results / BOUNDS}: blocked: bound: stored 5.0, recomputed 8.")
-
-
 FIELD = (0.0, 10.0, 0.0, 10.0)
 OPEN, SHUT = (
     from_lines([".........", ".........", row, row, "........."], 1.0, "m")
@@ -163,84 +306,99 @@ SEES = {
     "plan_margins": [0.0],
     "horizon": 2.0,
 }
-POLICY = MOVES | SEES | {"spacing": 0.1, "step_seconds": 1.0}
-DRIVES, FIRST_DRIVES = "s/runs/d/line/0.parquet", "s/problems/d.bounds.parquet"
+DRIVES = CHUNK._replace(
+    experiment="d",
+    planner="shortest_path",
+    problems={name: {"workspace": "field"} for name in MET},
+    policy=MOVES | SEES | {"spacing": 0.1, "step_seconds": 1.0},
+)
 
 
 @pytest.fixture(scope="module")
-def driven(tmp_path_factory):
-    """Results of a robot that drives along the shortest path that it sees, among circles and
-    cells.
-    """
-    folder = tmp_path_factory.mktemp("drives") / "full"
-    (folder / DRIVES).parent.mkdir(parents=True)
-    (folder / FIRST_DRIVES).parent.mkdir(parents=True)
-    worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, str(folder / "s/problems/d.parquet"))
-    described = {name: {"workspace": "field"} for name in MET}
-    drives = CHUNK._replace(
-        experiment="d", planner="shortest_path", problems=described, policy=POLICY
-    )
-    runs, _, traces = rides.run_chunk(MET, WORLDS, drives)
-    rows.write(runs, str(folder / DRIVES))
-    parquet.write_table(traces, (folder / DRIVES).with_suffix(".traces.parquet"))
-    parquet.write_table(rides.bounds_of(MET, WORLDS), folder / FIRST_DRIVES)
-    return folder
-
-
-def test_drives_and_their_bounds_are_sound(driven, capsys):
-    status, lines, _ = verified(capsys, driven)
-    assert (status, lines[-1]) == (0, "sound")
-    assert lines[0] == "4 runs in 1 files: 0 different paths judged again, 2 bounds computed again"
-
-
-@pytest.mark.parametrize("column", ["arrival", "length", "feasible", "path_points"])
-def test_an_edit_of_a_drive_is_told(driven, tmp_path, capsys, column):
-    folder = shutil.copytree(driven, tmp_path / "full")
-    changes = {
-        "feasible": lambda values: [not value for value in values],
-        "path_points": lambda values: [[*points[:2], 5.0, 9.0, *points[2:]] for points in values],
+def tasks(tmp_path_factory):
+    """What is to be judged: runs and drives, and the bounds of each."""
+    folder = tmp_path_factory.mktemp("files")
+    files = {name: str(folder / f"{name}.parquet") for name in ("e", "d")}
+    problems.write(MADE, dict.fromkeys(MADE, "field"), files["e"])
+    worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, files["d"])
+    bounds = {"e": problems.bounds_of(MADE), "d": rides.bounds_of(MET, WORLDS)}
+    runs = {
+        "e": (CHUNK, execution.run_chunk(MADE, CHUNK)[0]),
+        "d": (DRIVES, rides.run_chunk(MET, WORLDS, DRIVES)[0]),
     }
+    made = {}
+    for name, (chunk, table) in runs.items():
+        file, bound = str(folder / f"{name}.runs.parquet"), str(folder / f"{name}.bounds.parquet")
+        rows.write(table, file)
+        parquet.write_table(bounds[name], bound)
+        made[name] = recheck.Task(files[name], {file: chunk}), recheck.Task(files[name], {}, bound)
+    return made
+
+
+@pytest.fixture(params=["e", "d"])
+def each(request, tasks):
+    return tasks[request.param]
+
+
+def test_runs_drives_and_bounds_are_sound_and_can_be_made_again(each):
+    verdict = recheck.verify([*each], 1)
+    assert (verdict.faults, verdict.files, verdict.runs, verdict.bounds) == ((), 1, 4, 2)
+    assert recheck.made_again([*each], 1, verdict.digest, every=True) == (4, [])
+
+
+EDITS: dict[tuple[str, str, str], Callable] = {
+    ("e", "feasible", "feasible"): lambda values: [True] * len(values),
+    ("e", "length", "length"): lambda values: [value - 1e-6 for value in values],
+    ("e", "clearance", "clearance"): lambda values: [value + 1e-6 for value in values],
+    ("e", "path_points", "length"): lambda values: [[1.0, 8.0, 5.0, 9.0, 9.0, 8.0]] * len(values),
+    ("e", "path_points", "path_points (target)"): lambda values: [
+        [*points[:-1], points[-1] + 0.5] for points in values
+    ],
+    ("e", "path_points", "path_points"): lambda values: [[1.0, 8.0, 9.0]] * len(values),
+    ("e", "repeat", "repeat"): lambda values: [value + 1 for value in values],
+    ("e", "method", "method"): lambda values: ["other"] * len(values),
+    ("e", "generations", "generations"): lambda values: [7] * len(values),
+    ("d", "arrival", "objective"): lambda values: [value - 1.0 for value in values],
+    ("d", "length", "length"): lambda values: [value - 1.0 for value in values],
+    ("d", "feasible", "feasible"): lambda values: [not value for value in values],
+    ("d", "path_points", "length"): lambda values: [
+        [*points[:2], 5.0, 9.0, *points[2:]] for points in values
+    ],
+}
+
+
+@pytest.mark.parametrize(("name", "column", "named"), EDITS)
+def test_an_edit_is_told_with_file_run_column_and_both_values(tasks, tmp_path, name, column, named):
+    task = tasks[name][0]
+    ((file, chunk),) = task.runs.items()
+    copy = shutil.copy(file, tmp_path)
+    edited(copy, column, EDITS[name, column, named])
+    faults = recheck.judged(task._replace(runs={copy: chunk})).faults
+    assert any((fault.file, fault.column) == (copy, named) for fault in faults)
+    assert str(faults[0]).startswith(f"{copy}: s/{name}/")
+
+
+def test_motion_that_was_edited_shows_when_it_is_made_again(tasks, tmp_path):
+    task = tasks["d"][0]
+    ((file, chunk),) = task.runs.items()
+    copy = shutil.copy(file, tmp_path)
+    edited(copy, "steps", lambda values: [value + 1 for value in values])
+    _, faults = recheck.made_again([task._replace(runs={copy: chunk})], 1, "", every=True)
+    assert {fault.column for fault in faults} == {"steps"}
+
+
+@pytest.mark.parametrize(
+    ("name", "column"),
+    [("e", "bound"), ("d", "least_arrival"), ("d", "bound"), ("d", "bound_path")],
+)
+def test_an_edited_bound_is_told(tasks, tmp_path, name, column):
+    task = tasks[name][1]
+    copy = shutil.copy(task.bounds, tmp_path)
     edited(
-        folder / DRIVES,
-        column,
-        changes.get(column, lambda values: [value - 1.0 for value in values]),
-        digest=True,
+        copy, column, lambda values: [np.multiply(value, 1.001).tolist() for value in values], False
     )
-    status, lines, _ = verified(capsys, folder)
-    named = {"arrival": "objective", "path_points": "length"}.get(column, column)
-    assert status == 1
-    assert any(
-        line.startswith(f"{folder / DRIVES}: s/d/") and f": {named}: stored " in line
-        for line in lines
-    )
-
-
-@pytest.mark.parametrize("column", ["least_arrival", "bound", "bound_path"])
-def test_an_edited_bound_of_a_moving_world_is_told(driven, tmp_path, capsys, column):
-    folder = shutil.copytree(driven, tmp_path / "full")
-    edited(
-        folder / FIRST_DRIVES,
-        column,
-        lambda values: [np.multiply(value, 1.001).tolist() for value in values],
-    )
-    status, lines, _ = verified(capsys, folder)
-    assert status == 1
-    assert f"{folder / FIRST_DRIVES}: cells: {column}: stored " in "\n".join(lines)
-
-
-def test_a_drive_through_what_its_trace_meets_is_not_free(driven, tmp_path, capsys):
-    """Who edits the verdict, the collision and the clearance still has the trace against them."""
-    folder = shutil.copytree(driven, tmp_path / "full")
-    file = (folder / DRIVES).with_suffix(".traces.parquet")
-    for column in ("x", "y"):
-        edited(file, column, lambda values: [[-1.0] * len(each) for each in values])
-    status, lines, _ = verified(capsys, folder)
-    assert status == 1
-    assert (
-        sum(": feasible: stored True, recomputed False" in line for line in lines)
-        == len(lines) - 3
-        == 4
-    )
+    faults = recheck.judged(task._replace(bounds=copy)).faults
+    assert {(fault.file, fault.column) for fault in faults} == {(copy, column)}
 
 
 FOREIGN = {
@@ -249,77 +407,32 @@ FOREIGN = {
         lambda table: table.set_column(
             table.column_names.index("length"), "length", pa.array(["1.0"] * len(table))
         ),
-        "column length: expected numbers in every row",
-    ),
-    "a missing value": (
-        lambda table: table.set_column(
-            table.column_names.index("feasible"),
-            "feasible",
-            pa.array([None, *[True] * (len(table) - 1)]),
-        ),
-        "column feasible: expected truths in every row",
-    ),
-    "points that are numbers": (
-        lambda table: table.set_column(
-            table.column_names.index("path_points"), "path_points", table["length"]
-        ),
-        "column path_points: expected lists of numbers in every row",
+        "column length is of type string, not double",
     ),
 }
 
 
 @pytest.mark.parametrize("case", FOREIGN)
-def test_a_foreign_table_is_one_line_with_status_2(results, capsys, case):
-    change, told = FOREIGN[case]
-    parquet.write_table(change(parquet.read_table(results / RUNS)), results / RUNS)
-    expected = f"{results / RUNS}: {told}; delete it and start again: the workflow reproduces it"
-    assert verified(capsys, results) == (2, [], [expected])
+def test_a_foreign_table_is_refused(tasks, tmp_path, case):
+    change, fault = FOREIGN[case]
+    task = tasks["e"][0]
+    ((file, chunk),) = task.runs.items()
+    copy = str(tmp_path / "0.parquet")
+    parquet.write_table(change(parquet.read_table(file)), copy)
+    with pytest.raises(ValueError, match=fault):
+        recheck.judged(task._replace(runs={copy: chunk}))
 
 
-@pytest.mark.parametrize("name", [BOUNDS, "s/problems/e.parquet"])
-def test_foreign_bounds_and_problems_are_one_line_with_status_2(results, capsys, name):
-    parquet.write_table(pa.table({"a": [1]}), results / name)
-    status, lines, told = verified(capsys, results)
-    assert (status, lines) == (2, [])
-    what = "no column problem" if name == BOUNDS else "not a whole file of problems"
-    assert told == [
-        f"{results / name}: {what}; delete it and start again: the workflow reproduces it"
-    ]
-
-
-def test_points_that_are_no_path_are_told(results, capsys):
-    edited(
-        results / RUNS,
-        "path_points",
-        lambda values: [[1.0, 8.0, 9.0]] * 2 + [[float("nan")] * 4] * 2,
-        digest=True,
-    )
-    status, lines, _ = verified(capsys, results)
-    assert status == 1
-    assert sum(": path_points: stored a path, recomputed " in line for line in lines) == 4
-
-
-def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):
-    assert verified(capsys, tmp_path / "nowhere") == (
-        2,
-        [],
-        [
-            f"{tmp_path / 'nowhere'}: no runs here; "
-            "expected a folder of results, such as results/full"
-        ],
-    )
-    (results / RUNS).write_bytes(b"PAR1")
-    status, lines, told = verified(capsys, results)
-    assert (status, lines) == (2, [])
-    assert told == [
-        f"{results / RUNS}: not a whole Parquet file; "
-        "delete it and start again: the workflow reproduces it"
-    ]
-    (results / "s/problems/e.parquet").unlink()
-    (results / BOUNDS).unlink()
-    status, _, told = verified(capsys, results)
-    assert status == 2
-    assert told == [
-        f"{results / 's/problems/e.parquet'}: missing; expected the problems of "
-        f"{(results / RUNS).parents[1]}"
-    ]
+def test_wrong_input_is_one_line_with_status_2(tasks, tmp_path, capsys):
+    nowhere = tmp_path / "nowhere"
+    line = f"{nowhere}: no runs here; expected a folder of results, such as results/full"
+    assert verified(capsys, nowhere) == (2, [], [line])
+    cut = tmp_path / "cut.parquet"
+    cut.write_bytes(b"PAR1")
+    for task, fault in (
+        (tasks["e"][0]._replace(problems=str(cut)), "not a whole file of problems"),
+        (tasks["e"][1]._replace(bounds=str(cut)), "not a whole Parquet file"),
+        (tasks["e"][0]._replace(problems=tasks["d"][0].problems), "not of the problems that"),
+    ):
+        with pytest.raises(ValueError, match=f".parquet: {fault}"):
+            recheck.judged(task)

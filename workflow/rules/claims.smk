@@ -5,6 +5,7 @@
 rule claims:
     input:
         runs=read(of(jobs.Claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        judgements=read(of(jobs.Claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
         problems=read(of(jobs.Claims), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.Claims), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
         published=of_study(lambda study, job: study.published_files()),
@@ -59,6 +60,9 @@ rule alternative:
     input:
         runs=read(
             of(jobs.Alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+        ),
+        judgements=read(
+            of(jobs.Alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
         ),
         problems=read(of(jobs.Alternative), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.Alternative), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),

@@ -142,8 +142,8 @@ def of(kind, **more):
 
 
 def read(job, pattern):
-    """Files of the results that a job reads: one for each experiment, or for each chunk of runs, of
-    which a job knows the number.
+    """Files of the results that a job reads: one for each experiment, each of its methods, or each
+    chunk of runs, of which a job knows the number.
     """
 
     def files(wildcards):
@@ -153,8 +153,9 @@ def read(job, pattern):
             places = {"scale": wildcards.scale, "study": study or wildcards.study}
             places["experiment"] = experiment
             chunks = [(method, n) for method in methods for n in range(methods[method])]
-            for method, chunk in chunks if "{chunk}" in pattern else [("", 0)]:
-                found.append(pattern.format(**places, method=method, chunk=chunk))
+            files = (pattern.format(**places, method=method, chunk=n) for method, n in chunks)
+            # Problems have no methods.
+            found += dict.fromkeys(files if "{method}" in pattern else [pattern.format(**places)])
         return found
 
     return files

@@ -5,6 +5,7 @@
 rule figure:
     input:
         runs=read(of(jobs.Figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        judgements=read(of(jobs.Figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
         problems=read(of(jobs.Figure), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.Figure), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
         published=of_study(lambda study, job: study.published_drawn(job.figure)),

@@ -79,3 +79,24 @@ use rule runs as drives with:
         traces=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.traces.parquet",
     wildcard_constraints:
         study=studies_with(MOVING),
+
+
+# Nothing reads runs that were not judged again from their rows, in a process that no planner was in.
+rule judgement:
+    input:
+        runs=read(of(jobs.Judgement), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        problems=read(of(jobs.Judgement), f"{RESULTS}/problems/{{experiment}}.parquet"),
+    output:
+        f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
+    log:
+        f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/judgement.log",
+    priority: 3
+    conda:
+        "../envs/bezierplan.yaml"
+    resources:
+        mem_mb=more(1500),
+        runtime=more(10),
+    params:
+        **params(jobs.Judgement),
+    script:
+        "../scripts/job.py"

@@ -10,6 +10,9 @@ rule baseline_comparison:
             of(jobs.BaselineComparison),
             f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         ),
+        judgements=read(
+            of(jobs.BaselineComparison), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
+        ),
         problems=read(of(jobs.BaselineComparison), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(
             of(jobs.BaselineComparison), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
@@ -67,7 +70,8 @@ rule summary:
 rule verdict:
     input:
         summary=[
-            f"results/{{scale}}/{name}.csv" for name in ("numbers", "claims", "baseline_comparison")
+            f"results/{{scale}}/{name}.csv"
+            for name in ("numbers", "claims", "baseline_comparison")
         ],
         audit=f"{RESULTS}/audit.csv",
         verdict=of_study(lambda study, job: [study.verdict_file()]),
@@ -90,18 +94,63 @@ rule verdict:
         "../scripts/job.py"
 
 
-# Every path that the page shows, judged again from its row, and every bound, computed again, in
-# processes that no planner was in.
+def shown(wildcards):
+    """Files of a scale that the page shows: what the papers have, and of the rest what there is."""
+    artefacts = [
+        file
+        for study in STUDIES.values()
+        for name in page.shown_of(study, wildcards.scale, PREFIX)
+        for file in files_of(wildcards.scale, study, name)
+    ]
+    named = {
+        "claims": CLAIMED,
+        "claim_checks": CLAIMED,
+        "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
+        "sensitivity": [
+            key for key, study in STUDIES.items() if page.tried(study, wildcards.scale, PREFIX)
+        ],
+    }
+    summary = [
+        f"results/{wildcards.scale}/{name}" for name in ("summary.md", "wholes.csv") if COMPARED
+    ]
+    verdicts = [f"results/{wildcards.scale}/{key}/verdict.md" for key in FOLLOWING]
+    return [
+        *artefacts,
+        *summary,
+        *verdicts,
+        *(
+            f"results/{wildcards.scale}/{key}/{name}.csv"
+            for name, keys in named.items()
+            for key in keys
+        ),
+    ]
+
+
+SUMMARY = expand(
+    "results/{scale}/{table}.csv",
+    table=["numbers", "claims", "baseline_comparison"] if COMPARED else [],
+    allow_missing=True,
+)
+
+
+# What was judged again of all that the page shows, every bound computed again, and a digest of
+# every file.
 rule verified:
     input:
         runs=read(
             of(page.Verified, root=PREFIX),
             f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         ),
+        judgements=read(
+            of(page.Verified, root=PREFIX),
+            f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
+        ),
         problems=read(of(page.Verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(
             of(page.Verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
         ),
+        shown=shown,
+        summary=SUMMARY,
     output:
         "results/{scale}/verified.json",
     log:
@@ -115,7 +164,6 @@ rule verified:
         "../scripts/job.py"
 
 
-# It shows what the papers have, and of the rest what there is.
 rule page:
     input:
         runs=read(
@@ -124,29 +172,9 @@ rule page:
         ),
         problems=read(of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        artefacts=lambda wildcards: [
-            file
-            for study in STUDIES.values()
-            for name in page.shown_of(study, wildcards.scale, PREFIX)
-            for file in files_of(wildcards.scale, study, name)
-        ],
-        claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
-        audits=expand(
-            "results/{scale}/{study}/audit.csv",
-            study=[key for key, study in STUDIES.items() if page.has_audit(study)],
-            allow_missing=True,
-        ),
-        sensitivity=lambda wildcards: [
-            f"results/{wildcards.scale}/{key}/sensitivity.csv"
-            for key, study in STUDIES.items()
-            if page.tried(study, wildcards.scale, PREFIX)
-        ],
-        summary=expand(
-            "results/{scale}/{table}.csv",
-            table=["numbers", "claims", "baseline_comparison"] if COMPARED else [],
-            allow_missing=True,
-        ),
-        verdicts=expand("results/{scale}/{study}/verdict.md", study=FOLLOWING, allow_missing=True),
+        shown=shown,
+        summary=SUMMARY,
+        # Last, for it is of all these files.
         verified="results/{scale}/verified.json",
     output:
         # Not part of the report, which has a page of its own.

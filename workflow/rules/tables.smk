@@ -7,6 +7,9 @@ rule table:
         runs=read(
             of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
         ),
+        judgements=read(
+            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
+        ),
         problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
         published=of_study(lambda study, job: [study.published_file(job.table)]),
@@ -46,6 +49,9 @@ use rule table as unprinted_table with:
     input:
         runs=read(
             of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+        ),
+        judgements=read(
+            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
         ),
         problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),

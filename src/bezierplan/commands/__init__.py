@@ -25,14 +25,24 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def studies_of(names: Sequence[str] = ()) -> dict[str, Any]:
-    """The studies of some names or folders, or those of config/config.yaml: in the working folder,
-    or of the project. Raises Fault.
+def config_of(names: Sequence[str] = ()) -> dict[str, Any]:
+    """The configuration with the studies of some names or folders, or config/config.yaml: of the
+    working folder, or of the project.
     """
+    if names:
+        return {"studies": [study_named(name) for name in names]}
+    files = (folder / "config" / "config.yaml" for folder in (Path(), TREE))
+    return checked.read(next(file for file in files if file.is_file()))
+
+
+def study_named(word: str) -> str:
+    """The path of a study's folder; any other word as it is."""
+    folder = Path(word)
+    return str(folder.resolve()) if (folder / "experiments.yaml").is_file() else word
+
+
+def studies_of(names: Sequence[str] = ()) -> dict[str, Any]:
+    """The studies of a configuration (`config_of`). Raises Fault."""
     from bezierplan.study import reading
 
-    config: dict[str, Any] = {"studies": [*names]}
-    if not names:
-        files = (folder / "config" / "config.yaml" for folder in (Path(), TREE))
-        config = checked.read(next(file for file in files if file.is_file()))
-    return reading.load(reading.read_config(config))
+    return reading.load(reading.read_config(config_of(names)))

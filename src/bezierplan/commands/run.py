@@ -7,9 +7,8 @@ import os
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
-from bezierplan.commands import SNAKEMAKE
+from bezierplan.commands import SNAKEMAKE, study_named
 from bezierplan.places import TREE
 from bezierplan.running.jobs import forks
 from bezierplan.schema.checked import Fault
@@ -63,8 +62,8 @@ def _refuse(message: str) -> None:
 
 def command(words: tuple[str, ...]) -> list[str]:
     """The command that runs words."""
-    folders = [word for word in words if (Path(word) / "experiments.yaml").is_file()]
-    others = [word for word in words if word not in folders]
-    studies = json.dumps([str(Path(folder).resolve()) for folder in folders])
+    folders = [study_named(word) for word in words if study_named(word) != word]
+    others = [word for word in words if study_named(word) == word]
+    studies = json.dumps(folders)
     profile = ["--workflow-profile", str(TREE / "profiles" / "default")]
     return [*SNAKEMAKE, *profile, *others, *(["--config", f"studies={studies}"] if folders else [])]

@@ -1,14 +1,13 @@
-"""Check every stored path and bound of a scale's results again, in fresh processes, or its numbers
-with docs/outcome.
-"""
+"""Check all results of a scale again, from runs to page, or its numbers with docs/outcome."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
 
 from bezierplan.analysis import verification
-from bezierplan.commands import cores
+from bezierplan.commands import config_of, cores, studies_of
 from bezierplan.places import TREE
 from bezierplan.running.inputs import tree
 
@@ -17,9 +16,17 @@ SHOWN = 10
 """Numbers of which a failure tells."""
 
 
-def main(folder: Path, *, cores: int = cores(), outcome: bool = False) -> None:
-    """Print a line for each stored value that differs from what is computed again, and what was
-    checked.
+def main(
+    folder: Path,
+    *,
+    studies: Sequence[str] = (),
+    cores: int = cores(),
+    all_: bool = False,
+    outcome: bool = False,
+) -> None:
+    """Print a line for each stored value or file that differs from what is made again, and what was
+    checked: runs are judged again, bounds computed again, one run in a hundred and all files that
+    follow from runs made again.
 
     Ends with status 1 if anything differs. Raises ValueError or FileNotFoundError for a folder
     without results or a file that cannot be read.
@@ -28,8 +35,12 @@ def main(folder: Path, *, cores: int = cores(), outcome: bool = False) -> None:
     ----------
     folder : Path
         the folder of a scale, such as results/full
+    studies : list of str
+        a study in place of those of config/config.yaml: a name or a folder
     cores : int
         processes (default: all cores)
+    all_ : bool
+        make all runs again
     outcome : bool
         only compare numbers of scale full with docs/outcome: is this installation sound?
 
@@ -40,34 +51,50 @@ def main(folder: Path, *, cores: int = cores(), outcome: bool = False) -> None:
     """
     if cores < 1:
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
-    lines, sound = against_outcome(folder) if outcome else from_points(folder, cores)
+    lines, sound = against_outcome(folder) if outcome else from_runs(folder, studies, cores, all_)
     print("\n".join(map(str, lines)))
     if not sound:
         sys.exit(1)
 
 
-def from_points(folder: Path, processes: int) -> tuple[list[str], bool]:
-    """What is to be said of results that are judged again, and whether they are sound."""
+def from_runs(
+    folder: Path, names: Sequence[str], processes: int, every: bool
+) -> tuple[list[str], bool]:
+    """What is to be said of results that are made again, and whether they are sound."""
     from bezierplan.running.judge import recheck
+    from bezierplan.study import proof
 
     def progress(line: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
-    verdict = recheck.verify(recheck.tasks(folder), processes, progress)
+    tasks = proof.tasks(studies_of(names), folder)
+    faults = proof.unlisted(folder)
+    missing = [fault for fault in faults if not Path(fault.file).is_file()]
+    if missing:
+        return [*map(str, missing), f"{len(missing)} files are missing"], False
+    try:
+        verdict = recheck.verify(tasks, processes, progress)
+    except ValueError as fault:
+        # What cannot be read may have been told already.
+        if not faults:
+            raise
+        return [*map(str, faults), str(fault)], False
+    faults += verdict.faults
     lines = [
-        *verdict.faults,
         f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
-        f"again, {verdict.bounds} bounds computed again",
+        f"again, {verdict.bounds} bounds computed again"
     ]
-    if verdict.undigested:
-        lines.append(
-            f"{verdict.undigested} files hold no digest of their rows, so what no path determines "
-            "is not checked in them"
-        )
+    if not faults:
+        runs, faults = recheck.made_again(tasks, processes, verdict.digest, every)
+        progress(f"{runs} runs made again, {len(faults)} faults")
+        lines.append(f"{runs} runs made again")
+    if not faults:
+        files, faults = proof.differing(folder, config_of(names), processes)
+        lines.append(f"{files} files made again")
     versions = (f"{name} {version}" for name, version in recheck.versions().items())
     lines.append(f"digest {verdict.digest}; {', '.join(versions)}")
-    lines.append(f"{len(verdict.faults)} values differ" if verdict.faults else "sound")
-    return lines, not verdict.faults
+    lines.append(f"{len(faults)} values differ" if faults else "sound")
+    return [*map(str, faults), *lines], not faults
 
 
 def against_outcome(folder: Path) -> tuple[list[str], bool]:

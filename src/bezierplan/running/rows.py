@@ -91,11 +91,6 @@ def kept_digest(table: pa.Table) -> str | None:
     return kept and kept.decode()
 
 
-def edited(table: pa.Table) -> bool:
-    """Whether a table that was read has other rows than when it was written."""
-    return kept_digest(table) not in (None, rows_digest(table))
-
-
 def rows_digest(table: pa.Table) -> str:
     """A hash over a table's columns in order of name: of all bits, whatever the file's layout."""
     digest = hashlib.sha256()

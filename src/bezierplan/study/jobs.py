@@ -277,6 +277,33 @@ class Drives(Runs):
         parquet.write_table(traces, output_files.traces, compression="zstd")
 
 
+@dataclass(frozen=True)
+class Judgement(Job):
+    """The runs of a method in an experiment, judged again from their rows, in a process that no
+    planner was in, before anything reads them.
+    """
+
+    chunks: list[Chunk]
+
+    @classmethod
+    def of(cls, studies, scale, study, experiment, method):
+        """All chunks of the scale."""
+        own = studies[study]
+        numbers = chunks(own, experiment, method, scale)
+        return cls(
+            [job(own, experiment, method, scale, number) for number in numbers],
+            shows={experiment: {method: len(numbers)}},
+        )
+
+    def run(self, input_files, output_files, threads):
+        """Judge the runs."""
+        from bezierplan.running.judge import recheck
+
+        files = dict(zip(input_files.runs, self.chunks, strict=True))
+        verdict = recheck.judged(recheck.Task(input_files.problems[0], files))
+        recheck.write(recheck.sound(verdict), output_files[0])
+
+
 # --------------------------------------------------------------------------------------------------
 # Tables and figures
 

@@ -73,27 +73,52 @@ def shows(studies: Studies, scale: str, root: str = "") -> Shows:
 
 @dataclass(frozen=True)
 class Verified(Job):
-    """Every path that the page shows, judged again from its row, and every bound, computed again,
-    in processes that no planner was in.
+    """What was judged again of all that the page shows: runs (`jobs.Judgement`), and every bound;
+    and the digest of every file.
     """
+
+    folder: str
+    """That of the scale."""
 
     @classmethod
     def of(cls, studies, scale, root=""):
         """What the page shows."""
-        return cls(shows=shows(studies, scale, root))
+        return cls(f"{root}results/{scale}", shows=shows(studies, scale, root))
 
     def run(self, input_files, output_files, threads):
-        """Judge all again."""
+        """Compute the bounds again, and list the files."""
+        import json
+
         from bezierplan.running import inputs
         from bezierplan.running.judge import recheck
 
-        tasks = []
-        for files in inputs.experiments(self.shows, input_files).values():
-            tasks += [
-                recheck.Task(files.problems, "", tuple(files.chunks)),
-                recheck.Task(files.problems, files.bounds, ()),
+        tasks = [
+            recheck.Task(files.problems, {}, files.bounds)
+            for files in inputs.experiments(self.shows, input_files).values()
+        ]
+        judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
+        verdict = recheck.merged(
+            [
+                recheck.verify(tasks, threads),
+                *(
+                    recheck.Verdict(**each | {"digests": tuple(each["digests"])})
+                    for each in judgements
+                ),
             ]
-        recheck.write(recheck.verify(tasks, threads), output_files[0])
+        )
+        # The times and traces of a chunk lie beside it.
+        beside = [
+            file for run in map(Path, input_files.runs) for file in run.parent.glob(f"{run.stem}.*")
+        ]
+        content = recheck.sound(verdict) | {
+            "digest": verdict.digest,
+            "versions": recheck.versions(),
+            "sha256": {
+                str(file.relative_to(self.folder)): recheck.sha256(file)
+                for file in sorted({*map(Path, input_files), *beside})
+            },
+        }
+        recheck.write(content, output_files[0])
 
 
 @dataclass(frozen=True)

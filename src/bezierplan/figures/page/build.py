@@ -1,6 +1,7 @@
 """The page of a scale as one file: what the tables say, in templates, with style and scripts."""
 
 import base64
+import hashlib
 import json
 import re
 import subprocess
@@ -78,7 +79,7 @@ def page(
         made_by=_made_by(),
         headline=_headline(stored or tables, {key: own.title for key, own in job.studies.items()}),
         stored=bool(stored),
-        verified=json.loads(Path(verified).read_text()) if verified else None,
+        verified=_verified(Path(verified)) if verified else None,
         studies=studies,
         data=data
         | {
@@ -88,6 +89,14 @@ def page(
             }
         },
     )
+
+
+def _verified(file: Path) -> dict[str, Any]:
+    """What the page says of the check: with the SHA-256 of its file, which lists that of every
+    other file behind the page.
+    """
+    content = file.read_bytes()
+    return json.loads(content) | {"listed": hashlib.sha256(content).hexdigest()}
 
 
 def _share_workspaces(data: dict[str, dict]) -> None:

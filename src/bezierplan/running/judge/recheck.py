@@ -1,13 +1,10 @@
 """Are the results of a scale what their own points say? Every stored path is judged again, every
-bound computed again.
+bound computed again, and some runs are made again.
 
-Nothing here calls a planner: a path is read from its row, and judged on the workspace of the file
-of problems, in a process that no planner was in. What no path determines, such as a planner's
-objective, is covered by the digest of each file (`rows`).
-
-Of drives, rows keep the path travelled without its times, and traces keep places at whole steps, in
-single precision. So their lengths and the agreement of their columns are checked, and that no place
-at a whole step lies in an obstacle of a drive that is said to be free.
+To judge, nothing here calls a planner: a path is read from its row, and judged on the workspace of
+the file of problems, in a process that no planner was in. What no path determines, such as a
+planner's objective, is covered by the digest of each file (`rows`), and by the runs that are made
+again (`made_again`): of drives, so is their motion.
 """
 
 import hashlib
@@ -15,10 +12,8 @@ import json
 import math
 import multiprocessing
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from functools import cache
 from pathlib import Path as File
 from typing import Any, NamedTuple
 
@@ -26,27 +21,34 @@ import numpy as np
 import pyarrow as pa
 
 from bezierplan.geometry import curves
-from bezierplan.geometry.region import Region, walled
+from bezierplan.geometry.region import Region, region
 from bezierplan.machine.digest import COMPUTING, library_version
-from bezierplan.running import columns, problems, rides, rows, worlds
-from bezierplan.running.chunk import chunk_files
+from bezierplan.planners import is_file
+from bezierplan.running import execution, problems, rides, rows, worlds
+from bezierplan.running.chunk import Chunk, Condition
+from bezierplan.running.columns import Bound, DriveBound, DriveOutcome, Outcome, Planned
+from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import end_with_parent
 from bezierplan.running.judge import answer
 from bezierplan.schema.words import plain
-from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
-from bezierplan.workspaces.worlds import MovingCircles, World
+from bezierplan.workspaces.worlds import World
 
 # Numbers of another platform or version may differ in the last bits, and places of a first
 # collision a little more.
 _SAME = 1e-9
 _SAME_PLACE = 1e-6
-# Places of traces are in single precision; of a field of 100 units they are this exact.
-_TRACE = 1e-3
+
+MADE_AGAIN = 100
+"""Of so many runs one is made again."""
+
+# So many repeats of each condition, all alike, from a planner that draws random numbers, are no
+# chance.
+_ALIKE = 5
 
 
 class Fault(NamedTuple):
-    """A stored value that the points contradict. run: its id, a problem's name, or `all rows`."""
+    """A stored value that is not what follows. run: its id, a problem's name, or `all rows`."""
 
     file: str
     run: str
@@ -64,63 +66,32 @@ class Fault(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Runs of an experiment to be judged; or, with a file of bounds, that file."""
+    """Files of runs of an experiment, each with the chunk that it is to hold; or, with a file of
+    bounds, that file.
+    """
 
     problems: str
-    bounds: str
-    runs: tuple[str, ...]
+    runs: dict[str, Chunk]
+    bounds: str = ""
 
 
 class Verdict(NamedTuple):
     """faults: in order of files. files, runs: how many files of runs, and rows in them. paths:
-    different paths among these. bounds: how many were computed again. undigested: files without a
-    digest of their own. digests: a line for each file of runs.
+    different paths among these. bounds: how many were computed again. digests: a line for each file
+    of runs.
     """
 
-    faults: list[Fault]
-    files: int
-    runs: int
-    paths: int
-    bounds: int
-    undigested: int
-    digests: tuple[str, ...]
+    faults: tuple[Fault, ...] = ()
+    files: int = 0
+    runs: int = 0
+    paths: int = 0
+    bounds: int = 0
+    digests: tuple[str, ...] = ()
 
     @property
     def digest(self) -> str:
         """One for all files of runs."""
         return hashlib.sha256("\n".join(sorted(self.digests)).encode()).hexdigest()[:16]
-
-
-def tasks(folder: File) -> list[Task]:
-    """What to check below a scale's folder. Raises FileNotFoundError without runs or problems."""
-    experiments: dict[File, list[str]] = {}
-    for file in chunk_files(folder):
-        experiments.setdefault(file.parents[1], []).append(str(file))
-    if not experiments:
-        raise FileNotFoundError(
-            f"{folder}: no runs here; expected a folder of results, such as results/full"
-        )
-    listed = [
-        Task(str(_problems_of(experiment, folder)), "", tuple(files))
-        for experiment, files in experiments.items()
-    ]
-    for bounds in sorted(folder.glob("*/problems/*.bounds.parquet")):
-        experiment = bounds.name.removesuffix(".bounds.parquet")
-        listed.append(Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), ()))
-    return listed
-
-
-def _problems_of(experiment: File, folder: File) -> File:
-    """The file of the problems of an experiment's runs; at `extended` it may be that of `full`."""
-    study = experiment.relative_to(folder).parts[0]
-    places = [
-        scale / study / "problems" / f"{experiment.name}.parquet"
-        for scale in (folder, folder.parent / "full")
-    ]
-    there = next((place for place in places if place.is_file()), None)
-    if there is None:
-        raise FileNotFoundError(f"{places[0]}: missing; expected the problems of {experiment}")
-    return there
 
 
 def verify(
@@ -138,38 +109,43 @@ def verify(
     return merged(done)
 
 
-def _mapped(
-    function: Callable[[Task], Verdict], tasks: list[Task], processes: int
-) -> Iterator[Verdict]:
+def _mapped(function: Callable[[Any], Any], items: list[Any], processes: int) -> Iterator[Any]:
     """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they
     would begin with a job's script anew.
     """
     if processes == 1 or sys.platform != "linux":
-        yield from map(function, tasks)
+        yield from map(function, items)
         return
     with ProcessPoolExecutor(
         processes, multiprocessing.get_context("fork"), end_with_parent
     ) as pool:
-        yield from pool.map(function, tasks)
+        yield from pool.map(function, items)
 
 
 def merged(verdicts: Iterable[Verdict]) -> Verdict:
     """Several verdicts as one."""
-    whole = Verdict(*(sum(parts[1:], parts[0]) for parts in zip(*verdicts)))
-    return whole._replace(faults=sorted(whole.faults, key=lambda fault: fault[:3]))
+    whole = Verdict(*(sum(parts[1:], parts[0]) for parts in zip(Verdict(), *verdicts)))
+    return whole._replace(faults=tuple(sorted(whole.faults, key=lambda fault: fault[:3])))
 
 
-def write(verdict: Verdict, file: str) -> None:
-    """Write what was checked, and with which versions, as JSON. Raises ValueError with a fault."""
+def sound(verdict: Verdict) -> dict[str, Any]:
+    """What a verdict says, as plain values by name. Raises ValueError with a fault."""
     if verdict.faults:
         raise ValueError(
             f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the "
             "file and start again)"
         )
-    counts = {
-        name: getattr(verdict, name) for name in ("files", "runs", "paths", "bounds", "digest")
-    }
-    File(file).write_text(json.dumps(counts | {"versions": versions()}, indent=1) + "\n")
+    return {name: value for name, value in verdict._asdict().items() if name != "faults"}
+
+
+def write(content: dict[str, Any], file: str) -> None:
+    """Write plain values as JSON."""
+    File(file).write_text(json.dumps(content, indent=1) + "\n")
+
+
+def sha256(file: File) -> str:
+    """The digest of a file; empty if it is not there."""
+    return hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
 
 
 def versions() -> dict[str, str]:
@@ -177,134 +153,121 @@ def versions() -> dict[str, str]:
     return {name: library_version(name) for name in COMPUTING}
 
 
+def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
+    try:
+        return problems.read(file), worlds.read(file)
+    except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
+        raise rows.misplaced(file, "not a whole file of problems") from None
+
+
 def judged(task: Task) -> Verdict:
     """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
-    try:
-        made, moving = problems.read(task.problems), worlds.read(task.problems)
-    except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
-        raise rows.misplaced(task.problems, "not a whole file of problems") from None
+    made, moving = _problems(task.problems)
     if task.bounds:
-        return _bounds_judged(task, made, moving)
-    chunks = [_chunk(file, _DRIVE_COLUMNS if moving else _RUN_COLUMNS) for file in task.runs]
-    faults = [fault for chunk in chunks for fault in _identity_faults(chunk, made, task.problems)]
-    names = [name for chunk in chunks for name in chunk["id"]]
-    twice = {name for name, times in Counter(names).items() if times > 1}
-    faults += [
-        Fault(chunk.file, name, "id", "twice", "once")
-        for chunk in chunks
-        for name in chunk["id"]
-        if name in twice
-    ]
+        return _bounds_judged(task.bounds, made, moving)
+    faults, files, lines = [], {}, []
+    for file, chunk in task.runs.items():
+        if not chunk.problems.keys() <= made.keys():
+            raise rows.misplaced(task.problems, "not of the problems that the runs are of")
+        table = _table(file, chunk)
+        digest = rows.rows_digest(table)
+        lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
+        found = [
+            Fault(file, "all rows", "digest", kept or "none: another program wrote it", digest)
+            for kept in [rows.kept_digest(table)]
+            if kept != digest
+        ] or [*_identity_faults(file, table, chunk)]
+        faults += found
+        files |= {} if found else {file: table}
     known: dict[tuple[str, str, bytes], _Judged] = {}
-    faults += _drive_faults(chunks, made, moving) if moving else _path_faults(chunks, made, known)
-    return Verdict(
-        faults,
-        len(chunks),
-        len(names),
-        len(known),
-        0,
-        sum(chunk.kept is None for chunk in chunks),
-        tuple(f"{'/'.join(File(chunk.file).parts[-5:])} {chunk.digest}" for chunk in chunks),
-    )
+    regions = problems.remembered()
+    for file, table in files.items():
+        faults += (
+            _drive_faults(file, table, made, moving)
+            if moving
+            else _path_faults(file, table, made, known, regions)
+        )
+    faults += _alike(files, task.runs)
+    runs = sum(map(len, files.values()))
+    return Verdict(tuple(faults), len(task.runs), runs, len(known), 0, tuple(lines))
 
 
-# --------------------------------------------------------------------------------------------------
-# Files
-
-
-class _Chunk(NamedTuple):
-    """A file of runs: its columns that are looked at, by name: words as lists, numbers as arrays,
-    lists as lists of arrays; others are covered by digests. digest: of all rows; kept: that of the
-    file itself, if it has one.
-    """
-
-    file: str
-    columns: dict[str, Any]
-    digest: str
-    kept: str | None
-
-    def __getitem__(self, name: str) -> Any:
-        return self.columns[name]
-
-
-_IDENTITY = ("id", "study", "experiment", "condition", "problem", "method", "repeat")
-_RUN_COLUMNS = (
-    *_IDENTITY,
-    *("length", "feasible", "collision_at", "collision_depth", "clearance", "clearance_error"),
-    *("generations", "history", "path_curve", "path_points"),
-)
-_DRIVE_COLUMNS = (
-    *_IDENTITY,
-    *("objective", "length", "claimed_feasible", "feasible", "collision_at", "clearance"),
-    *("path_points", "arrival", "travelled", "clearance_least"),
-)
-_TYPES: dict[str, tuple[str, Callable[[pa.DataType], bool]]] = {
-    # What wrote a file chooses between the two types of text.
-    "word": ("text", lambda kind: pa.types.is_string(kind) or pa.types.is_large_string(kind)),
-    "flag": ("truths", pa.types.is_boolean),
-    "number": ("numbers", lambda kind: pa.types.is_floating(kind) or pa.types.is_integer(kind)),
-    "list": ("lists of numbers", pa.types.is_list),
-}
-
-
-def _chunk(file: str, names: Iterable[str]) -> _Chunk:
-    """A file of runs. Raises ValueError for one without these columns."""
+def _table(file: str, chunk: Chunk) -> pa.Table:
+    """The runs of a file. Raises ValueError for one without their columns."""
     table = rows.read(file)
-    kinds = columns.PLANNED | columns.RESULTS | columns.DRIVE_RESULTS
-    found = {name: _column(file, table, name, kinds[name]) for name in names}
-    return _Chunk(file, found, rows.rows_digest(table), rows.kept_digest(table))
+    declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
+    if fault := rows.fault(table.schema, *declared):
+        raise rows.misplaced(file, fault)
+    return table
 
 
-def _column(file: str, table: pa.Table, name: str, kind: str) -> Any:
-    """A column, with a value in each row. Raises ValueError for one that is not there or holds
-    other things.
+def _runs(chunk: Chunk) -> list[tuple[Condition, int]]:
+    """The condition and repeat of each row of a chunk, in order."""
+    return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
+
+
+def _identity_faults(file: str, table: pa.Table, chunk: Chunk) -> Iterator[Fault]:
+    """Whether a file has the rows that it is to have, and what is known before their runs."""
+    planned = [execution.identity(chunk, *each) for each in _runs(chunk)]
+    if len(table) != len(planned):
+        yield Fault(file, "all rows", "id", f"{len(table)} rows", f"{len(planned)} rows")
+        return
+    known = rows.table(planned, Planned).to_pydict()
+    # What a run finds out takes the place of a setting of that name.
+    for name, values in ((name, known[name]) for name in known.keys() - {*Outcome._fields}):
+        stored = table[name].to_pylist() if name in table.column_names else [None] * len(table)
+        for row, one, other in zip(planned, stored, values):
+            if one != other:
+                yield Fault(file, row["id"], name, one, other)
+
+
+def _alike(files: dict[str, pa.Table], chunks: dict[str, Chunk]) -> Iterator[Fault]:
+    """A planner of its author's own that is said to draw random numbers, but whose repeats are all
+    alike, on every condition.
     """
-    kind = "word" if kind == "name" else kind
-    expected, fits = _TYPES[kind]
-    if name not in table.column_names:
-        raise rows.misplaced(file, f"no column {name}")
+    first = next(iter(chunks.values()))
+    if not files or not is_file(first.planner) or interface.traits(first.planner).deterministic:
+        return
+    names = ["condition", "repeat", "history", "path_points"]
+    every = [row for table in files.values() for row in table.select(names).to_pylist()]
+    by_condition: dict[str, list[str]] = {}
+    for row in every:
+        found = repr([row["history"], row["path_points"]])
+        by_condition.setdefault(row["condition"], []).append(found)
+    if all(len(each) >= _ALIKE and len(set(each)) == 1 for each in by_condition.values()):
+        yield Fault(
+            next(iter(files)),
+            f"planner {first.planner}",
+            "history, path_points",
+            f"the same in all {len(every) // len(by_condition)} repeats",
+            "another with each rng: a planner draws from the rng that it is given, or says "
+            "deterministic = True",
+        )
+
+
+def _numbers(table: pa.Table, name: str) -> np.ndarray:
+    return table[name].to_numpy().astype(float)
+
+
+def _lists(table: pa.Table, name: str) -> list[np.ndarray]:
     column = table[name].combine_chunks()
-    if not fits(column.type) or column.null_count:
-        raise rows.misplaced(file, f"column {name}: expected {expected} in every row")
-    if kind == "word":
-        return column.to_pylist()
-    if kind == "list":
-        flat = column.flatten().cast(pa.float64()).to_numpy(zero_copy_only=False)
-        return np.split(flat, np.cumsum(column.value_lengths().to_numpy())[:-1])
-    return column.to_numpy(zero_copy_only=False).astype(float)
+    return np.split(column.flatten().to_numpy(), np.cumsum(column.value_lengths().to_numpy())[:-1])
 
 
-def _identity_faults(chunk: _Chunk, made: dict[str, Problem], file: str) -> Iterator[Fault]:
-    """Whether rows stand in their file, their ids say what their columns say, and the file's digest
-    is that of its rows. file: of the problems.
-    """
-    if chunk.kept not in (None, chunk.digest):
-        yield Fault(chunk.file, "all rows", "digest", chunk.kept, chunk.digest)
-    *_, experiment, method, _ = File(chunk.file).parts
-    parts = ("study", "experiment", "condition", "method", "repeat")
-    for name, problem, *values in zip(*(chunk[part] for part in ("id", "problem", *parts))):
-        row = dict(zip(parts, values), id=name, problem=problem)
-        expected = {
-            "id": "/".join([*values[:-1], f"{values[-1]:.0f}"]),
-            "experiment": experiment,
-            "method": method,
-            # A condition's name begins with its problem's.
-            "problem": row["condition"].partition(",")[0],
-        }
-        for column, value in expected.items():
-            if row[column] != value:
-                yield Fault(chunk.file, name, column, row[column], value)
-        if problem not in made:
-            yield Fault(chunk.file, name, "problem", problem, f"one of {file}")
-
-
-def _differing(chunk: _Chunk, again: dict[str, tuple[np.ndarray, Any]]) -> Iterator[Fault]:
-    """A chunk's values that differ from those computed again, by column, with its tolerance."""
+def _differing(
+    file: str, table: pa.Table, again: dict[str, tuple[np.ndarray, Any]]
+) -> Iterator[Fault]:
+    """Values of a file that differ from those computed again, by column, with its tolerance."""
     for name, (values, tolerance) in again.items():
-        plain = bool if name in ("feasible", "claimed_feasible") else float
-        for row in np.flatnonzero(~same(chunk[name], values, tolerance)):
+        stored = _numbers(table, name)
+        for row in np.flatnonzero(~same(stored, values, tolerance)):
+            one, other = table[name][row].as_py(), float(values[row])
             yield Fault(
-                chunk.file, chunk["id"][row], name, plain(chunk[name][row]), plain(values[row])
+                file,
+                table["id"][row].as_py(),
+                name,
+                one,
+                bool(other) if isinstance(one, bool) else other,
             )
 
 
@@ -319,7 +282,7 @@ def same(stored: np.ndarray, again: np.ndarray, tolerance: Any) -> np.ndarray:
 
 
 # --------------------------------------------------------------------------------------------------
-# Paths
+# Paths and drives
 
 
 class _Judged(NamedTuple):
@@ -332,37 +295,33 @@ class _Judged(NamedTuple):
 
 
 def _path_faults(
-    chunks: list[_Chunk],
+    file: str,
+    table: pa.Table,
     made: dict[str, Problem],
     known: dict[tuple[str, str, bytes], _Judged],
+    regions: problems.Regions,
 ) -> Iterator[Fault]:
     """What of runs differs from what their points say. known: what different paths say."""
-    regions = problems.remembered()
-    for chunk in chunks:
-        verdicts = np.full((len(chunk["id"]), 6), math.nan)
-        for row, (name, curve, points) in enumerate(
-            zip(chunk["problem"], chunk["path_curve"], chunk["path_points"])
-        ):
-            if name not in made:
-                continue
-            key = name, curve, points.tobytes()
-            if key not in known:
-                blocked = regions(made[name].workspace)
-                known[key] = _path_judged(curve, points, made[name], blocked)
-            verdicts[row], faults = known[key]
-            yield from (Fault(chunk.file, chunk["id"][row], *fault) for fault in faults)
-        length, feasible, collision_at, depth, clearance, tolerance = verdicts.T
-        slack = 2 * np.nan_to_num(tolerance) + _SAME
-        again = {
-            "length": (length, _SAME),
-            "feasible": (feasible, 0.0),
-            "collision_at": (collision_at, _SAME_PLACE),
-            "collision_depth": (depth, slack),
-            "clearance": (clearance, slack),
-            "clearance_error": (tolerance, slack),
-            "generations": (np.array([len(each) - 1.0 for each in chunk["history"]]), 0.0),
-        }
-        yield from _differing(chunk, again)
+    verdicts = np.full((len(table), 6), math.nan)
+    words = (table[name].to_pylist() for name in ("id", "problem", "path_curve"))
+    for row, (run, name, curve, points) in enumerate(zip(*words, _lists(table, "path_points"))):
+        key = name, curve, points.tobytes()
+        if key not in known:
+            known[key] = _path_judged(curve, points, made[name], regions(made[name].workspace))
+        verdicts[row], faults = known[key]
+        yield from (Fault(file, run, *fault) for fault in faults)
+    length, feasible, collision_at, depth, clearance, tolerance = verdicts.T
+    slack = 2 * np.nan_to_num(tolerance) + _SAME
+    again = {
+        "length": (length, _SAME),
+        "feasible": (feasible, 0.0),
+        "collision_at": (collision_at, _SAME_PLACE),
+        "collision_depth": (depth, slack),
+        "clearance": (clearance, slack),
+        "clearance_error": (tolerance, slack),
+        "generations": (np.array([len(each) - 1.0 for each in _lists(table, "history")]), 0.0),
+    }
+    yield from _differing(file, table, again)
 
 
 def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Region) -> _Judged:
@@ -382,145 +341,111 @@ def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Regi
     return _Judged((length, *check[:5]), tuple(faults))
 
 
-# --------------------------------------------------------------------------------------------------
-# Drives
-
-
-class _Trace(NamedTuple):
-    """points: (steps + 1, 2) the places at step 0, 1, ... and at the end. clearance: (steps,)."""
-
-    points: np.ndarray
-    clearance: np.ndarray
-
-
-def _traces(file: str) -> dict[str, _Trace]:
-    beside = str(File(file).with_suffix(".traces.parquet"))
-    table = rows.read(beside)
-    x, y, clearance = (_column(beside, table, name, "list") for name in ("x", "y", "clearance"))
-    if not all(
-        len(one) == len(other) > len(least) > 0 for one, other, least in zip(x, y, clearance)
-    ):
-        raise rows.misplaced(
-            beside,
-            "columns x, y and clearance: expected as many x as y, and one number less of clearance",
-        )
-    return {
-        name: _Trace(np.column_stack(points), least)
-        for name, *points, least in zip(_column(beside, table, "id", "word"), x, y, clearance)
-    }
-
-
 def _drive_faults(
-    chunks: list[_Chunk], made: dict[str, Problem], moving: dict[str, World]
+    file: str, table: pa.Table, made: dict[str, Problem], moving: dict[str, World]
 ) -> Iterator[Fault]:
-    """What of drives differs from what their ways and their traces say. Obstacles at whole steps
-    are placed once for each problem.
-    """
-    traces = [_traces(chunk.file) for chunk in chunks]
-    steps = max((len(each.clearance) for of in traces for each in of.values()), default=0)
-    distances = cache(lambda name: _distances(moving[name], steps))
-    for chunk, drives in zip(chunks, traces):
-        measured = np.full((len(chunk["id"]), 5), math.nan)
-        for row, (run, name, flat) in enumerate(
-            zip(chunk["id"], chunk["problem"], chunk["path_points"])
-        ):
-            if run not in drives:
-                yield Fault(chunk.file, run, "id", "a drive", "no trace of that id")
-            elif name in made:
-                points, ends = flat.reshape(-1, 2), (made[name].start, made[name].target)
-                measured[row] = (
-                    np.hypot(*np.diff(points, axis=0).T).sum(),
-                    (tuple(points[0].tolist()), tuple(points[-1].tolist())) == ends,
-                    drives[run].clearance.min(),
-                    distances(name)(drives[run].points),
-                    moving[name].pace,
-                )
-        length, joins, least, deepest, pace = measured.T
-        arrival, clearance_least = chunk["arrival"], chunk["clearance_least"]
-        arrived, low = ~np.isnan(arrival), np.minimum(clearance_least, 0.0) - _TRACE
-        free = np.isnan(chunk["collision_at"]) & (deepest >= low)
-        again = {
-            "length": (length, _SAME),
-            "travelled": (length, _SAME),
-            "claimed_feasible": (arrived, 0.0),
-            # What collides between two whole steps shows in `collision_at` alone.
-            "feasible": (arrived & (joins == 1.0) & free, 0.0),
-            "objective": (np.where(arrived, arrival * pace, math.inf), _SAME),
-            "clearance": (np.maximum(clearance_least, 0.0), _SAME),
-            "clearance_least": (least, _TRACE),
-        }
-        yield from _differing(chunk, again)
-
-
-def _distances(world: World, steps: int) -> Callable[[np.ndarray], float]:
-    """A function that gives, of places (n + 1, 2) at step 0, 1, ..., up to some number of steps,
-    and at the end, the least distance to an obstacle or the border at whole steps, in units,
-    negative inside; of cells -inf inside one, or inf.
-    """
-    if isinstance(world, MovingCircles):
-        centres = np.array([world.at(step) for step in range(steps)]).reshape(steps, -1, 2)
-        low, high = np.reshape(world.bounds, (2, 2)).T
-
-        def least(points: np.ndarray) -> float:
-            at = points[:-1]
-            away = np.hypot(*(centres[: len(at)] - at[:, None]).T).T - world.radii
-            return float(min(away.min(initial=math.inf), (at - low).min(), (high - at).min()))
-
-        return least
-    maps = [walled(each.occupied) for each in world.maps]
-    index = np.searchsorted(world.moments, np.arange(steps), side="right")
-
-    def outside(points: np.ndarray) -> float:
-        numbers = index[: len(points) - 1]
-        inside = any(
-            _inside(maps[n], world.maps[n], points[:-1][numbers == n]) for n in np.unique(numbers)
+    """What of drives differs from what their ways say."""
+    measured = np.full((len(table), 3), math.nan)
+    for row, (name, flat) in enumerate(
+        zip(table["problem"].to_pylist(), _lists(table, "path_points"))
+    ):
+        points, ends = flat.reshape(-1, 2), (made[name].start, made[name].target)
+        measured[row] = (
+            np.hypot(*np.diff(points, axis=0).T).sum(),
+            (tuple(points[0].tolist()), tuple(points[-1].tolist())) == ends,
+            moving[name].pace,
         )
-        return -math.inf if inside else math.inf
-
-    return outside
-
-
-def _inside(cells: np.ndarray, grid: Grid, points: np.ndarray) -> bool:
-    """Whether any of some points (n, 2), in units, lies in occupied cells or outside, by more than
-    the tolerance of a trace.
-
-    Such a point lies in no free cell, nor at the edge or corner of one. cells: those of the grid,
-    `walled`.
-    """
-    shifts = np.array([[-_TRACE, -_TRACE], [-_TRACE, _TRACE], [_TRACE, -_TRACE], [_TRACE, _TRACE]])
-    near = np.floor(grid.in_cells(points[:, None] + shifts)).astype(int) + 1
-    column, row = (np.clip(near[..., axis], 0, cells.shape[1 - axis] - 1) for axis in (0, 1))
-    return bool(cells[row, column].all(axis=1).any())
+    length, joins, pace = measured.T
+    arrival, least = _numbers(table, "arrival"), _numbers(table, "clearance_least")
+    arrived, free = ~np.isnan(arrival), np.isnan(_numbers(table, "collision_at"))
+    again = {
+        "length": (length, _SAME),
+        "travelled": (length, _SAME),
+        "claimed_feasible": (arrived, 0.0),
+        "feasible": (arrived & (joins == 1.0) & free, 0.0),
+        "objective": (np.where(arrived, arrival * pace, math.inf), _SAME),
+        "clearance": (np.maximum(least, 0.0), _SAME),
+    }
+    yield from _differing(file, table, again)
 
 
 # --------------------------------------------------------------------------------------------------
 # Bounds
 
 
-def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World]) -> Verdict:
-    kept = rows.read(task.bounds)
+def _bounds_judged(file: str, made: dict[str, Problem], moving: dict[str, World]) -> Verdict:
+    kept = rows.read(file)
+    if fault := rows.fault(kept.schema, Bound, *([DriveBound] if moving else [])):
+        raise rows.misplaced(file, fault)
     again = rides.bounds_of(made, moving) if moving else problems.bounds_of(made)
-    for field in again.schema:
-        kind = next(kind for kind, (_, fits) in _TYPES.items() if fits(field.type))
-        _column(task.bounds, kept, field.name, kind)
     stored = {row["problem"]: row for row in kept.to_pylist()}
-    faults = [
-        Fault(task.bounds, name, "problem", name, "no problem of that name")
-        for name in stored.keys() - made.keys()
-    ]
+    faults = []
     for row in again.to_pylist():
-        faults += _bound_faults(task.bounds, stored.get(row["problem"]), row)
-    return Verdict(faults, 0, 0, 0, len(again), 0, ())
+        name, own = row["problem"], stored.pop(row["problem"], {})
+        for column, value in row.items():
+            if column != "problem" and not _alike_numbers(own.get(column), value):
+                faults.append(Fault(file, name, column, own.get(column), value))
+    faults += [Fault(file, name, "problem", name, "no problem of that name") for name in stored]
+    return Verdict(tuple(faults), bounds=len(again))
 
 
-def _bound_faults(file: str, stored: dict[str, Any] | None, row: dict[str, Any]) -> Iterator[Fault]:
-    if stored is None:
-        yield Fault(file, row["problem"], "problem", "nothing", row["problem"])
-        return
-    for name, value in row.items():
-        if name != "problem":
-            one, other = (
-                np.atleast_1d(np.array(each, dtype=float)) for each in (stored[name], value)
+def _alike_numbers(one: Any, other: Any) -> bool:
+    """Whether two numbers, or two lists of them, are the same up to a tolerance."""
+    stored, again = (np.atleast_1d(np.array(each, dtype=float)) for each in (one, other))
+    return len(stored) == len(again) and bool(same(stored, again, _SAME).all())
+
+
+# --------------------------------------------------------------------------------------------------
+# Runs made again
+
+
+def made_again(
+    tasks: list[Task], processes: int, digest: str, every: bool
+) -> tuple[int, list[Fault]]:
+    """How many runs were made again, and what of them differs from their rows in any bit: one in
+    `MADE_AGAIN`, which a digest chooses, or all.
+    """
+    share = 1 if every else MADE_AGAIN
+    chunks = [
+        (task.problems, file, chunk, digest, share)
+        for task in tasks
+        for file, chunk in task.runs.items()
+    ]
+    found = [*_mapped(_again, chunks, processes)]
+    return sum(number for number, _ in found), [fault for _, faults in found for fault in faults]
+
+
+def _again(chosen: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Fault]]:
+    """`made_again` of a file."""
+    problem_file, file, chunk, digest, share = chosen
+    numbers = [
+        n
+        for n, run in enumerate(_runs(chunk))
+        if int(hashlib.sha256(f"{digest} {execution.run_id(chunk, *run)}".encode()).hexdigest(), 16)
+        % share
+        == 0
+    ]
+    if not numbers:
+        return 0, []
+    made, moving = _problems(problem_file)
+    runs = [_runs(chunk)[n] for n in numbers]
+    if moving:
+        found = [
+            rides.row(chunk, *run, ride, made[run[0].problem], moving[run[0].problem])[0]
+            for run, (ride, *_) in zip(runs, rides.run(chunk, runs, made, moving))
+        ]
+    else:
+        tasks = [execution.task(chunk, *run) for run in runs]
+        found = [
+            execution.row(
+                chunk, *run, each.plan, made[run[0].problem], region(made[run[0].problem].workspace)
             )
-            if len(one) != len(other) or not same(one, other, _SAME).all():
-                yield Fault(file, row["problem"], name, stored[name], value)
+            for run, each in zip(runs, execution.plans(chunk, made, tasks))
+        ]
+    faults = []
+    for row, stored in zip(found, rows.read(file).take(numbers).to_pylist()):
+        for name, value in rows.table([row], Planned, Outcome).to_pylist()[0].items():
+            # The text of a number tells all its bits, and unlike it a NaN is equal to itself.
+            if repr(value) != repr(stored.get(name)):
+                faults.append(Fault(file, row["id"], name, stored.get(name), value))
+    return len(numbers), faults
