@@ -29,6 +29,14 @@ os.environ["PYTHONPATH"] = os.pathsep.join([SOURCE, *filter(None, [os.environ.ge
 
 from hypothesis import configuration, settings  # noqa: E402
 
+from bezierplan.analysis import study_code  # noqa: E402
+
+# Tests of metrics need those of the papers, without their studies.
+study_code.functions(
+    f"bezierplan.papers.{file.parent.name}.metrics"
+    for file in (ROOT / "src/bezierplan/papers").glob("*/metrics.py")
+)
+
 # No deadline: the first call of a compiled kernel takes longer than the usual 200 ms. Derandomized:
 # a failure shows itself to everybody.
 settings.register_profile("bezierplan", deadline=None, derandomize=True, database=None)

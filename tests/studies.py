@@ -8,8 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import results
-from bezierplan.analysis.papers import drawings
+from bezierplan.analysis import drawings, results
 from bezierplan.running import problems
 from bezierplan.study import reading
 from bezierplan.study.definition import Study

@@ -157,21 +157,6 @@ def test_an_ant_colony_system_wears_off_each_step_and_adds_to_the_best_path_alon
     assert {change[2:] for change in changed[len(worn) + len(best) :]} == {(0.8, 0.1)}
 
 
-def test_the_compiled_colony_agrees_with_its_plain_python(monkeypatch):
-    changes = {
-        "ants": 4,
-        "iterations": 4,
-        "exploitation": 0.5,
-        "local_evaporation": 0.1,
-        "trail_update": "ant_colony_system",
-    }
-    compiled = search(**changes)
-    monkeypatch.setattr(ant_colony, "_colony", ant_colony._colony.py_func)
-    plain = search(**changes)
-    assert np.array_equal(compiled.history, plain.history)
-    assert np.array_equal(compiled.best, plain.best)
-
-
 def test_exploitation_takes_the_most_attractive_step():
     colony = search(ants=10, iterations=3, exploitation=1.0)
     assert (colony.paths[:, :6] == [0, 7, 14, 21, 28, 35]).all()

@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import baseline_comparison, measures, metrics
+from bezierplan.analysis import baseline_comparison, metrics
 from bezierplan.analysis.results import Results
+from bezierplan.papers.elhoseny2017 import metrics as elhoseny2017
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -180,7 +181,7 @@ def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
         assert math.isnan(found[0]), name
         assert found[1] in (3.5, 4.0), name
     with pytest.raises(ValueError, match="run clear is said to be feasible"):
-        measures.length_in_cells("length4", runs.assign(octile_bound=6.0), {"room": problem})
+        elhoseny2017.length_in_cells("length4", runs.assign(octile_bound=6.0), {"room": problem})
 
 
 def test_equal_curvature_is_not_less():

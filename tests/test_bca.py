@@ -66,20 +66,6 @@ def reference(path, grid, samples):
     return np.hypot(*np.diff(points, axis=0).T).sum(), inside.sum(), distance
 
 
-@pytest.mark.parametrize(
-    ("number", "centre"),
-    [
-        (1, (0.5, 19.5)),
-        (20, (19.5, 19.5)),
-        (381, (0.5, 0.5)),
-        (400, (19.5, 0.5)),
-        (23, (2.5, 18.5)),
-    ],
-)
-def test_cells_are_numbered_from_the_top_left(number, centre):
-    assert tuple(bca.code_centres(20, 20)[number - 1]) == centre
-
-
 @given(
     st.integers(0, 10_000),
     st.sampled_from(["length", "repaired", "literal_weights", "hard_safety"]),
@@ -172,50 +158,6 @@ def test_no_sample_is_counted_twice():
     """A sample inside whose chord cuts another occupied cell on its way."""
     grid = from_lines(["###", "#.#", "###"], 1.0, "cell")
     assert chord(1.5, 1.5, 2.6, 2.7, grid) == 1
-
-
-def test_long_chords_are_cut_into_parts():
-    """Against the same chord in a hundred steps."""
-    rng = np.random.default_rng(0)
-    hits = 0
-    for trial in range(400):
-        grid = random_grid(trial, 0.1)
-        ends = rng.random(4) * 20
-        steps = np.linspace(0, 1, 2001)
-        x, y = ends[0] + steps * (ends[2] - ends[0]), ends[1] + steps * (ends[3] - ends[1])
-        fine = bca._collisions(x[1:], y[1:], grid.occupied)
-        # Starts free; no grazing.
-        if bca._collisions(x[:1], y[:1], grid.occupied) == 0 and fine != 1:
-            assert chord(*ends, grid) == (fine > 0)
-            hits += fine > 0
-    assert hits > 100
-
-
-def test_equal_children_are_not_measured_again(monkeypatch):
-    """The compiled search against its plain Python with every child measured."""
-    compiled = plan(random_grid(5), population=8, generations=6)
-    monkeypatch.setattr(bca, "same", lambda *_: False)
-    monkeypatch.setattr(bca, "_search", bca._search.py_func)
-    plain = plan(random_grid(5), population=8, generations=6)
-    assert np.array_equal(compiled.history, plain.history)
-    assert np.array_equal(compiled.path.points, plain.path.points)
-
-
-@pytest.mark.parametrize("mutation", ["bit_flip", "cell", "per_gene"])
-@pytest.mark.parametrize("initial", ["uniform", "sorted", "feasible"])
-def test_genes_are_free_cells(mutation, initial):
-    grid = random_grid(3, 0.4)
-    found = plan(
-        grid,
-        mutation=mutation,
-        initial=initial,
-        mutation_probability=1.0,
-        elitism=0,
-        generations=20,
-    )
-    column, row = np.floor(found.path.points[1:-1]).astype(int).T
-    assert not grid.occupied[row, column].any()
-    assert np.array_equal(found.path.points[1:-1] % 1, np.full((8, 2), 0.5))
 
 
 def test_sorted_start_follows_the_way_to_the_target():

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from bezierplan.geometry import curves
 from bezierplan.planners import binary_genetic
 from bezierplan.workspaces.grid import Grid, from_lines
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "curve": "piecewise_quadratic",
@@ -109,37 +109,6 @@ def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
     assert found.claimed_feasible == (bad == 0)
 
 
-@pytest.mark.parametrize("penalty_for", ["each_sample", "path", "per_cell"])
-@pytest.mark.parametrize("curve", curves.B_SPLINES)
-def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, penalty_for):
-    """The last generation is measured only as far as it takes to know that a chromosome is not the
-    best.
-    """
-    grid, population = random_grid(8), 300
-    found = plan(
-        grid,
-        seed=3,
-        curve=curve,
-        samples=SAMPLES[curve],
-        generations=0,
-        population=population,
-        penalty_for=penalty_for,
-    )
-    starts, _ = np.random.default_rng(3).spawn(2)
-    costs = []
-    for cells in starts.integers(0, 256, size=(population, SETTINGS["genes"])):
-        points = np.array([grid.centre(cell) for cell in (0, *cells.tolist(), 255)])
-        length, bad = reference(Path(curve, points), grid, SAMPLES[curve])
-        samples = curves.sample_matrix(curve, len(points), SAMPLES[curve]) @ points
-        penalties = {
-            "each_sample": bad,
-            "path": min(bad, 1),
-            "per_cell": entries(samples, grid),
-        }
-        costs.append(length + 10 * penalties[penalty_for])
-    assert found.objective == pytest.approx(min(costs), rel=1e-12)
-
-
 @pytest.mark.parametrize("curve", curves.B_SPLINES)
 def test_stretches_kept_from_a_parent_change_nothing(curve, monkeypatch):
     """The compiled search against its plain Python with every stretch measured anew."""
@@ -188,16 +157,6 @@ def test_the_last_generation_can_be_worse_than_an_earlier_one(penalty):
         shorter = plan(grid, seed=seed, report="last_generation", **lost | {"generations": 12})
         assert np.array_equal(shorter.history, last.history[:13])
     assert worse > 0
-
-
-def test_with_elitism_the_last_generation_has_the_best_so_far():
-    for seed in range(5):
-        best, last = (
-            plan(random_grid(4), seed=seed, report=report)
-            for report in ("best_so_far", "last_generation")
-        )
-        assert np.array_equal(best.history, last.history)
-        assert np.array_equal(best.path.points, last.path.points)
 
 
 def test_start_equal_to_target_is_answered_without_a_search():

@@ -295,12 +295,3 @@ def test_without_crossover_and_mutation_the_best_of_the_first_stays():
     rules = cell_paths.Rules(0.0, 0.0, 0, cell_paths.ONE_CELL, 1)
     _, history = cell_paths.evolve(np.random.default_rng(0), OPEN, *first_paths(OPEN, 0), 20, rules)
     assert (history == history[0]).all()
-
-
-def test_the_compiled_evolution_agrees_with_its_plain_python():
-    rules = RULES["shorter parts, walks"]
-    results = [
-        evolve(np.random.default_rng(5), OPEN, *first_paths(OPEN, 3), 5, rules)
-        for evolve in (cell_paths.evolve, cell_paths.evolve.py_func)
-    ]
-    assert all(np.array_equal(*pair) for pair in zip(*results, strict=True))

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan.analysis.papers import tharwat2018
+from bezierplan.papers.tharwat2018 import functions as tharwat2018
 from bezierplan.planners.parts.chaotic_maps import MAPS, random_start, sequence
 
 MU = 1.07

@@ -16,14 +16,14 @@ import pytest
 from studies import FOLDER as STUDIES
 from studies import KEYS, study
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims import comparisons, judge, variants
 from bezierplan.analysis.claims.check import OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import check_of, kinds
 from bezierplan.analysis.claims.material import Material
-from bezierplan.analysis.papers import elhoseny2017, ma2020, meledje, song2016, tharwat2018
 from bezierplan.analysis.results import Results
+from bezierplan.papers.tharwat2018 import functions as tharwat2018
 from bezierplan.schema.model import one_or_list
 from bezierplan.study import jobs
 from bezierplan.workspaces.grid import from_lines
@@ -304,13 +304,16 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
 
 def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFrame]:
     own = study(key)
-    functions = {
-        each.__name__.rpartition(".")[2]: each
-        for each in (song2016, elhoseny2017, tharwat2018, ma2020, meledje)
-    }
+    functions = study_code.functions(own.code_for("functions"))
     return judge.judge(
         [Claim.model_validate(claim).in_primary_variant()],
-        *(results, printed or published(key), artefacts(key), key, vars(functions[key])),
+        *(
+            results,
+            printed or published(key),
+            artefacts(key),
+            key,
+            functions,
+        ),
         variant_of=own.variants(),
         paired={name: own.experiments[name].paired for name in results},
         repeats=dict.fromkeys(results, 10),

@@ -11,8 +11,9 @@ from studies import studies, study
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.claims.kinds import function
-from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
+from bezierplan.papers.elhoseny2017 import audit as own_audit
+from bezierplan.papers.elhoseny2017 import functions as elhoseny2017
 from bezierplan.running import execution, problems
 from bezierplan.running.chunk import Condition
 from bezierplan.study import jobs
@@ -89,7 +90,7 @@ def test_the_example_agrees_with_the_text():
 
 @pytest.fixture(scope="module")
 def rows():
-    return audit.table("elhoseny2017", elhoseny2017.audit(PUBLISHED))
+    return audit.table("elhoseny2017", own_audit.audit(PUBLISHED))
 
 
 def broken(rows, rule):
@@ -164,7 +165,7 @@ def test_lengths_of_the_counting_rule_pass():
         lengths = own["obstacles"].map(dict(zip((5, 10, 15, 20, 25), values)))
         own.loc[own["method"] == "mga", "value"] = lengths
         given[name] = own
-    rows = audit.table("elhoseny2017", elhoseny2017.audit(given))
+    rows = audit.table("elhoseny2017", own_audit.audit(given))
     assert rows.loc[rows["rule"].str.contains("chi-square|can be such"), "consistent"].all()
 
 

@@ -11,8 +11,8 @@ import pytest
 from studies import arguments, study
 from studies import drawing as drawn
 
-from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.geometry import cell_length
+from bezierplan.papers.elhoseny2017 import functions as elhoseny2017
 from bezierplan.study import jobs
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles

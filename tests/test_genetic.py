@@ -1,13 +1,11 @@
 """Genetic operators: distributions against their formulas, and what no operator may do."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
 from bezierplan.planners.parts.genetic import (
-    breed,
     complement_bit,
     flip_bit,
     redraw_gene,
@@ -41,36 +39,6 @@ def test_mutation_complements_exactly_one_bit(chromosome, position):
     complement_bit(chromosome, position, BITS)
     after = bits_of(chromosome)
     assert [i for i in range(len(before)) if before[i] != after[i]] == [position]
-
-
-@given(chromosomes, chromosomes, st.integers(1, 6 * BITS - 1), st.integers(0, 6 * BITS - 1))
-@settings(max_examples=100)
-def test_no_operator_leaves_the_range_of_cell_numbers(one, other, cut, position):
-    swap_tails(one, other, cut, BITS)
-    complement_bit(one, position, BITS)
-    assert min(one.min(), other.min()) >= 0
-    assert max(one.max(), other.max()) <= 255
-
-
-@pytest.mark.parametrize(
-    ("unit", "places"), [(BITS, range(BITS, 4 * BITS, BITS)), (1, range(1, 4 * BITS))]
-)
-def test_children_are_parents_whose_tails_are_exchanged_at_multiples_of_a_unit(unit, places):
-    """Of parents that differ in every bit, so that the cut is known; outer genes never change."""
-    parents = np.full((2, 6), 9)
-    parents[0, 1:-1], parents[1, 1:-1] = 0, 2**BITS - 1
-    cuts = set()
-    for seed in range(1000):
-        children, rng = np.zeros_like(parents), np.random.default_rng(seed)
-        drawn = breed(rng, parents, np.ones(2), children, 1, 1.0, unit, BITS)
-        assert (children[:, [0, -1]] == 9).all()
-        if drawn[0] != drawn[1]:
-            one, other = bits_of(children[0, 1:-1]), bits_of(children[1, 1:-1])
-            assert all(a != b for a, b in zip(one, other, strict=True))
-            cuts.add(len(one) - len(one.lstrip(one[0])))
-        else:
-            assert np.array_equal(children, parents[drawn])
-    assert cuts == set(places)
 
 
 def test_roulette_draws_in_proportion_to_fitness():
@@ -107,23 +75,3 @@ def test_a_gene_without_a_legal_neighbour_stays():
     genes = np.array([5])
     flip_bit(np.random.default_rng(0), genes, 0, 9, legal)
     assert genes.tolist() == [5]
-
-
-@pytest.mark.parametrize("operator", [roulette, swap_tails, complement_bit, redraw_gene])
-def test_kernels_agree_with_their_plain_python(operator):
-    arguments = {
-        roulette: lambda: (np.random.default_rng(3), np.array([0.5, 1.5, 0.1]), 20),
-        swap_tails: lambda: (np.array([1, 2, 3]), np.array([250, 251, 252]), 11, BITS),
-        complement_bit: lambda: (np.array([1, 2, 3]), 17, BITS),
-        redraw_gene: lambda: (
-            np.random.default_rng(4),
-            np.array([1, 2, 3]),
-            np.array([10, 20, 30]),
-        ),
-    }[operator]
-    compiled, plain = arguments(), arguments()
-    results = operator(*compiled), operator.py_func(*plain)
-    assert np.array_equal(*results) if operator is roulette else results == (None, None)
-    for one, other in zip(compiled, plain, strict=True):
-        if isinstance(one, np.ndarray):
-            assert np.array_equal(one, other)

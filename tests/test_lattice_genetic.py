@@ -83,14 +83,6 @@ def test_a_row_without_a_free_cell_has_no_path():
     assert found.history.tolist() == [math.inf]
 
 
-def test_the_compiled_search_agrees_with_its_plain_python(monkeypatch):
-    compiled = plan("ga", seed=2, population=6, generations=4)
-    monkeypatch.setattr(lattice_genetic, "_search", lattice_genetic._search.py_func)
-    plain = plan("ga", seed=2, population=6, generations=4)
-    assert np.array_equal(compiled.history, plain.history)
-    assert np.array_equal(compiled.path.points, plain.path.points)
-
-
 def test_evaluations_are_the_chromosomes_of_all_generations():
     assert (
         plan("ga", generations=7).evaluations == plan("ga_rows", generations=7).evaluations == 800

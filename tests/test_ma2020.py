@@ -12,10 +12,11 @@ from studies import drawing
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.claims.kinds import function
-from bezierplan.analysis.papers import ma2020
 from bezierplan.analysis.results import Results
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
+from bezierplan.papers.ma2020 import audit as own_audit
+from bezierplan.papers.ma2020 import functions as ma2020
 from bezierplan.planners import bca, planner_module, planner_settings
 from bezierplan.running import problems
 from bezierplan.schema import checked
@@ -254,7 +255,7 @@ def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
 
 
 def test_audit():
-    rows = audit.table("ma2020", ma2020.audit(PUBLISHED))
+    rows = audit.table("ma2020", own_audit.audit(PUBLISHED))
     wrong = rows[~rows["consistent"].astype(bool)]
     lattice = rows[rows["rule"].str.startswith("a path of 8")]
     assert len(lattice) == 16

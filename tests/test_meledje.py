@@ -13,9 +13,9 @@ from panels import options_of
 from studies import drawing as drawn
 from studies import study
 
-from bezierplan.analysis.papers import meledje
 from bezierplan.figures.panels import drawing
 from bezierplan.geometry import shortest_paths
+from bezierplan.papers.meledje import audit as meledje
 from bezierplan.planners import Plan, node_genetic
 from bezierplan.running import execution, problems, worlds
 from bezierplan.running.descriptions import Descriptions

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezierplan.analysis import measures, metrics
+from bezierplan.analysis import metrics
+from bezierplan.papers.elhoseny2017 import metrics as elhoseny2017
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -269,16 +270,18 @@ def test_bending_of_an_arc_is_its_angle_over_its_radius_and_its_largest_turn_tha
     radius,
 ):
     path = rounded_corner(radius)
-    assert measures.bending(path) == pytest.approx(math.pi / 2 / radius, rel=0.05)
-    assert measures.max_turn(path) == pytest.approx(
-        math.degrees(measures.BENDING_PART / radius), rel=0.05
+    assert elhoseny2017.bending(path) == pytest.approx(math.pi / 2 / radius, rel=0.05)
+    assert elhoseny2017.max_turn(path) == pytest.approx(
+        math.degrees(elhoseny2017.BENDING_PART / radius), rel=0.05
     )
 
 
 def test_a_corner_bends_by_its_squared_angle_over_the_length_of_a_part():
     corner = Path("polyline", np.array([[0.0, 0], [3, 0], [3, 3]]))
-    assert measures.bending(corner) == pytest.approx((math.pi / 2) ** 2 / measures.BENDING_PART)
-    assert measures.max_turn(corner) == pytest.approx(90)
+    assert elhoseny2017.bending(corner) == pytest.approx(
+        (math.pi / 2) ** 2 / elhoseny2017.BENDING_PART
+    )
+    assert elhoseny2017.max_turn(corner) == pytest.approx(90)
 
 
 def test_what_is_straight_does_not_bend():
@@ -286,6 +289,6 @@ def test_what_is_straight_does_not_bend():
         Path("polyline", np.array([[0.0, 0], [1, 1], [4, 4]])),
         Path("bezier", np.array([[0.0, 0], [1, 2], [4, 8]])),
     ):
-        assert measures.bending(path) == pytest.approx(0, abs=1e-12)
-        assert measures.max_turn(path) == pytest.approx(0, abs=1e-5)
-    assert measures.bending(Path("polyline", np.zeros((2, 2)))) == 0
+        assert elhoseny2017.bending(path) == pytest.approx(0, abs=1e-12)
+        assert elhoseny2017.max_turn(path) == pytest.approx(0, abs=1e-5)
+    assert elhoseny2017.bending(Path("polyline", np.zeros((2, 2)))) == 0

@@ -118,17 +118,6 @@ def gene(x, y):
 # The lattice.
 
 
-def test_the_coarse_lattice_has_441_points_with_both_diagonals():
-    found = field(100)
-    assert len(found.points) == 441
-    places = {(x - 0.5, y - 0.5) for x, y in found.points}
-    assert {(5 * i, 5 * i) for i in range(21)} | {(100 - 5 * i, 5 * i) for i in range(21)} <= places
-    np.testing.assert_array_equal(found.points[gene(15, 80)] - 0.5, (15, 80))
-    # Start and target are never set.
-    assert len(found.choices) == 439
-    assert not found.settable[[0, 440]].any()
-
-
 @pytest.mark.parametrize("side", [4, 20, 50, 100, 200, 333])
 def test_the_lattice_of_any_side_ends_in_the_corners(side):
     found = field(side)
@@ -145,12 +134,6 @@ def test_every_cell_can_be_a_gene():
     assert len(found.choices) == 100 - 2 - 5
 
 
-def test_genes_of_occupied_cells_are_never_set():
-    found = field(100, (50, 50, 6))
-    closed = {gene(50, 50), gene(45, 50), gene(55, 50), gene(50, 45), gene(50, 55)}
-    assert set(np.flatnonzero(~found.settable)) == closed | {0, 440}
-
-
 def test_a_field_without_a_free_gene_is_told():
     occupied = np.ones((21, 21), dtype=bool)
     occupied[[0, -1], [0, -1]] = False
@@ -160,26 +143,6 @@ def test_a_field_without_a_free_gene_is_told():
 
 
 # Decoding.
-
-
-def test_points_are_joined_along_the_line_from_start_to_target_ties_from_the_left():
-    found = field(100)
-    ones = np.array(sorted([gene(60, 60), gene(20, 60), gene(60, 20), gene(10, 5), gene(95, 100)]))
-    expected = [(0, 0), (10, 5), (20, 60), (60, 20), (60, 60), (95, 100), (100, 100)]
-    np.testing.assert_array_equal(planner.polygon(ones, found) - 0.5, expected)
-    # Against the other direction left and right change places.
-    back = field(100, ends=((100, 100), (0, 0)))
-    expected = [(100, 100), (95, 100), (60, 60), (60, 20), (20, 60), (10, 5), (0, 0)]
-    np.testing.assert_array_equal(planner.polygon(ones, back) - 0.5, expected)
-
-
-def test_points_can_be_joined_in_the_order_of_the_genes():
-    found = field(100, point_order="index")
-    ones = np.array([gene(10, 90), gene(20, 5), gene(20, 50)])
-    ones.sort()
-    np.testing.assert_array_equal(
-        planner.polygon(ones, found)[1:-1] - 0.5, [(10, 90), (20, 5), (20, 50)]
-    )
 
 
 # Validation.
@@ -432,13 +395,6 @@ def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
         assert found.history[-1] == found.objective
 
 
-def test_an_empty_field_is_crossed_straight():
-    for route in (1, 2):
-        for seed in range(3):
-            found = run(problem(obstacles=0, route=route), seed)
-            assert cell_length.length8(found.path, problem(obstacles=0).workspace) == 150.0
-
-
 def test_start_is_target():
     task = problem()._replace(target=(0.0, 0.0))
     found = run(task)
@@ -471,13 +427,6 @@ def test_without_a_rule_it_is_the_plain_algorithm_bit_by_bit():
     assert run(problem(), 4, eta=-1.0, eta_decay=1.0).extra["extra_batches"] == 80
 
 
-def test_more_batches_are_made_as_long_as_q_is_above_the_threshold():
-    two = run(problem(), 4, eta=-1.0, eta_decay=1.0, most_batches=2)
-    one = run(problem(), 4, eta=-1.0, eta_decay=1.0, most_batches=1)
-    assert two.extra["extra_batches"] == 2 * one.extra["extra_batches"] == 160
-    assert two.evaluations > one.evaluations
-
-
 def test_unique_lets_no_two_children_be_alike():
     plain, unique = (
         run(problem(), 5, diversity=rule, first_draws=1) for rule in ("none", "unique")
@@ -485,23 +434,6 @@ def test_unique_lets_no_two_children_be_alike():
     assert unique.extra["distinct_chromosomes"] > plain.extra["distinct_chromosomes"]
     # Only random chromosomes of the first population can be equal by chance.
     assert unique.extra["distinct_chromosomes"] > 59
-
-
-def test_relaxing_with_a_threshold_of_two_refuses_nothing():
-    plain, relaxed = (
-        run(problem(), 6, diversity="none"),
-        run(problem(), 6, diversity="relaxing", eta=0.0, eta_decay=1.0),
-    )
-    assert np.array_equal(plain.history, relaxed.history)
-    strict = run(problem(), 6, diversity="relaxing", eta=1.0, eta_decay=1.0)
-    assert not np.array_equal(plain.history, strict.history)
-
-
-def test_no_crossover_and_no_mutation_never_change_the_best_of_the_first_population():
-    frozen = run(problem(), 7, crossover_probability=0.0, mutation_rate=0.0)
-    # All children are copies, which are valid: nothing is drawn in their place.
-    assert np.all(frozen.history == frozen.history[0])
-    assert frozen.extra["valid_share"] == 1.0
 
 
 def test_children_that_are_not_crossed_mutate_as_well():
@@ -534,23 +466,6 @@ def test_mutation_changes_each_gene_with_its_probability(rate):
     assert np.abs(share - rate).max() <= 5 * np.sqrt(rate * (1 - rate) / 2000) + 1e-12
 
 
-def test_crossover_cuts_between_genes():
-    pool = gene_lists.empty_pool(2, 120)
-    gene_lists.put(np.array([3, 50, 300]), 3, 1.0, pool, 0)
-    gene_lists.put(np.array([50, 60]), 2, 1.0, pool, 1)
-    child = np.empty(120, dtype=np.int64)
-    for cut, expected in (
-        (50, [3, 50, 60]),
-        (51, [3, 50, 60]),
-        (61, [3, 50]),
-        (3, [50, 60]),
-        (4, [3, 50, 60]),
-        (301, [3, 50, 300]),
-    ):
-        assert list(child[: gene_lists.cross(pool, 0, 1, cut, child)]) == expected
-    assert list(child[: gene_lists.cross(pool, 1, 0, 60, child)]) == [50, 300]
-
-
 def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
     rng = np.random.default_rng(10)
     wheel = np.cumsum([1.0, 2.0, 5.0])
@@ -567,71 +482,6 @@ def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
     # All unfit: every pair alike.
     pairs = [planner._parents(rng, np.cumsum(np.full(4, 1e-9))) for _ in range(2000)]
     assert len(set(pairs)) == 12
-
-
-def batch(seed, pool, field_, **changed):
-    """The chromosomes, as lists of genes, that a batch of offspring of a pool's two chromosomes
-    adds.
-    """
-    filled_pool = gene_lists.empty_pool(200, planner._ROOM)
-    for place, ones in enumerate(pool):
-        gene_lists.put(np.array(ones), len(ones), 100.0, filled_pool, place)
-    child, memory = np.empty(planner._ROOM, dtype=np.int64), gene_lists.empty_memory(planner._ROOM)
-    wheel, scratch = np.cumsum(np.ones(len(pool))), gene_curves.scratch_for(field_)
-    arguments = (
-        filled_pool,
-        len(pool),
-        wheel,
-        0.8,
-        np.inf,
-        child,
-        memory,
-        field_,
-        rules(population=20, **changed),
-        scratch,
-    )
-    filled, tried, invalid = planner._add_offspring(np.random.default_rng(seed), *arguments)
-    return (
-        [
-            filled_pool.ones[place, : filled_pool.count[place]].tolist()
-            for place in range(len(pool), filled)
-        ],
-        tried,
-        invalid,
-    )
-
-
-def test_children_and_mutants_join_the_pool():
-    """Algorithm 2, lines 6 and 7: a crossover's children are added, and so is each of them
-    mutated.
-    """
-    found = field(100)
-    parents = [[gene(20, 40), gene(40, 60)], [gene(30, 20), gene(60, 30)]]
-    # By a crossover of two parents of two genes each a child has 0 to 4 genes, all of them the
-    # parents'; a mutant may have others.
-    inherited = set(parents[0]) | set(parents[1])
-    both, tried, _ = batch(
-        1, parents, found, mutation_rate=0.01, crossover_probability=1.0, replacements=0
-    )
-    assert tried == 40
-    assert 15 <= sum(set(child) <= inherited for child in both) < len(both)
-    # Without crossover and mutation all are copies of the parents.
-    both, *_ = batch(2, parents, found, mutation_rate=0.0, crossover_probability=0.0)
-    assert len(both) == 40
-    assert {tuple(child) for child in both} == {tuple(parent) for parent in parents}
-
-
-@pytest.mark.parametrize("diversity", ["none", "more_offspring"])
-def test_the_survivors_are_more_alike_than_the_pool_whatever_the_rule_for_diversity(diversity):
-    """Without changes all chromosomes soon are one, which has a Q of 1 with itself."""
-    changing, still = (
-        run(problem(), 3, diversity=diversity, **changes)
-        for changes in ({}, {"mutation_rate": 0.0})
-    )
-    assert changing.extra["population_q"] < still.extra["population_q"] <= 1.0
-    assert still.extra["population_q"] > 0.9
-    if diversity == "more_offspring":
-        assert changing.extra["mean_q"] < changing.extra["population_q"]
 
 
 @given(numpy.arrays(float, st.integers(0, 30), elements=st.integers(0, 5).map(float)))

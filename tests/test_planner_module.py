@@ -143,7 +143,7 @@ def test_a_file_that_fails_leaves_no_module(before, tmp_path):
     file.write_text(f"{before}1 / 0\n")
     with pytest.raises(ZeroDivisionError):
         planner_module(str(file))
-    assert "planner_fails" not in sys.modules
+    assert "study_fails" not in sys.modules
 
 
 def test_a_planner_s_file_hides_no_library(tmp_path):

@@ -10,9 +10,9 @@ import pytest
 from scipy import ndimage
 
 from bezierplan.geometry import shortest_paths
+from bezierplan.papers.ma2020.worlds import random_blocks
 from bezierplan.running import problems
 from bezierplan.running.descriptions import Descriptions
-from bezierplan.workspaces.kinds import random_blocks
 
 MAP = {
     "kind": "random_blocks",

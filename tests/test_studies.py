@@ -13,9 +13,9 @@ from studies import FOLDER as STUDIES
 from studies import KEYS, arguments, drawing
 from studies import study as shared
 
-from bezierplan.analysis import audit, metrics
-from bezierplan.analysis.papers import song2016, tharwat2018
+from bezierplan.analysis import audit, metrics, rules
 from bezierplan.analysis.results import Results
+from bezierplan.papers.tharwat2018 import functions as tharwat2018
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
@@ -50,12 +50,12 @@ def faults(rows):
 
 
 def test_audit_of_song2016():
-    rows = song2016.audit(published("song2016"))
+    rows = rules.audit(published("song2016"))
     assert len(rows) == 8
     assert not faults(rows)
     late = published("song2016")["table1"].replace({"value": {26.0: 101.0}})
     assert (
-        len(faults(song2016.audit(published("song2016") | {"table1": late})))
+        len(faults(rules.audit(published("song2016") | {"table1": late})))
         == (late["value"] == 101).sum()
         > 0
     )
@@ -365,9 +365,7 @@ def test_audit_of_tharwat2018():
     layouts = jobs.Audit.of({"tharwat2018": study}, "full", "tharwat2018").layouts
     tables = published("tharwat2018")
     compared = {name: audit.read_published(study.published_file(name)) for name in layouts}
-    rows = audit.table(
-        "tharwat2018", tharwat2018.audit(tables) + audit.of_any_paper(compared, layouts)
-    )
+    rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, layouts))
     wrong = rows[rows["consistent"].map(str) == "False"]
     sums = rows[rows["rule"].str.contains("add to")].set_index("item")
     assert sums["printed"].round(1).to_dict() == {
@@ -404,10 +402,10 @@ def test_audit_of_tharwat2018():
 )
 def test_audit_sees_a_changed_number(table, metric):
     numbers = published("tharwat2018")
-    before = faults(tharwat2018.audit(numbers))
+    before = faults(rules.audit(numbers))
     changed = numbers[table].copy()
     changed.loc[changed.index[changed["metric"] == metric][-1], "value"] = 7.0
-    assert len(faults(tharwat2018.audit(numbers | {table: changed})) - before) > 0
+    assert len(faults(rules.audit(numbers | {table: changed})) - before) > 0
 
 
 def test_published_numbers_of_tharwat2018():

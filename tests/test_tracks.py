@@ -11,7 +11,8 @@ from panels import options_of, panels_of
 
 from bezierplan.analysis import metrics, results
 from bezierplan.figures import sheet
-from bezierplan.figures.panels import Sources, landscape, tracks
+from bezierplan.figures.panels import Sources
+from bezierplan.papers.tharwat2018.panels import landscape, tracks
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.settings import filled

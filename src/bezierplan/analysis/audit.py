@@ -11,10 +11,9 @@ the order of rows, `of_digits` the decimals of all numbers. `analysis.possible` 
 forms.
 """
 
-import importlib
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -344,6 +343,7 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
 
 def audited(
     job: Any,
+    own: Callable[[dict[str, pd.DataFrame]], list[dict]],
     problem_files: Mapping[str, str],
     bound_files: Mapping[str, str],
     files: Mapping[str, str],
@@ -368,9 +368,7 @@ def audited(
         rows += identified.of_table(
             name, published[name], layout.identify, made.get(job.tables[name], {})
         )
-    if job.module:
-        rows += importlib.import_module(job.module).audit(published)
-    return table(job.study, rows)
+    return table(job.study, rows + own(published))
 
 
 def read_published(file: str) -> pd.DataFrame:

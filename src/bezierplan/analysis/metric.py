@@ -73,8 +73,40 @@ class Metric(NamedTuple):
     on: tuple[str, ...] = ()
 
 
-METRICS: dict[str, Metric] = {}
-"""Metrics by name: all of them once `metrics` is imported."""
+class Metrics(dict[str, Metric]):
+    """Metrics by name: those of every study once `metrics` is imported, and those of a study's own
+    code once that is loaded. Any other name is a column of the runs table.
+    """
+
+    def __missing__(self, name: str) -> Metric:
+        return Metric("-", name.replace("_", " "))
+
+
+METRICS = Metrics()
+ALL_STUDIES: set[str] = set()
+"""Names of the metrics of every study, which no study declares anew."""
+
+
+def register(found: dict[str, Metric]) -> None:
+    """Add metrics. Raises ValueError for a name of every study's."""
+    for name in ALL_STUDIES.intersection(found):
+        raise ValueError(f"metric {name}: every study has one of this name; choose another")
+    METRICS.update(found)
+
+
+def count(
+    meaning: str,
+    compute: Compute | None = None,
+    **more: Any,
+) -> Metric:
+    """A count of every run, or whether something is true of it: 1 or 0."""
+    return Metric("-", meaning, compute, step=1.0, **more)
+
+
+def generation(meaning: str, compute: Compute) -> Metric:
+    """The number of a generation of every run."""
+    return Metric("generation", meaning, compute, least=0.0, step=1.0)
+
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -90,7 +122,7 @@ def metric(
     """
 
     def declared(function: F) -> F:
-        METRICS[function.__name__] = Metric(unit, meaning, adapted(function), **facts)
+        register({function.__name__: Metric(unit, meaning, adapted(function), **facts)})
         return function
 
     return declared

@@ -242,7 +242,7 @@ class FunctionTable(Table):
 
     kind: Literal["function"] = Field(description="function")
     function: Function = Field(
-        description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`, "
+        description="the name of a function of the study's `functions.py`, "
         "called with all published tables by file name"
     )
     arguments: Arguments = Field({}, description=ARGUMENTS)

@@ -20,9 +20,6 @@ and what the next call gets as `last`, None at first: a plan that starts from an
 robots whose world changes.
 """
 
-import importlib
-import importlib.util
-import sys
 from functools import cache
 from pathlib import Path as File
 from types import ModuleType
@@ -30,6 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bezierplan.machine.modules import is_file, module
 from bezierplan.planners.parts.settings import About, Range, Setting, setting_fault, settings_of
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -93,13 +91,6 @@ PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 """Keys of a described problem that are columns of the runs table."""
 
 
-def is_file(planner: str) -> bool:
-    """Whether a planner is given as the path of a user's file, and not as the name of one of this
-    package.
-    """
-    return planner.endswith(".py")
-
-
 @cache
 def planner_module(planner: str) -> ModuleType:
     """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a
@@ -107,29 +98,7 @@ def planner_module(planner: str) -> ModuleType:
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
-    if not is_file(planner):
-        return importlib.import_module(f"bezierplan.planners.{planner}")
-    # Modules know themselves by name, such as those that numba or pickle keep parts of; this one is
-    # no library's.
-    name = f"planner_{File(planner).stem}"
-    spec = importlib.util.spec_from_file_location(name, planner)
-    module = importlib.util.module_from_spec(spec)
-    folder = File(planner).resolve().parent
-    known = {*sys.modules, name}
-    sys.path.append(str(folder))  # last, so that no user file shadows a library
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        sys.modules.pop(name, None)  # whatever the file has done before it failed
-        raise
-    finally:
-        sys.path.remove(str(folder))
-        # The planners of another study may have modules of the same name next to them.
-        beside = {file.stem for file in folder.iterdir()}
-        for name in [name for name in sys.modules.keys() - known if name.split(".")[0] in beside]:
-            del sys.modules[name]
-    return module
+    return module(planner if is_file(planner) else f"bezierplan.planners.{planner}")
 
 
 def known_planners() -> list[str]:

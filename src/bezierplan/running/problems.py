@@ -9,6 +9,7 @@ bounds: `columns.Bound`.
 import math
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -132,7 +133,7 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
             workspace = kinds[home].draw(*arguments)
         else:
             workspace = _suitable(
-                kinds[home].candidates(*arguments), described.workspaces[home], description
+                kinds[home], kinds[home].candidates(*arguments), arguments[0], description
             )
         # Start and target are looked up in the region of the same map, as are those of all problems
         # on a map from a file; drawn maps are as many as problems, and so are not kept.
@@ -145,7 +146,7 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
 _SAME_LENGTH = 1e-4
 
 
-def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
+def _suitable(kind: ModuleType, maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
     """The first of some maps whose shortest path over the 8-connected lattice has the wanted
     length, in cells, if one is given.
 
@@ -167,15 +168,13 @@ def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
         )
         if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
             return grid
-    from bezierplan.workspaces.kinds.random_blocks import MOST_MAPS
-
     asked = (
         "a path from start to target"
         if wanted is None
         else f"a shortest lattice path of lattice_length {wanted:g}"
     )
     raise ValueError(
-        f"obstacles: {problem['obstacles']}: of {MOST_MAPS} maps none has so many "
+        f"obstacles: {problem['obstacles']}: of {kind.MOST_MAPS} maps none has so many "
         f"occupied cells and {asked}"
     )
 

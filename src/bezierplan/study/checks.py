@@ -2,7 +2,6 @@
 free places, matching published numbers. Every fault is reported in one line.
 """
 
-import importlib
 import inspect
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
@@ -12,11 +11,11 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Comparison, Pivot
-from bezierplan.figures.panels import Panel, spheres
+from bezierplan.figures.panels import Panel
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import columns, problems, worlds
 from bezierplan.running.chunk import conditions
@@ -45,7 +44,7 @@ a setting of that name adds nothing.
 def check(study: Study) -> None:
     """Raise Fault for anything wrong in a study whose files are each valid on their own."""
     _check_experiments(study, relative(study.folder / "experiments.yaml"))
-    design, functions = Design(study), _functions(study)
+    design, functions = Design(study), study_code.functions(study.code_for("functions"))
     for file in study.published_files():
         published.read(Path(file))
     location = relative(study.folder / "artefacts.yaml")
@@ -80,14 +79,6 @@ def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], location: str) -
     for number, identity in enumerate(ids):
         if identity in ids[:number]:
             raise Fault(f"{location}: {identity}: another one has this id already")
-
-
-def _functions(study: Study) -> dict[str, Callable]:
-    """The public functions of a study's module, by name."""
-    names = vars(importlib.import_module(study.module())) if study.module() else {}
-    return {
-        name: value for name, value in names.items() if callable(value) and not name.startswith("_")
-    }
 
 
 # experiments.yaml
@@ -195,10 +186,10 @@ def _check_shared_settings(study: Study, used: set[str], location: str) -> None:
 def _check_problem(study: Study, name: str, location: str) -> None:
     """A problem has the keys of its kind of workspace."""
     problem, home = study.problems[name], study.workspace_of(name)
-    if home.kind == "spheres":
+    if not home.planar:
         raise Fault(
             f"{location}: workspace: {problem.workspace}: has three dimensions; a panel of kind "
-            "spheres plans there, and no experiment"
+            f"{home.kind} plans there, and no experiment"
         )
     for key, needed in (("layouts", bool(home.drawn)), ("side", home.with_side)):
         if needed != (getattr(problem, key) is not None):
@@ -376,13 +367,13 @@ def _check_panel(design: Design, panel: Panel, location: str) -> None:
     study = design.study
     if panel.plans:
         check_known(panel.method, study.methods, f"{location}: method")
-        check_known(study.methods[panel.method].planner, [spheres.PLANNER], f"{location}: method")
+        check_known(study.methods[panel.method].planner, [panel.plans], f"{location}: method")
         for setting in panel.settings:
             check_known(setting, study.accepted(panel.method), f"{location}: settings")
         settings = study.resolved(panel.method) | panel.settings
-        check_settings(planner_module(spheres.PLANNER), settings, f"{location}: settings")
+        check_settings(planner_module(panel.plans), settings, f"{location}: settings")
         home = files.load(study.workspaces[panel.workspace].plain(), study.folder)
-        _valid(location, spheres.problem, home, panel.start, panel.target)
+        _valid(location, panel.check, home)
     if not getattr(panel, "experiment", None):
         return
     if panel.drives and not study.moves(panel.experiment):

@@ -1,6 +1,5 @@
 """A study as defined by its files."""
 
-import importlib.util
 import itertools
 import os
 from collections.abc import Iterable
@@ -10,6 +9,7 @@ from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
+from bezierplan.machine.modules import code_of
 from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.running.inputs import PAPER, tree
 from bezierplan.study.artefacts import Figure
@@ -203,10 +203,10 @@ class Study:
             name: method.variant_of for name, method in self.methods.items() if method.variant_of
         }
 
-    def module(self) -> str | None:
-        """The study's own module, or None."""
-        name = f"bezierplan.analysis.papers.{self.key}"
-        return name if importlib.util.find_spec(name) else None
+    def code_for(self, *parts: str) -> list[str]:
+        """The modules of some parts of its code (`machine.modules`) that it has."""
+        code = code_of(self.key, relative(self.folder))
+        return [code[part] for part in parts if part in code]
 
 
 def files_of(workspace: Workspace) -> dict[str, str]:

@@ -8,7 +8,7 @@ must run again. Files stand in the rules alone.
 
 import hashlib
 import inspect
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Self
@@ -28,6 +28,7 @@ from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
 from bezierplan.study.artefacts import Figure as FigureOfStudy
 from bezierplan.study.definition import Study, relative
+from bezierplan.workspaces.kinds import kind_of
 
 Studies = dict[str, Study]
 
@@ -51,7 +52,7 @@ class Job:
         """Do the work with the files of a rule, by their names there."""
         raise NotImplementedError
 
-    def modules(self) -> Iterable[str | None]:
+    def modules(self) -> Iterable[str]:
         """Modules that `run` imports by name, because of the values."""
         return ()
 
@@ -66,8 +67,26 @@ class Job:
             for name, function in inspect.getmembers(type(self), inspect.isfunction)
             if not name.startswith("__") and name != "modules"
         )
-        code = function_digest(works, *sorted(set(filter(None, self.modules()))))
+        code = function_digest(works, *sorted(set(self.modules())))
         return f"{hashlib.sha256(values.encode()).hexdigest()[:16]} {code}"
+
+
+@dataclass(frozen=True)
+class Analysis(Job):
+    """A job for which the code of a study itself is needed."""
+
+    code: list[str] = field(default_factory=list, kw_only=True)
+    """Its modules."""
+
+    def modules(self) -> Iterable[str]:
+        """Those of the study."""
+        return self.code
+
+    def load(self) -> dict[str, Callable[..., Any]]:
+        """Load the study's own code; its functions by name."""
+        from bezierplan.analysis import study_code
+
+        return study_code.functions(self.code)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -89,7 +108,7 @@ def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
 
 def kinds_of_workspace(workspaces: dict[str, dict]) -> list[str]:
     """Modules of the kinds of some workspaces."""
-    return [f"bezierplan.workspaces.kinds.{each['kind']}" for each in workspaces.values()]
+    return [kind_of(each).__name__ for each in workspaces.values()]
 
 
 @dataclass(frozen=True)
@@ -371,7 +390,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
 
 
 @dataclass(frozen=True)
-class TableOfRuns(Job):
+class TableOfRuns(Analysis):
     """A table of runs, and its comparison with published numbers."""
 
     name: str
@@ -410,6 +429,7 @@ class TableOfRuns(Job):
             repeats=experiment.repeats[scale],
             published=content_digest(file) if file else "",
             shows=shown_by(content, table, scale),
+            code=content.code_for("metrics"),
         )
 
     def run(self, input_files, output_files, threads):
@@ -419,6 +439,7 @@ class TableOfRuns(Job):
         from bezierplan.analysis import comparison, results, tables
         from bezierplan.running import inputs
 
+        self.load()
         ((experiment, files),) = inputs.experiments(self.shows, input_files).items()
         runs = results.read(files, self.repeats, experiment)
         file = input_files.published[0] if self.published else None
@@ -441,13 +462,11 @@ class TableOfRuns(Job):
 
 
 @dataclass(frozen=True)
-class TableWithoutRuns(Job):
+class TableWithoutRuns(Analysis):
     """What a paper prints, what follows from it, or several comparisons."""
 
     spec: Table
     """Without its title."""
-    module: str | None
-    """That of the study, whose function makes the table."""
     labels: dict[str, str]
     published: str
     """Digest of files of published numbers."""
@@ -457,25 +476,17 @@ class TableWithoutRuns(Job):
         """The table of a name."""
         content = studies[study]
         spec = content.tables[table].but(title=table)
-        module = content.module() if spec.kind == "function" else None
+        code = content.code_for("functions") if spec.kind == "function" else []
         published = content_digest(*content.published_of(table))
-        return cls(spec, module, labels_of(content, table), published)
-
-    def modules(self):
-        """That of the study."""
-        return [self.module]
+        return cls(spec, labels_of(content, table), published, code=code)
 
     def run(self, input_files, output_files, threads):
         """Make the table."""
-        import importlib
-
         from bezierplan.analysis import listing
         from bezierplan.running import inputs
 
-        functions = vars(importlib.import_module(self.module)) if self.module else {}
-        table = listing.table(
-            self.spec, inputs.by_table(input_files.published), functions, self.labels
-        )
+        published = inputs.by_table(input_files.published)
+        table = listing.table(self.spec, published, self.load(), self.labels)
         table.to_csv(output_files[0], index=False, float_format="%.10g", lineterminator="\n")
 
 
@@ -513,7 +524,7 @@ class Latex(Job):
 
 
 @dataclass(frozen=True)
-class Figure(Job):
+class Figure(Analysis):
     """A figure: pictures, exactly the data drawn in them, and what its caption says of the runs."""
 
     study: str
@@ -521,8 +532,6 @@ class Figure(Job):
     width: str
     """Of the sheet, a key of `style.WIDTHS`."""
     panels: list[Panel]
-    module: str | None
-    """That of the study, with the functions that panels name."""
     labels: dict[str, str]
     """Name -> how it is printed."""
     looks: dict[str, str]
@@ -560,7 +569,6 @@ class Figure(Job):
             columns=spec.columns,
             width=spec.width,
             panels=[_planned(content, panel) for panel in spec.panels],
-            module=content.module() if any_method else None,
             labels=labels_of(content, figure),
             looks={
                 name: look for name, look in looks(content).items() if any_method or name in methods
@@ -578,22 +586,21 @@ class Figure(Job):
             folder=relative(content.folder),
             sources=content_digest(*content.maps(bare), *content.published_drawn(figure)),
             shows=shown_by(content, figure, scale),
+            code=content.code_for("metrics", *(["functions"] if any_method else [])),
         )
 
     def modules(self):
-        """Kinds of panel and workspace, the study's, and planners that run again."""
+        """Kinds of panel and workspace, and planners that run again."""
         again = [chunk.planner for methods in self.chunks.values() for chunk in methods.values()]
         return [
-            self.module,
-            *(f"bezierplan.figures.panels.{panel.kind}" for panel in self.panels),
+            *super().modules(),
+            *(type(panel).__module__ for panel in self.panels),
             *map(module_of, again),
             *kinds_of_workspace(self.workspaces),
         ]
 
     def run(self, input_files, output_files, threads):
         """Draw the figure from its data, which are first written and read back."""
-        import importlib
-
         from bezierplan.analysis import results
         from bezierplan.figures import sheet
         from bezierplan.figures.panels import Sources
@@ -615,9 +622,8 @@ class Figure(Job):
             for name, described in self.workspaces.items()
         }
         problems = {name: runs.problems for name, runs in experiments.items()}
-        functions = vars(importlib.import_module(self.module)) if self.module else {}
         scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks)
-        sources = Sources(experiments, workspaces, functions, published, self.study)
+        sources = Sources(experiments, workspaces, self.load(), published, self.study)
         sheet.write_data(sheet.data(self.panels, sources), output_files.data)
         figure = sheet.draw(
             self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
@@ -666,12 +672,10 @@ def escaped(text: str) -> str:
 
 
 @dataclass(frozen=True)
-class Claims(Job):
+class Claims(Analysis):
     """The claims of a study, judged on the runs of some experiments."""
 
     study: str
-    module: str | None
-    """That of the study, with the functions that claims name."""
     claims: list[Claim]
     artefacts: dict[str, list[Shown]]
     """What each table and figure shows of runs."""
@@ -699,9 +703,9 @@ class Claims(Job):
         return cls(**_claims(content, content.claims, scale), shows=shows)
 
     def modules(self):
-        """That of the study, and kinds of check."""
+        """Kinds of check as well."""
         kinds = {check.test for claim in self.claims for check in claim.checks}
-        return [self.module, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
+        return [*super().modules(), *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
     def files(self, input_files, output_files):
         """Files of the results by experiment."""
@@ -711,8 +715,6 @@ class Claims(Job):
 
     def run(self, input_files, output_files, threads):
         """Judge the claims."""
-        import importlib
-
         from bezierplan.analysis import results
         from bezierplan.analysis.claims import judge
         from bezierplan.running import inputs
@@ -726,7 +728,7 @@ class Claims(Job):
             },
             self.artefacts,
             self.study,
-            vars(importlib.import_module(self.module)) if self.module else {},
+            self.load(),
             variant_of=self.variant_of,
             paired=self.paired,
             repeats=self.paper_repeats,
@@ -743,7 +745,7 @@ def _claims(study: Study, claims: list[Claim], scale: str) -> dict[str, Any]:
     }
     return {
         "study": study.key,
-        "module": study.module(),
+        "code": study.code_for("metrics", "functions"),
         "claims": claims,
         "artefacts": {
             name: parts
@@ -851,12 +853,10 @@ class Sensitivity(Job):
 
 
 @dataclass(frozen=True)
-class Audit(Job):
+class Audit(Analysis):
     """A paper's own numbers, checked against each other and against exact bounds."""
 
     study: str
-    module: str | None
-    """That of the study, with checks of its own."""
     tables: dict[str, str]
     """Table of published numbers -> the experiment that reproduces it."""
     primary: dict[str, dict]
@@ -875,27 +875,25 @@ class Audit(Job):
         tables = {Path(each.published).stem: each for each in content.with_published().values()}
         return cls(
             study,
-            content.module(),
             {name: table.experiment for name, table in tables.items()},
             {name: table.primary for name, table in tables.items()},
             {name: Layout.of(table) for name, table in tables.items()},
             sorted({table.experiment for table in tables.values() if table.identify}),
             content_digest(*content.published_files()),
+            code=content.code_for("metrics", "audit"),
             shows={name: {} for name in sorted({each.experiment for each in tables.values()})},
         )
 
-    def modules(self):
-        """That of the study."""
-        return [self.module]
-
     def run(self, input_files, output_files, threads):
         """Check the numbers."""
-        from bezierplan.analysis import audit
+        from bezierplan.analysis import audit, study_code
         from bezierplan.running import inputs
 
+        self.load()
         files = inputs.experiments(self.shows, input_files)
         table = audit.audited(
             self,
+            study_code.audit(self.code),
             {name: files[name].problems for name in self.identified},
             {name: each.bounds for name, each in files.items()},
             inputs.by_table(input_files.published),
@@ -942,7 +940,7 @@ class BaselineComparison(Job):
 
 
 @dataclass(frozen=True)
-class Summary(Job):
+class Summary(Analysis):
     """The numbers and claims of all studies."""
 
     scale: str
@@ -962,12 +960,14 @@ class Summary(Job):
         titles = {key: content.title for key, content in studies.items()}
         texts = {key: content.verdict_file() for key, content in studies.items()}
         digests = {key: content_digest(file) for key, file in texts.items() if file}
-        return cls(scale, tables, titles, digests)
+        code = [module for content in studies.values() for module in content.code_for("metrics")]
+        return cls(scale, tables, titles, digests, code=code)
 
     def run(self, input_files, output_files, threads):
         """Gather them."""
         from bezierplan.analysis import summary
 
+        self.load()
         summed = summary.gathered(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
             self.titles,

@@ -23,7 +23,7 @@ from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
 from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
-from bezierplan.study.jobs import Job, Studies
+from bezierplan.study.jobs import Analysis, Job, Studies
 
 SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
 """The settings of all studies behind the README's outcome."""
@@ -122,7 +122,7 @@ class Verified(Job):
 
 
 @dataclass(frozen=True)
-class Page(Job):
+class Page(Analysis):
     """The page of a scale."""
 
     page: PageJob
@@ -141,6 +141,7 @@ class Page(Job):
             [place for place in behind if studies[place.split("/")[0]].moves(place.split("/")[1])],
             content_digest(*page.files(), *outcome),
             shows=behind,
+            code=[module for own in studies.values() for module in own.code_for("metrics")],
         )
 
     def run(self, input_files, output_files, threads):
@@ -148,6 +149,7 @@ class Page(Job):
         from bezierplan.figures.page import build
         from bezierplan.running import inputs
 
+        self.load()
         experiments: dict[str, dict[str, ExperimentShown]] = {key: {} for key in self.page.studies}
         for place, files in inputs.experiments(self.shows, input_files).items():
             key, _, name = place.partition("/")

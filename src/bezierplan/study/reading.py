@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
+from bezierplan.analysis import study_code
+from bezierplan.machine.modules import code_of
 from bezierplan.places import STUDIES
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
@@ -97,6 +99,7 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
     changed: settings that take the place of those of the same name in experiments.yaml; those of
     one planner are taken one by one.
     """
+    study_code.functions(code_of(folder.resolve().name, relative(folder)).values())
     experiments = _read(folder, "experiments", ExperimentsFile)
     for name, value in (changed or {}).items():
         own = experiments.settings.get(name)

@@ -1,4 +1,4 @@
-"""One file per kind of panel.
+"""One file per kind of panel, here or in a folder `panels` of `papers`.
 
 Every file has `Options`, the keys that a panel of this kind may have, of which a panel is an
 instance, and
@@ -18,17 +18,16 @@ tables inside the functions that need them.
 from __future__ import annotations
 
 import functools
-import importlib
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field, PrivateAttr, model_validator
 
+from bezierplan.machine.modules import kinds_in, module
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
@@ -113,14 +112,14 @@ class Sources:
 class Panel(Model, ABC):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
-    rerun: whether runs are repeated to draw what no table keeps. plans: whether it plans by itself,
-    with a method of the study. one: columns of which the runs that it shows have one value. drives:
-    whether these are drives. tracks: whether their planner must have `track`. fewest_methods: how
-    many methods it compares at least.
+    rerun: whether runs are repeated to draw what no table keeps. plans: the planner by which it
+    plans itself, with a method of the study. one: columns of which the runs that it shows have one
+    value. drives: whether these are drives. tracks: whether their planner must have `track`.
+    fewest_methods: how many methods it compares at least.
     """
 
     rerun: ClassVar[bool] = False
-    plans: ClassVar[bool] = False
+    plans: ClassVar[str] = ""
     one: ClassVar[tuple[str, ...]] = ()
     drives: ClassVar[bool] = False
     tracks: ClassVar[bool] = False
@@ -257,9 +256,13 @@ def only(runs: pd.DataFrame, column: str) -> Any:
     return values[0]
 
 
+def _places() -> dict[str, str]:
+    return kinds_in("figures/panels", "panels")
+
+
 def kind_module(name: str) -> ModuleType:
-    """The file of a kind of panel. Raises ModuleNotFoundError if there is none."""
-    return importlib.import_module(f"{__name__}.{name}")
+    """The file of a kind of panel. Raises KeyError if there is none."""
+    return module(_places()[name])
 
 
 def panel_of(keys: dict[str, Any]) -> Panel:
@@ -270,5 +273,4 @@ def panel_of(keys: dict[str, Any]) -> Panel:
 @functools.cache
 def kinds() -> dict[str, type[Panel]]:
     """Kind of panel -> the options of its panels."""
-    names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
-    return {name: kind_module(name).Options for name in names}
+    return {name: kind_module(name).Options for name in _places()}

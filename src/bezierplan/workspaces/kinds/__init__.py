@@ -1,4 +1,5 @@
-"""One file per kind of workspace: `Options`, the keys of its description, and how it is made.
+"""One file per kind of workspace, here or in a folder `worlds` of `papers`: `Options`, the keys of
+its description, and how it is made.
 
 - `Options`: the keys that a description of this kind may have
 - `load(description, folder)`: the workspace of a description, if it is fixed; files are looked up
@@ -16,7 +17,6 @@ in absolute value. `length` of a map is that of the shortest path from cell to c
 of the problem. All faults are ValueErrors of one line.
 """
 
-import importlib
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -27,6 +27,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Field
 
+from bezierplan.machine.modules import kinds_in, module
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
     Line,
@@ -99,11 +100,12 @@ class Workspace(Model):
     """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see;
     made: for one converted from files of another format, the kind that planners see; with_side:
     whether its problems have a `side`; moves: whether it is a world, in which runs are simulated
-    drives.
+    drives; planar: whether it has two dimensions.
     """
 
     drawn: ClassVar[str | None] = None
     made: ClassVar[str | None] = None
+    planar: ClassVar[bool] = True
     with_side: ClassVar[bool] = False
     moves: ClassVar[bool] = False
 
@@ -137,16 +139,19 @@ class RandomMoving(World):
     )
 
 
+def _places() -> dict[str, str]:
+    return kinds_in("workspaces/kinds", "worlds")
+
+
 def kind_of(description: dict) -> ModuleType:
     """The file of a description's kind of workspace."""
-    return importlib.import_module(f"{__name__}.{description['kind']}")
+    return module(_places()[description["kind"]])
 
 
 @cache
 def kinds() -> dict[str, type[Workspace]]:
     """Kind of workspace -> the keys of its descriptions; fixed ones, random ones, then worlds."""
-    names = [file.stem for file in Path(__file__).parent.glob("[!_]*.py")]
-    found = {name: kind_of({"kind": name}).Options for name in names}
+    found = {name: module(place).Options for name, place in _places().items()}
     return dict(
         sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].drawn), each[0]))
     )

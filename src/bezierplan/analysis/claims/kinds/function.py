@@ -38,9 +38,7 @@ if TYPE_CHECKING:
 
 
 class Options(Check):
-    name: Function = Field(
-        description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`"
-    )
+    name: Function = Field(description="the name of a function of the study's `functions.py`")
     arguments: Arguments = Field({}, description=ARGUMENTS)
     effect: Line = Field(description="what its effect measures, in words")
     effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")

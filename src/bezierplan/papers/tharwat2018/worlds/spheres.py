@@ -1,7 +1,7 @@
 """Spheres in a box: three dimensions, which only panels of kind `spheres` show."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -16,6 +16,8 @@ BOUNDS = "[x low, x high, y low, y high, z low, z high]"
 
 class Options(Workspace):
     """Keys of a workspace."""
+
+    planar: ClassVar[bool] = False
 
     bounds: Annotated[list[Number], of_length(6, BOUNDS)] = Field(description=BOUNDS)
     spheres: list[Annotated[list[Number], of_length(4, "[x, y, z, radius]")]] = Field(

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bezierplan.figures.panels import Note, landscape
-from bezierplan.figures.panels.landscape import Options as Options
-from bezierplan.figures.panels.landscape import data as data
+from bezierplan.figures.panels import Note
+from bezierplan.papers.tharwat2018.panels import landscape
+from bezierplan.papers.tharwat2018.panels.landscape import data as data
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 # The kind of axes that a panel needs.
 PROJECTION = "3d"
+
+
+class Options(landscape.Options):
+    """Those of a landscape."""
 
 
 def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

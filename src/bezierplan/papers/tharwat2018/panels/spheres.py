@@ -47,7 +47,7 @@ Place = Annotated[list[Number], of_length(3, "[x, y, z]")]
 
 
 class Options(Panel):
-    plans: ClassVar[bool] = True
+    plans: ClassVar[str] = PLANNER
 
     workspace: Described = Field(description="the name of a workspace of kind `spheres`")
     start: Place = Field(description="[x, y, z] in units")
@@ -69,6 +69,10 @@ class Options(Panel):
     def source(self, sources: Sources) -> tuple[Spheres, str]:
         """The workspace, and the name of the study."""
         return sources.workspaces[self.workspace], sources.study
+
+    def check(self, workspace: Spheres) -> None:
+        """Raise ValueError unless start and target are free."""
+        problem(workspace, self.start, self.target)
 
 
 def problem(workspace: Spheres, start: list[float], target: list[float]) -> Problem:

@@ -1,21 +1,15 @@
-"""ma2020: its drawings, quantities computed from its printed numbers alone, the claim about
-curvature, and its audit.
-"""
+"""ma2020: quantities computed from its printed numbers alone, and the claim about curvature."""
 
 import math
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.analysis.claims.material import Untestable
-from bezierplan.analysis.measures import obstacle_clearance
-from bezierplan.analysis.papers import rules
-from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import path_of, pick, select
 from bezierplan.geometry import curves
+from bezierplan.papers.ma2020.metrics import obstacle_clearance
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
@@ -106,7 +100,7 @@ def lattice_lengths(published: "Published") -> pd.DataFrame:
     distance (cells), chance (the probability that a random length is as near, over the lattice
     methods' printed range of this statistic, in whole cells), met.
     """
-    side = _side(published)
+    side = side_of_maps(published)
     lengths = pd.concat([published["table1"], published["table2"]])
     lengths = lengths[(lengths["metric"] == "length") & (lengths["statistic"] != "mean")]
     rows = []
@@ -168,75 +162,7 @@ def _least_speed(pieces: np.ndarray) -> float:
     return float(speed.min() / speed.max())
 
 
-def audit(published: "Published") -> list[dict]:
-    """Printed numbers that are impossible, or contradict others.
-
-    If the four lattice methods plan on cells, each of their shortest and longest paths has the
-    length of an 8-connected path: all minima do, the maxima do not. No path is shorter than the
-    straight line. Shares of occupied cells are whole numbers of cells. Statements in the text about
-    lengths and times are checked against the tables, that on the parameter of a curve and equation
-    (11) by computing.
-    """
-    parts = (_audit_lengths, rules.audit, _audit_text)
-    return [row for part in parts for row in part(published)]
-
-
-def _audit_lengths(published: "Published") -> Iterator[dict]:
-    side = _side(published)
-    rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
-    for name in ("table1", "table2"):
-        cells = published[name].query("metric == 'length' and statistic != 'mean'")
-        for cell in cells[cells["method"].isin(LATTICE_METHODS)].itertuples():
-            location = f"method={cell.method}, metric=length, statistic={cell.statistic}"
-            straight, diagonal = nearest_lattice_length(cell.value, side)
-            nearest = straight + diagonal * math.sqrt(2)
-            fits = abs(cell.value - nearest) <= LATTICE_TOLERANCE
-            yield checked(name, location, rule, cell.value, nearest, fits)
-
-
-def _audit_text(published: "Published") -> Iterator[dict]:
-    side = _side(published)
-    parameters = published["parameters"].set_index(["workspace", "parameter"])["value"]
-    rule = "a share of the cells is a whole number of cells"
-    for workspace in ("environment1", "environment2"):
-        share = parameters[workspace, "obstacle_coverage"] / 100
-        cells = share * parameters[workspace, "grid_size"] ** 2
-        whole = round(cells)
-        location = f"workspace={workspace}"
-        yield checked("parameters", location, rule, cells, whole, bool(abs(cells - whole) < 1e-9))
-    # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
-    heights = side + np.arange(1, side * side + 1) // side + 0.5
-    rule = (
-        "equation (11) gives the heights of the cells' centres: cells whose height lies on the map"
-    )
-    inside = int((heights < side).sum())
-    yield compared("text", "3.2, equation (11)", rule, inside, "==", side * side)
-    # By equation (13) the fitness of a free path is its length, and by equation (15) its chance of
-    # being selected grows with that.
-    rule = (
-        "the shorter of two free paths is selected more often: fitness of the straight path, and "
-        "of one along two sides of the map"
-    )
-    shorter, longer = side * math.sqrt(2), 2.0 * side
-    yield compared("text", "3.3, equations (12) and (15)", rule, shorter, ">", longer)
-    # One curve refutes a sentence about all: its points lie on a line, two of them at the start.
-    text = published["text_values"].set_index("quantity")["value"]
-    quarter = float(text["t of a quarter of the path"])
-    share = float(curves.bernstein(2, np.array([quarter]))[0] @ np.array([0.0, 0.0, 1.0]))
-    rule = (
-        f"a curve is a quarter of the way along at t = {quarter:g}: share of the way of the curve "
-        "with control points at 0, 0 and 1"
-    )
-    location = "2, equation (1)"
-    yield checked("text", location, rule, quarter, share, abs(share - quarter) < 1e-9)
-    listed = int((published["parameters"]["parameter"] == "control_points").sum())
-    rule = (
-        "Data Availability: all required parameters are listed, here: the number of control points"
-    )
-    yield compared("text", "Data Availability", rule, listed, ">=", 1)
-
-
-def _side(published: "Published") -> int:
+def side_of_maps(published: "Published") -> int:
     """Cells of both maps along x and along y, as printed: those from start to target."""
     parameters = published["parameters"]
     (side,) = parameters.loc[parameters["parameter"] == "grid_size", "value"].unique()

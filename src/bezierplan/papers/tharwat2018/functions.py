@@ -12,8 +12,6 @@ import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE, interval
-from bezierplan.analysis.papers.drawings import marks as marks
-from bezierplan.analysis.papers.rules import audit as audit
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps

@@ -1,23 +1,19 @@
-"""elhoseny2017: the worked example of the Q statistic, claims about printed numbers, an audit of
-its tables and text, the obstacle radius that fits the printed lengths, and its drawings.
+"""elhoseny2017: the worked example of the Q statistic, claims about printed numbers, and the
+obstacle radius that fits the printed lengths.
 
 Numbers of equations, sections, tables and figures are the paper's.
 """
 
 import itertools
-from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.audit_rows import checked, compared
-from bezierplan.analysis.papers import rules
-from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.results import select
 from bezierplan.geometry.cell_length import DIAGONAL
-from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
+from bezierplan.planners.parts.diversity import q_of_rows
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
@@ -107,93 +103,6 @@ def printed_over_bound(check: "Check", results: "Experiments", published: "Publi
     return "+" if all(explained) else "-", float(max(ratios)), None, fields
 
 
-def audit(published: "Published") -> list[dict]:
-    """Printed numbers that contradict the text, other tables or the rule for counting lengths.
-
-    A straight diagonal counts 1.5 cells per cell of the side, the minimum for a path between
-    opposite corners; a path that never turns back counts at most 2. Sentences of Section 4.6 are
-    checked against the tables: PRM the longest, the proposed method cheaper than all others in all
-    cases. Two tables print times for methods of the same name. Section 3.3.1 counts pairs of its
-    example, in Section 3.3 eta decreases linearly to 0 and then accepts more, and in Section 2.2.2
-    any mutation leaves the subspace of a crossover.
-    """
-    parts = (rules.audit, _audit_example, _audit_text, _growth)
-    return [row for part in parts for row in part(published)]
-
-
-def _audit_example(published: "Published") -> Iterator[dict]:
-    printed, genes = said(published), solutions(published)
-    in_text = {name: int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")}
-    rule = "the text counts as it defines"
-    for name, counted in counts(genes["S1"], genes["S2"]).items():
-        yield compared("table1", f"S1, S2: {name}", rule, in_text[name], "==", counted)
-    rule, q = "Q of the counts in the text is the printed one", q_statistic(*in_text.values())
-    yield compared("table1", "S1, S2: Q", rule, printed["Q of S1 and S2"], "==", q)
-
-
-def _audit_text(published: "Published") -> Iterator[dict]:
-    printed = said(published)
-    eta, decay, iterations = printed["eta"], printed["decay of eta"], int(printed["iterations"])
-    last = eta * decay**iterations
-    rule = f"eta decreases to 0 over the {iterations} iterations"
-    yield checked("text", "3.3, 4.2.2", rule, 0.0, round(last, 4), last < 0.005)
-    half = eta * (1 - decay ** (iterations // 2)) / (eta - last)
-    rule = "eta decreases linearly: half of the way in half of the iterations"
-    yield checked("text", "3.3, 4.2.2", rule, 0.5, round(half, 4), abs(half - 0.5) < 0.005)
-    rule = (
-        "3.3: as eta falls, more similar solutions are accepted, though theirs is a Q of at "
-        "most eta: eta after an iteration"
-    )
-    yield compared("text", "3.3", rule, eta * decay, ">=", eta)
-    # A crossover keeps the digits that both parents have.
-    digits, shared = int(printed["digits of A"]), int(printed["digits of A that B has too"])
-    rule = (
-        "2.2.2: a change of any digit of A leaves the subspace of its crossover with B: digits "
-        "of which that is true"
-    )
-    yield compared("text", "2.2.2", rule, digits, "==", shared)
-    # A table of drives would say how fast the obstacles are.
-    drives = sum(not {"speed", "moment"}.isdisjoint(table) for table in published.values())
-    rule = "the title speaks of a dynamic field: some table has obstacles that move"
-    yield compared("text", "title", rule, drives, ">=", 1)
-
-
-def _growth(published: "Published") -> Iterator[dict]:
-    """Rows of the audit: do the printed lengths of the proposed method grow with the obstacles as
-    the counting rule has it?
-
-    A path counts 1.5 cells for each of the side along a free diagonal, else 2, so a mean says how
-    many diagonals were blocked.
-    """
-    from scipy import stats
-
-    printed, fields = _printed_lengths(published), int(published["table2"]["n"].iloc[0])
-    blocked = fields * (printed["value"] / printed["side"] - DIAGONAL) / (2 - DIAGONAL)
-    whole = int(np.isclose(blocked, blocked.round()).sum())
-    blocked_cells, tried = (
-        each.groupby(printed["obstacles"]).sum() for each in (blocked, 0 * blocked + fields)
-    )
-    radius = radius_errors(published).groupby("radius")["relative_error"].mean().idxmin()
-    share = (expected_length(1, radius, blocked_cells.index.to_numpy()) - DIAGONAL) / (2 - DIAGONAL)
-    rule = (
-        f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how "
-        "many of the printed can be such"
-    )
-    location = "table2, table3", "method=mga"
-    yield compared(*location, rule, whole, "==", len(printed))
-    # The radius is fitted to these lengths.
-    freedom = len(blocked_cells) - 1
-    chi_square, limit = (
-        ((blocked_cells - tried * share) ** 2 / (tried * share * (1 - share))).sum(),
-        stats.chi2.ppf(0.95, freedom),
-    )
-    rule = (
-        f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} "
-        "degrees of freedom) and its limit at 5 %"
-    )
-    yield checked(*location, rule, round(chi_square, 1), round(limit, 1), bool(chi_square <= limit))
-
-
 # --------------------------------------------------------------------------------------------------
 # The radius of the obstacles, which the paper does not state, inferred from its lengths
 
@@ -216,7 +125,7 @@ def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np
     return side * (2 - (2 - DIAGONAL) * free)
 
 
-def _printed_lengths(published: "Published") -> pd.DataFrame:
+def printed_lengths(published: "Published") -> pd.DataFrame:
     """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value,
     in cells.
     """
@@ -241,15 +150,15 @@ def radius_fit(published: "Published", *, radii: list[float]) -> pd.DataFrame:
     The last rows have the radius with the least error (relative to the mean length, averaged over
     both sides), in steps of a thousandth of the side.
     """
-    printed = _printed_lengths(published)
+    printed = printed_lengths(published)
     errors = radius_errors(published).groupby("radius")["relative_error"].mean()
     best = float(errors.idxmin())
     numbers = sorted(printed["obstacles"].unique())
     rows = []
     for (side, route), own in printed.groupby(["side", "route"]):
         lengths = own.set_index("obstacles")["value"]
-        printed_lengths = {f"{n} obstacles": lengths[n] for n in numbers}
-        rows.append({"lengths": f"printed, {route}", "side": side, **printed_lengths})
+        lengths_printed = {f"{n} obstacles": lengths[n] for n in numbers}
+        rows.append({"lengths": f"printed, {route}", "side": side, **lengths_printed})
     for name, radius in [("expected", radius) for radius in radii] + [("least error", best)]:
         for side in _sides(published).values():
             cells, share = _errors(printed, side, radius)
@@ -273,7 +182,7 @@ def radius_lengths(published: "Published", *, radii: list[float]) -> pd.DataFram
     """Printed and expected lengths against the number of obstacles; columns: side, lengths (which),
     obstacles, cells4 (in cells).
     """
-    printed = _printed_lengths(published).rename(columns={"value": "cells4"})
+    printed = printed_lengths(published).rename(columns={"value": "cells4"})
     printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
     counts = np.arange(printed["obstacles"].min(), printed["obstacles"].max() + 1)
     expected = [
@@ -290,7 +199,7 @@ def radius_errors(published: "Published") -> pd.DataFrame:
     """The error of the expected lengths against the radius; columns: radius (a share of the side),
     side, relative_error.
     """
-    printed = _printed_lengths(published)
+    printed = printed_lengths(published)
     rows = [
         (thousandths / 1000, side, _errors(printed, side, thousandths / 1000)[1])
         for side in _sides(published).values()

@@ -1,7 +1,6 @@
-"""meledje: the drawings of its Figures 2 to 4, and an audit of its Tables 2 to 5.
+"""meledje: an audit of its Tables 2 to 5.
 
-Numbers of equations, sections, tables and figures are the paper's. Drawings use the operators of
-the planner itself.
+Numbers of equations, sections, tables and figures are the paper's.
 """
 
 import itertools
@@ -10,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis import rules
 from bezierplan.analysis.audit_rows import checked, compared
-from bezierplan.analysis.papers import rules
-from bezierplan.analysis.papers.drawings import marks as marks
 from bezierplan.analysis.statistics import holm
 
 if TYPE_CHECKING:

@@ -1,0 +1,41 @@
+"""The code of a study: metrics, functions and an audit of its own (`machine.modules`)."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import pandas as pd
+
+from bezierplan.analysis import drawings, rules
+from bezierplan.analysis import metrics as metrics  # whose names no study declares anew
+from bezierplan.machine.modules import module
+
+
+def part(name: str) -> str:
+    """What a module of a study is: `metrics`, `functions` and so on."""
+    return name.removesuffix(".py").replace("/", ".").rpartition(".")[2]
+
+
+def functions(code: Iterable[str]) -> dict[str, Callable[..., Any]]:
+    """Load the code of a study, so that its metrics are known; its functions by name, with those
+    that every study has.
+    """
+    loaded = {part(name): module(name) for name in code}
+    return {"marks": drawings.marks} | public(loaded.get("functions"))
+
+
+def audit(code: Iterable[str]) -> Callable[[dict[str, pd.DataFrame]], list[dict]]:
+    """The audit of a study's printed numbers: its own, or the rules that its
+    file lists."""
+    own = [name for name in code if part(name) == "audit"]
+    if own:
+        return module(own[0]).audit
+    return lambda published: rules.audit(published) if "rules" in published else []
+
+
+def public(of: Any) -> dict[str, Callable[..., Any]]:
+    """The public functions of a module by name; none of none."""
+    return {
+        name: value
+        for name, value in (vars(of) if of else {}).items()
+        if callable(value) and not name.startswith("_")
+    }

@@ -1,0 +1,76 @@
+"""Modules by name: those of this package, and files of users; and the code of a study."""
+
+import importlib
+import importlib.util
+import sys
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+from bezierplan.places import PACKAGE
+
+PARTS = ("metrics", "worlds", "functions", "panels", "audit")
+"""Files of code, without `.py`, that the folder of a study may have."""
+
+
+def is_file(name: str) -> bool:
+    """Whether a module is given as the path of a user's file, and not as a name in this package."""
+    return name.endswith(".py")
+
+
+@cache
+def module(name: str) -> ModuleType:
+    """A module: `bezierplan.a.b` of this package, or `folder/name.py`, a user's file, which can
+    import the modules next to it at the top of the file.
+
+    Raises ModuleNotFoundError or FileNotFoundError if there is none.
+    """
+    if not is_file(name):
+        return importlib.import_module(name)
+    file = Path(name).resolve()
+    # Modules know themselves by name, such as those that numba or pickle keep parts of; this one is
+    # no library's.
+    own = f"study_{file.stem}"
+    spec = importlib.util.spec_from_file_location(own, name)
+    made = importlib.util.module_from_spec(spec)
+    known = {*sys.modules, own}
+    sys.path.append(str(file.parent))  # last, so that no user file shadows a library
+    sys.modules[own] = made
+    try:
+        spec.loader.exec_module(made)
+    except BaseException:
+        sys.modules.pop(own, None)  # whatever the file has done before it failed
+        raise
+    finally:
+        sys.path.remove(str(file.parent))
+        # Files of another study may have modules of the same name next to them.
+        beside = {each.stem for each in file.parent.iterdir()}
+        for each in [each for each in sys.modules.keys() - known if each.split(".")[0] in beside]:
+            del sys.modules[each]
+    return made
+
+
+def code_of(study: str, folder: str) -> dict[str, str]:
+    """The code of a study, as names for `module`, by its part of `PARTS`: files of its folder, or
+    for a paper of this project modules of `bezierplan.papers`.
+    """
+    ours = PACKAGE / "papers" / study
+    places = {f"{part}.py": part for part in PARTS}
+    if ours.is_dir():
+        dotted = f"{PACKAGE.name}.papers.{study}"
+        return {part: f"{dotted}.{part}" for name, part in places.items() if (ours / name).exists()}
+    return {
+        part: f"{folder}/{name}" for name, part in places.items() if Path(folder, name).exists()
+    }
+
+
+@cache
+def kinds_in(folder: str, part: str) -> dict[str, str]:
+    """Name -> module, of one file per kind: those of a folder of this package, and those that the
+    folders `part` of its papers hold.
+    """
+    files = [*(PACKAGE / folder).glob("[!_]*.py"), *PACKAGE.glob(f"papers/*/{part}/[!_]*.py")]
+    return {
+        file.stem: ".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts)
+        for file in sorted(files, key=lambda file: file.stem)
+    }

@@ -1,0 +1,1 @@
+"""Code of elhoseny2017 alone."""

@@ -1,0 +1,178 @@
+"""Metrics of elhoseny2017 alone."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezierplan.analysis.measures import deviation, free_cells, headings, held_history, samples_of
+from bezierplan.analysis.metric import (
+    Metric,
+    metric,
+    of_path,
+    on_maps,
+    register,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from bezierplan.workspaces.problem import Path, Problem
+
+# Approximate length, in units, of the parts by which a path's bending is measured, and samples of a
+# curved piece from which they are cut.
+BENDING_PART = 0.1
+BENDING_SAMPLES = 64
+
+
+def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
+    """A path as steps (n, 2) between points at equal arc-length spacing, and that spacing, close to
+    `BENDING_PART`.
+    """
+    from bezierplan.geometry import curves
+
+    points = path.points
+    if path.curve != "polyline":
+        count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
+        points = samples_of(path, count)
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    parts = max(2, round(at[-1] / BENDING_PART))
+    wanted = np.linspace(0.0, at[-1], parts + 1)
+    return np.diff(
+        np.column_stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)]), axis=0
+    ), at[-1] / parts
+
+
+@of_path(
+    "rad²/u",
+    f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all "
+    "added: the integral of squared curvature",
+)
+def bending(path: Path) -> float:
+    """Integral of squared curvature, from parts of about `BENDING_PART`, in radians^2/unit."""
+    steps, length = _equal_parts(path)
+    return float((headings(steps) ** 2).sum() / length) if length else 0.0
+
+
+@of_path("degrees", f"largest change of heading between parts of {BENDING_PART:g} u")
+def max_turn(path: Path) -> float:
+    """Largest change of heading between parts of about `BENDING_PART`, in degrees."""
+    return float(np.degrees(headings(_equal_parts(path)[0]).max(initial=0.0)))
+
+
+@metric(
+    "-",
+    "whether the straight line from start to target touches an occupied cell",
+    step=1.0,
+    on=("grid",),
+)
+def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied
+    cell.
+    """
+    from bezierplan.workspaces.problem import Path
+
+    blocked = {}
+    for name in runs["problem"].unique():
+        line = Path("polyline", np.array([problems[name].start, problems[name].target]))
+        blocked[name] = free_cells(line, problems[name].workspace) is None
+    return runs["problem"].map(blocked)
+
+
+def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies
+    below its problem's bound.
+
+    NaN for a path that touches an occupied cell: it is free, but along an obstacle's side rounding
+    would decide which cells it counts, and the bound is that of free cells.
+    """
+    from bezierplan.geometry import cell_length
+
+    count = getattr(cell_length, name)
+    lengths = on_maps(
+        lambda path, grid: np.nan if free_cells(path, grid) is None else count(path, grid),
+        runs,
+        problems,
+    )
+    for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
+        if length < bound * (1 - 1e-12):
+            raise ValueError(
+                f"run {run} is said to be feasible, but its length {length:.12g} in cells lies "
+                f"below the bound {bound:.12g}"
+            )
+    return lengths
+
+
+def gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """A length counted in cells over the problem's least such length, minus 1 (n,)."""
+    return length_in_cells(name, runs, problems) / runs["octile_bound"] - 1
+
+
+# Lengths counted in cells have their own bound and gap.
+_CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
+_CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
+
+
+register(
+    {
+        "cells4": Metric(
+            "u",
+            "cells that the path touches, 1.5 for a diagonal step; "
+            "none for a path that touches an occupied cell",
+            partial(length_in_cells, "length4"),
+            feasible_only=True,
+            least="octile_bound",
+            **_CELLS4,
+            on=("grid",),
+        ),
+        "cells8": Metric(
+            "u",
+            "cells4 without the corners of the sequence of cells",
+            partial(length_in_cells, "length8"),
+            feasible_only=True,
+            least="octile_bound",
+            **_CELLS8,
+            on=("grid",),
+        ),
+        "octile_bound": Metric(
+            "u", "least length of a path of free cells, 1.5 for a diagonal step", on=("grid",)
+        ),
+        "gap4": Metric(
+            "-",
+            "cells4 / octile_bound - 1",
+            partial(gap_cells, "length4"),
+            feasible_only=True,
+            least=0.0,
+            **_CELLS4,
+            on=("grid",),
+        ),
+        "gap8": Metric(
+            "-",
+            "cells8 / octile_bound - 1",
+            partial(gap_cells, "length8"),
+            feasible_only=True,
+            least=0.0,
+            **_CELLS8,
+            on=("grid",),
+        ),
+        "history_mean": Metric(
+            "u",
+            "mean over the generations of the best objective so far",
+            lambda runs, _: held_history(runs).mean(axis=1),
+        ),
+        "work_deviation": Metric(
+            "-",
+            "absolute deviation of the evaluations from the "
+            "median of their condition and method, relative",
+            partial(deviation, "evaluations"),
+        ),
+        "distinct_chromosomes": Metric(
+            "-", "different chromosomes in the population, mean over the generations"
+        ),
+        "population_q": Metric(
+            "-", "mean Q statistic of the surviving population, mean over the generations"
+        ),
+    }
+)

@@ -1,0 +1,1 @@
+"""Kinds of workspace of elhoseny2017 alone (`workspaces.kinds`)."""

@@ -1,0 +1,1 @@
+"""Code of ma2020 alone."""

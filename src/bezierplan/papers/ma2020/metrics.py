@@ -1,0 +1,148 @@
+"""Metrics of ma2020 alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bezierplan.analysis.measures import CORNER, headings, path_headings
+from bezierplan.analysis.metric import (
+    metric,
+    of_path,
+    of_paths,
+    on_map,
+)
+from bezierplan.workspaces.grid import Grid
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from shapely import Geometry
+
+    from bezierplan.workspaces.problem import Path, Problem
+
+
+@of_path("rad", "largest change of heading between neighbouring chords")
+def heading_max(path: Path) -> float:
+    """Largest change of heading between neighbouring chords, in radians."""
+    return float(path_headings(path).max(initial=0.0))
+
+
+@on_map(
+    "-",
+    "corners of a polyline that can be left out, because a free leg joins the corners before "
+    "and after; none for a curve",
+    "grid",
+    step=1.0,
+)
+def spare_corners(path: Path, grid: Grid) -> float:
+    """Corners of a polyline that can be left out: a straight leg that enters no occupied cell joins
+    the corners before and after. NaN for a curve.
+    """
+    import shapely
+
+    if path.curve != "polyline":
+        return np.nan
+    steps = np.diff(path.points, axis=0)
+    moved = np.hypot(*steps.T) > 0
+    places, turned = path.points[1:][moved], headings(steps[moved])
+    turns = np.concatenate([path.points[:1], places[:-1][turned > CORNER], places[-1:]])
+    legs = shapely.linestrings(np.stack([turns[:-2], turns[2:]], axis=1))
+    inside = _inside(*_hashable(grid))
+    return float((~shapely.intersects(inside, legs)).sum())
+
+
+def _hashable(grid: Grid) -> tuple[bytes, int, float, tuple[float, float]]:
+    """What a grid is made from (`_grid`)."""
+    return grid.occupied.tobytes(), grid.occupied.shape[1], grid.cell, grid.origin
+
+
+def _grid(occupied: bytes, columns: int, cell: float, origin: tuple[float, float]) -> Grid:
+    return Grid(np.frombuffer(occupied, dtype=bool).reshape(-1, columns), cell, "", origin)
+
+
+@lru_cache(maxsize=8)
+def _inside(*made_from: Any) -> Geometry:
+    """What a path must not enter: the occupied cells of a grid, a billionth of a cell smaller,
+    since a path may touch them.
+    """
+    import shapely
+
+    grid = _grid(*made_from)
+    rows, columns = np.nonzero(grid.occupied)
+    x, y = grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows
+    whole = shapely.union_all(shapely.box(x, y, x + grid.cell, y + grid.cell))
+    inner = whole.buffer(-1e-9 * grid.cell)
+    shapely.prepare(inner)
+    return inner
+
+
+@metric(
+    "u",
+    "least distance to the occupied cells of a grid, its border not counted",
+    feasible_only=True,
+    on=("grid",),
+)
+def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are
+    none.
+    """
+    names = runs["problem"].unique()
+    measures = {name: _clearance_in(*_hashable(problems[name].workspace)) for name in names}
+    return of_paths(runs["problem"].map(measures), runs)
+
+
+@cache
+def _clearance_in(*made_from: Any) -> Callable[[Path], float]:
+    """The smallest distance of a free path to the occupied cells of a grid, as a measure of the
+    path.
+
+    This is the checker's clearance, which counts the border, in the same grid padded with free
+    cells so that the border is farthest.
+    """
+    from bezierplan.geometry import checker, curves
+    from bezierplan.geometry.region import region
+
+    grid = _grid(*made_from)
+    margin = sum(grid.occupied.shape)
+    wide = region(Grid(np.pad(grid.occupied, margin), grid.cell, ""))
+
+    def clearance(path: Path) -> float:
+        moved = path._replace(points=(grid.in_cells(path.points) + margin) * grid.cell)
+        return (
+            checker.check(curves.bezier_pieces(moved), wide).clearance
+            if grid.occupied.any()
+            else np.inf
+        )
+
+    return clearance
+
+
+@metric(
+    "-",
+    "whether the planner's safety distance from the occupied cells is kept",
+    feasible_only=True,
+    step=1.0,
+    needs=("safety_distance",),
+    on=("grid",),
+)
+def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a path keeps its planner's safety distance from the obstacles; NaN where the
+    planner has none.
+    """
+    kept = np.array(obstacle_clearance(runs, problems)) >= runs["safety_distance"]
+    return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
+
+
+@metric(
+    "u",
+    "length of a path that keeps the planner's safety distance",
+    feasible_only=True,
+    needs=("safety_distance",),
+    on=("grid",),
+)
+def length_at_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Lengths (n,) of the paths that keep their planner's safety distance; NaN of all others."""
+    return runs["length"].where(keeps_distance(runs, problems) == 1).to_numpy()

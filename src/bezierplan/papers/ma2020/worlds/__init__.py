@@ -1,0 +1,1 @@
+"""Kinds of workspace of ma2020 alone (`workspaces.kinds`)."""

@@ -1,0 +1,37 @@
+"""Metrics of meledje alone."""
+
+from __future__ import annotations
+
+from bezierplan.analysis.measures import held_history
+from bezierplan.analysis.metric import (
+    Metric,
+    count,
+    register,
+)
+
+register(
+    {
+        "objective_best": Metric(
+            "u",
+            "lowest objective of any generation",
+            lambda runs, _: held_history(runs).min(axis=1),
+        ),
+        "near_optimal": count(
+            "whether the final path is feasible but not optimal, by the planner's own test"
+        ),
+        "feasible_last": Metric("-", "share of feasible paths in the last population"),
+        "made_infeasible": Metric(
+            "-", "share of the mutated feasible paths that mutation made infeasible"
+        ),
+        "node_diversity": Metric(
+            "-",
+            "mean over generations of the chance that a path's inner node is no node of another",
+        ),
+        "last_plan": Metric("u", "length of the last plan", least=0.0),
+        "last_optimum": Metric(
+            "u",
+            "least length of a last plan from cell centre to cell centre, from where the robot was",
+            least=0.0,
+        ),
+    }
+)

@@ -1,0 +1,1 @@
+"""Kinds of workspace of meledje alone (`workspaces.kinds`)."""

@@ -1,0 +1,1 @@
+"""Code of song2016 alone."""

@@ -1,0 +1,1 @@
+"""Code of tharwat2018 alone."""

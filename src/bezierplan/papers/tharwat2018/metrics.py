@@ -1,0 +1,133 @@
+"""Metrics of tharwat2018 alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezierplan.analysis.measures import samples_of
+from bezierplan.analysis.metric import (
+    Metric,
+    count,
+    metric,
+    on_map,
+    on_maps,
+    register,
+)
+from bezierplan.workspaces.circles import Circles
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from bezierplan.workspaces.problem import Path, Problem, Workspace
+
+# A value this many interquartile ranges beyond its quartile is an outlier in a box plot.
+_OUTLIER_REACH = 1.5
+# Samples of a path that determine its way round the circles.
+CLASS_SAMPLES = 2001
+
+
+@metric("-", "whether the objective lies beyond the whiskers of its method's box", step=1.0)
+def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a run's objective lies beyond the whiskers of the box of its method under its
+    condition.
+    """
+    grouped = runs.groupby(["condition", "method"], dropna=False)["objective"]
+    first, third = (
+        grouped.transform(lambda each: each.quantile(0.25)),
+        grouped.transform(lambda each: each.quantile(0.75)),
+    )
+    reach = _OUTLIER_REACH * (third - first)
+    return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
+
+
+def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
+    """On which side a polyline (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1,
+    ... that it leaves to its left.
+
+    A circle lies to the left if the angle swept by the polyline about its centre is positive. This
+    distinguishes classes if no polyline winds round a circle and all have the same ends. NaN
+    without points or in a workspace of another kind.
+    """
+    if not len(points) or not isinstance(workspace, Circles):
+        return np.nan
+    x, y = np.ascontiguousarray(points.T)[:, None] - workspace.centres.T[:, :, None]
+    angles = np.arctan2(y[:, [0, -1]], x[:, [0, -1]])
+    # Where the polyline crosses the ray to the left of the centre, its angle jumps from pi to -pi,
+    # or back.
+    leftward = x[:, :-1] * y[:, 1:] > y[:, :-1] * x[:, 1:]
+    above = y >= 0
+    rounds = (above[:, :-1] & ~above[:, 1:] & leftward).sum(axis=1) - (
+        ~above[:, :-1] & above[:, 1:] & ~leftward
+    ).sum(axis=1)
+    swept = angles[:, 1] - angles[:, 0] + 2 * np.pi * rounds
+    return float((2.0 ** np.arange(len(workspace.centres)))[swept > 0].sum())
+
+
+@on_map(
+    "-",
+    "class of the path: the sum of 2^k over the circles k that it leaves to its left",
+    "circles",
+    step=1.0,
+)
+def homotopy(path: Path, workspace: Workspace) -> float:
+    """The homotopy class of a path."""
+    return homotopy_class(samples_of(path, CLASS_SAMPLES), workspace)
+
+
+@metric(
+    "-",
+    "whether the path is free and passes each circle where the shortest one does",
+    step=1.0,
+    on=("circles",),
+)
+def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; NaN
+    without circles.
+    """
+    best = {
+        problem: homotopy_class(
+            np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace
+        )
+        for problem, own in runs.groupby("problem")
+    }
+    best = runs["problem"].map(best).to_numpy()
+    return np.where(
+        np.isnan(best), np.nan, runs["feasible"] & (on_maps(homotopy, runs, problems) == best)
+    )
+
+
+@metric("-", "control points of all paths evaluated", step=1.0, least=0.0)
+def points_evaluated(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Control points (n,) of all paths evaluated, each counted with as many as the run's path has;
+    NaN where the run has no path.
+    """
+    points = runs["path_points"].map(len) / 2
+    return (runs["evaluations"] * points.where(points > 0)).to_numpy()
+
+
+register(
+    {
+        "violation": Metric(
+            "-",
+            "mean depth of the samples below the circles, as a share of the radius, "
+            "summed over circles",
+        ),
+        "collisions_a": Metric(
+            "particles",
+            "colliding particles per iteration, of 20, the first swarm included",
+            least=0.0,
+            most=20.0,
+        ),
+        "collisions_b": Metric(
+            "samples", "colliding samples per evaluated path, summed over circles"
+        ),
+        "collisions_c": Metric(
+            "samples", "colliding samples of the best path, added over iterations", step=1.0
+        ),
+        "collisions_d": Metric("iterations", "iterations whose best path collides", step=1.0),
+        "collisions_e": count("whether the final path collides, by the planner's own test"),
+        "collisions_f": count("paths evaluated that collide"),
+    }
+)

@@ -1,0 +1,1 @@
+"""Kinds of panel of tharwat2018 alone (`figures.panels`)."""

@@ -1,0 +1,1 @@
+"""Kinds of workspace of tharwat2018 alone (`workspaces.kinds`)."""
