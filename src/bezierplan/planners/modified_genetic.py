@@ -19,7 +19,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compiled, inlined
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import (
@@ -393,7 +393,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, r
     return filled, tried, invalid
 
 
-@allocation_free
+@inlined
 def _validated(ones, memory, field, rules, limit, scratch):
     """`validate`, without the work for a chromosome that has been there before, as most children
     have once the population is alike; limits never rise.
