@@ -8,6 +8,7 @@ also imported where only the names matter, so it imports pandas only when a valu
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -67,6 +68,11 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
             np.asarray(metric.compute(counted, problems), dtype=float), index=counted.index
         )
     return numbers.reindex(runs.index)
+
+
+def add_columns(names: Iterable[str]) -> None:
+    """Make metrics of columns that planners report and that are none yet."""
+    METRICS.update({name: METRICS[name] for name in names if name not in METRICS})
 
 
 def unit(name: str, workspace_unit: str) -> str:

@@ -32,6 +32,11 @@ def audit(code: Iterable[str]) -> Callable[[dict[str, pd.DataFrame]], list[dict]
     return lambda published: rules.audit(published) if "rules" in published else []
 
 
+def part_of(code: list[str]) -> dict[str, Callable[..., Any]]:
+    """The public functions of a module that a study may have, given as a list of one or none."""
+    return public(module(code[0]) if code else None)
+
+
 def public(of: Any) -> dict[str, Callable[..., Any]]:
     """The public functions of a module by name; none of none."""
     return {

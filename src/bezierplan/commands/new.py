@@ -7,13 +7,14 @@ from pathlib import Path
 import yaml
 
 from bezierplan.commands.arguments import Place
-from bezierplan.places import PACKAGE
+from bezierplan.places import PACKAGE, TREE
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.map_files import described
 
 TEMPLATE = PACKAGE / "template"
+EXAMPLE = TREE / "examples" / "bailey2015"
 
 
 def main(
@@ -22,6 +23,7 @@ def main(
     from_: Path | None = None,
     start: Place | None = None,
     target: Place | None = None,
+    example: bool = False,
 ) -> None:
     """Make the folder of a study. Raises Fault.
 
@@ -35,10 +37,13 @@ def main(
         where paths begin on that map, in its unit
     target : tuple of float, optional
         where they end
+    example : bool
+        a complete study of a paper, with code of each kind, in place of an empty one
 
     Examples
     --------
     new mystudy
+    new mystudy --example
     new mystudy --from map.yaml --start 1,1 --target 9,9
     """
     reading.check_name(folder.name, str(folder))
@@ -46,10 +51,14 @@ def main(
         raise Fault(f"{folder}: expected a new folder in one that exists")
     if len({from_ is None, start is None, target is None}) > 1:
         raise Fault("expected --from, --start and --target together: a map of your own")
+    if example and from_:
+        raise Fault("--example: has its own maps; expected it without --from")
     if from_:
         workspace = described(from_, cells=True)
         files.load(workspace, from_.parent)
-    shutil.copytree(TEMPLATE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        EXAMPLE if example else TEMPLATE, folder, ignore=shutil.ignore_patterns("__pycache__")
+    )
     _replace(folder / "README.md", "mystudy", folder.name)
     if from_:
         ends = {"start": list(start), "target": list(target)}

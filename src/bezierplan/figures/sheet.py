@@ -6,9 +6,9 @@ A kind of panel is a module of `figures.panels`, which says what each has.
 import math
 import string
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import pandas as pd
@@ -35,7 +35,7 @@ class Scene(NamedTuple):
 
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels:
     how names are printed. unit: name of the study's unit of length. looks: method -> the name of
-    its look (`style.LOOKS`).
+    its look (`style.LOOKS`). functions: those of the study that draw, by name.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -43,6 +43,7 @@ class Scene(NamedTuple):
     labels: dict[str, str]
     unit: str
     looks: Mapping[str, str] = MappingProxyType({})
+    functions: Mapping[str, Callable[..., Any]] = MappingProxyType({})
 
 
 def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:

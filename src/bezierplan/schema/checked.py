@@ -115,11 +115,14 @@ def parse(text: str, location: str) -> Any:
         raise Fault(f"{location}: not YAML ({str(error).splitlines()[0]})") from None
 
 
-def check_known(name: Any, known: Iterable[Any], location: str) -> None:
-    """Raise Fault, beginning with a location, for a name that is not among those known."""
+def check_known(name: Any, known: Iterable[Any], location: str, home: str = "") -> None:
+    """Raise Fault, beginning with a location, for a name that is not among those known. home: the
+    file of a study's folder in which it would stand.
+    """
     known = list(known)
     if name not in known:
-        raise Fault(f"{location}: {name}: unknown{closest(name, known)}")
+        where = f"; one of your own stands in {home} of the study's folder" if home else ""
+        raise Fault(f"{location}: {name}: unknown{closest(name, known)}{where}")
 
 
 def closest(word: Any, known: Iterable[Any]) -> str:

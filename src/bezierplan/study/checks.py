@@ -102,6 +102,11 @@ def _check_experiments(study: Study, location: str) -> None:
                 )
         lacking = study.accepted(name).keys() - study.resolved(name).keys()
         missing.setdefault(method.planner, {}).update(dict.fromkeys(sorted(lacking)))
+    metrics.add_columns(
+        column
+        for name in study.methods
+        for column in getattr(planner_module(study.planner(name)), "extra", ())
+    )
     used = {setting for name in study.methods for setting in study.accepted(name)}
     _check_shared_settings(study, used, location)
     for planner, names in missing.items():
@@ -117,6 +122,10 @@ def _check_experiments(study: Study, location: str) -> None:
         where = f"{location}: workspaces: {name}"
         for key, file in files_of(workspace).items():
             inside(study.folder, file, f"{where}: {key}: {file}")
+        if function := getattr(workspace, "function", None):
+            known = study_code.part_of(study.code_for("worlds"))
+            check_known(function, known, f"{where}: function", "worlds.py")
+            _check_arguments(known[function], workspace.arguments, f"{where}: arguments")
         if not workspace.drawn and not workspace.moves:
             _valid(where, files.load, workspace.plain(), study.folder)
     built = cache(partial(_built, study))
@@ -210,7 +219,7 @@ def _built(study: Study, name: str) -> Problem:
     described = Descriptions(
         study.key,
         {name: problem.plain("settings", "layouts") | drawn},
-        {problem.workspace: home.plain()},
+        {problem.workspace: study.described(problem.workspace)},
     )
     if home.moves:
         made, _ = worlds.build_all(described, study.folder)
@@ -295,6 +304,7 @@ def _check_names(
         "experiment": study.experiments,
         "workspace": study.workspaces,
         "function": functions,
+        "drawing": study_code.part_of(study.code_for("panels")),
         "statistic": statistics.STATISTICS,
         "compared": study.with_published(),
         "artefact": [*study.tables, *study.figures],
@@ -306,7 +316,8 @@ def _check_names(
     ]
     for where, _, what, name in names:
         if what in known:
-            check_known(name, known[what], where)
+            home = {"function": "functions.py", "drawing": "panels.py"}.get(what, "")
+            check_known(name, known[what], where, home)
     experiments = one_or_list(getattr(model, "experiment", None) or [])
     for where, path, what, name in names:
         if what == "published":

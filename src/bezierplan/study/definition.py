@@ -14,7 +14,14 @@ from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.running.inputs import PAPER, tree
 from bezierplan.study.artefacts import Figure
 from bezierplan.study.claims import Assumption
-from bezierplan.study.experiments import BaselineComparison, Experiment, Method, Policy, Problem
+from bezierplan.study.experiments import (
+    BaselineComparison,
+    Experiment,
+    Method,
+    Paper,
+    Policy,
+    Problem,
+)
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace, file_keys
 
@@ -32,6 +39,7 @@ class Study:
     key: str
     folder: Path
     title: str
+    paper: Paper | None
     methods: dict[str, Method]
     baselines: frozenset[str]
     settings: dict[str, Any]
@@ -202,6 +210,13 @@ class Study:
         return {
             name: method.variant_of for name, method in self.methods.items() if method.variant_of
         }
+
+    def described(self, workspace: str) -> dict[str, Any]:
+        """The description of a workspace as plain values, with the file of a function that draws
+        it.
+        """
+        plain = self.workspaces[workspace].plain()
+        return plain | {"file": self.code_for("worlds")[0]} if "function" in plain else plain
 
     def code_for(self, *parts: str) -> list[str]:
         """The modules of some parts of its code (`machine.modules`) that it has."""

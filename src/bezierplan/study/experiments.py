@@ -201,10 +201,24 @@ class BaselineComparison(Model):
     )
 
 
+class Paper(Model):
+    """The paper of a study."""
+
+    title: Line = Field(description="one line")
+    authors: listed(Line) = Field(description="a list of names")
+    year: Annotated[int, whole(1800, 2200)] = Field(description="a whole number")
+    journal: Line = Field(None, description="where it appeared")
+    doi: Line = Field(None, description="its DOI, such as 10.1609/aiide.v11i1.12808")
+    link: Line = Field(None, description="where it can be read")
+
+
 class ExperimentsFile(Model):
     """The file."""
 
     title: Line = Field(description="one line that names the study")
+    paper: Paper = Field(
+        None, description="the paper: title, authors, year, journal, doi, link; the page cites it"
+    )
     methods: dict[Name, Method] = Field(description="name → planner and settings", min_length=1)
     baselines: dict[Name, Method] = Field(
         {},

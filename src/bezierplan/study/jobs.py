@@ -100,15 +100,16 @@ def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
         for name, problem in study.problems_of(experiment, scale).items()
     }
     workspaces = {
-        name: study.workspaces[name].plain()
+        name: study.described(name)
         for name in sorted({problem["workspace"] for problem in problems.values()})
     }
     return Descriptions(study.key, problems, workspaces)
 
 
 def kinds_of_workspace(workspaces: dict[str, dict]) -> list[str]:
-    """Modules of the kinds of some workspaces."""
-    return [kind_of(each).__name__ for each in workspaces.values()]
+    """Modules of the kinds of some workspaces, and of functions that draw them."""
+    functions = [each["file"] for each in workspaces.values() if "function" in each]
+    return [*(kind_of(each).__name__ for each in workspaces.values()), *functions]
 
 
 @dataclass(frozen=True)
@@ -557,6 +558,8 @@ class Figure(Analysis):
         again = {panel.experiment for panel in spec.panels if panel.rerun}
         bare = workspaces_of_figure(content, figure)
         any_method = any(getattr(panel, "data", None) for panel in spec.panels)
+        own = {"functions": any_method, "panels": any(panel.kind == "own" for panel in spec.panels)}
+        parts = ["metrics", *(part for part, needed in own.items() if needed)]
         methods = {method for name in experiments for method in content.methods_of(name)}
         first = (
             content.problems[content.experiments[experiments[0]].problems[0]]
@@ -586,7 +589,7 @@ class Figure(Analysis):
             folder=relative(content.folder),
             sources=content_digest(*content.maps(bare), *content.published_drawn(figure)),
             shows=shown_by(content, figure, scale),
-            code=content.code_for("metrics", *(["functions"] if any_method else [])),
+            code=content.code_for(*parts),
         )
 
     def modules(self):
@@ -601,7 +604,7 @@ class Figure(Analysis):
 
     def run(self, input_files, output_files, threads):
         """Draw the figure from its data, which are first written and read back."""
-        from bezierplan.analysis import results
+        from bezierplan.analysis import results, study_code
         from bezierplan.figures import sheet
         from bezierplan.figures.panels import Sources
         from bezierplan.running import inputs
@@ -622,7 +625,10 @@ class Figure(Analysis):
             for name, described in self.workspaces.items()
         }
         problems = {name: runs.problems for name, runs in experiments.items()}
-        scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks)
+        drawings = study_code.part_of(
+            [name for name in self.code if study_code.part(name) == "panels"]
+        )
+        scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks, drawings)
         sources = Sources(experiments, workspaces, self.load(), published, self.study)
         sheet.write_data(sheet.data(self.panels, sources), output_files.data)
         figure = sheet.draw(

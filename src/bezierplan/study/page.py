@@ -198,7 +198,7 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
     }
     return StudyShown(
         title=study.title,
-        paper=_paper(study.key),
+        paper=_paper(study),
         labels=study.labels,
         methods={
             name: MethodShown(study.planner(name), study.resolved(name)) for name in study.methods
@@ -274,14 +274,17 @@ def _repeats(study: Study, scale: str) -> list[int]:
     return [min(counts), max(counts)] if counts else []
 
 
-def _paper(key: str) -> PaperCited | None:
-    """The paper of a study, as CITATION.cff cites it: its entry's notes begin with the study's
-    name. None for any other study.
+def _paper(study: Study) -> PaperCited | None:
+    """The paper of a study, as its files or CITATION.cff cite it, whose entry's notes begin with
+    the study's name. None without such.
     """
+    if paper := study.paper:
+        where = [", ".join(paper.authors), paper.journal, str(paper.year), paper.link]
+        return PaperCited(paper.title, ", ".join(filter(None, where)), paper.doi)
     file = TREE / "CITATION.cff"
     cited = checked.read(file)["references"] if file.is_file() else []
     entry = next(
-        (each for each in cited if each.get("notes", "").split(":")[0].strip() == key), None
+        (each for each in cited if each.get("notes", "").split(":")[0].strip() == study.key), None
     )
     if entry is None:
         return None

@@ -3,16 +3,28 @@ all methods and experiments.
 """
 
 import math
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field
 
+from bezierplan.schema.model import NotNegative, is_number, value
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Size, Workspace
-from bezierplan.workspaces.limits import check_bounds
+from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
+from bezierplan.workspaces.limits import SMALLEST_FEATURE, check_bounds
 from bezierplan.workspaces.random_field import MOST_DRAWS
 from bezierplan.workspaces.seeds import generator
+
+RADIUS = (
+    "the radius of every circle, a number of at least 1e-6, or [low, high], between which radii "
+    "are uniform"
+)
+
+
+def _is_radius(entry: Any) -> bool:
+    """Whether it is a radius, or two between which radii lie."""
+    ends = entry if isinstance(entry, list) else [entry, entry]
+    return len(ends) == 2 and all(map(is_number, ends)) and SMALLEST_FEATURE <= ends[0] <= ends[1]
 
 
 class Options(Workspace):
@@ -21,7 +33,10 @@ class Options(Workspace):
     drawn: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
+    radius: Annotated[Any, value(_is_radius, RADIUS)] = Field(description=RADIUS)
+    gap: NotNegative = Field(
+        0, description="the least distance of circles from start and target, in units"
+    )
     circles: CircleCount = Field(description=CIRCLES)
 
 
@@ -38,28 +53,30 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
 def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
     """One layout of a description with bounds, radius, circles (how many) and unit.
 
-    Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is redrawn
-    (tharwat2018, Section 5.6). name: that of study and workspace; number: that of the layout.
+    Centres are uniform within the bounds; a circle that comes nearer to an end, (x, y) in
+    units, than the gap is redrawn. name: that of study and workspace; number: that of the layout.
     Circles may overlap each other. Raises ValueError if no free place is found.
     """
     rng = generator(name, number)
     x_low, x_high, y_low, y_high = map(float, description["bounds"])
-    radius = float(description["radius"])
-    centres = []
+    given, gap = description["radius"], description.get("gap", 0)
+    centres, radii = [], []
     for _ in range(description["circles"]):
+        radius = float(rng.uniform(*given) if isinstance(given, list) else given)
         for _ in range(MOST_DRAWS):
             centre = rng.uniform((x_low, y_low), (x_high, y_high))
-            if all(math.dist(centre, end) > radius for end in ends):
+            if all(math.dist(centre, end) > radius + gap for end in ends):
                 break
         else:
             raise ValueError(
                 f"radius: {radius:g}: no circle leaves start and target free in {MOST_DRAWS} draws"
             )
         centres.append(centre)
+        radii.append(radius)
     return Circles(
         (x_low, x_high, y_low, y_high),
         np.array(centres),
-        np.full(len(centres), radius),
+        np.array(radii),
         description["unit"],
     )
 

@@ -1,0 +1,40 @@
+"""A panel that a function of a study's `panels.py` draws."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
+
+from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.schema.model import Metric, Name, Names, listed
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+class Options(RunsPanel):
+    function: Annotated[Name, Names("drawing")] = Field(
+        description="the name of a function of the study's `panels.py`, called with axes of "
+        "matplotlib and a table of the runs: method, problem, condition, repeat and metrics"
+    )
+    metrics: listed(Metric) = Field(description="a list of metrics, columns of that table")
+
+
+def data(results: Results, options: Options) -> pd.DataFrame:
+    """The table of the runs, one row each: method, problem, condition, repeat and the metrics."""
+    from bezierplan.analysis import metrics
+
+    runs = results.runs.sort_values("id")
+    values = {name: metrics.values(runs, name, results.problems) for name in options.metrics}
+    return (
+        runs[["method", "problem", "condition", "repeat"]].assign(**values).reset_index(drop=True)
+    )
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    """Let the function draw; what it returns, if it does, belongs into the caption."""
+    return Note("", scene.functions[options.function](axes, frame) or "")

@@ -1,0 +1,52 @@
+"""Workspaces that a function of a study's `worlds.py` draws, one for each layout."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from bezierplan.machine.modules import module
+from bezierplan.schema.model import ARGUMENTS, Arguments, Function
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.kinds import Workspace
+from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.seeds import generator
+
+TYPES = {"circles": Circles, "grid": Grid, "polygons": Polygons}
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    function: Function = Field(
+        description="the name of a function of the study's `worlds.py`, called with a random "
+        "generator and the problem: a mapping with `start`, `target`, `obstacles` and `layout`; it "
+        "returns a workspace"
+    )
+    sees: Literal["circles", "grid", "polygons"] = Field(
+        description="the kind of workspace that it returns: circles, grid or polygons"
+    )
+    arguments: Arguments = Field({}, description=ARGUMENTS)
+
+    @property
+    def drawn(self) -> str:  # type: ignore[override]
+        """The kind of workspace that planners see."""
+        return self.sees
+
+
+def draw(description: dict, problem: dict, name: str) -> Circles | Grid | Polygons:
+    """The workspace of a layout; its random numbers follow from the names of study and workspace,
+    and from the layout's number, so that layouts with different numbers of obstacles can be nested.
+
+    description: with `file`, the module of the function. Raises ValueError if the function returns
+    another kind.
+    """
+    function = getattr(module(description["file"]), description["function"])
+    rng = generator(name, problem["layout"])
+    workspace = function(rng, problem, **description.get("arguments", {}))
+    if not isinstance(workspace, TYPES[description["sees"]]):
+        raise ValueError(
+            f"function: {function.__name__}: returns {type(workspace).__name__}; expected "
+            f"{description['sees']}, as `sees` says"
+        )
+    return workspace
