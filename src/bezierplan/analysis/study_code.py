@@ -42,5 +42,7 @@ def public(of: Any) -> dict[str, Callable[..., Any]]:
     return {
         name: value
         for name, value in (vars(of) if of else {}).items()
-        if callable(value) and not name.startswith("_")
+        if not name.startswith("_")
+        and callable(value)
+        and getattr(value, "__module__", None) == of.__name__
     }

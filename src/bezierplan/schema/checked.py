@@ -2,7 +2,8 @@
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,40 @@ class Fault(ValueError):
 
     def __init__(self, text: str) -> None:
         super().__init__(plain(text, 1500))
+
+
+_GATHERED: list[list[str]] = []
+"""The faults found so far, while they are gathered."""
+
+
+@contextmanager
+def gathered() -> Iterator[list[str]]:
+    """The faults of a block: those of its parts (`part`), and the one that ends it."""
+    faults: list[str] = []
+    _GATHERED.append(faults)
+    try:
+        with part():
+            yield faults
+    finally:
+        _GATHERED.pop()
+
+
+@contextmanager
+def part() -> Iterator[None]:
+    """A part of a check that others do not need: while faults are gathered, its fault ends only
+    it.
+    """
+    try:
+        yield
+    except Fault as fault:
+        if not _GATHERED:
+            raise
+        if str(fault) not in _GATHERED[-1]:
+            _GATHERED[-1].append(str(fault))
+    except (LookupError, AttributeError, TypeError):
+        # What follows from a fault that was found before.
+        if not (_GATHERED and _GATHERED[-1]):
+            raise
 
 
 class _Loader(SafeLoader):

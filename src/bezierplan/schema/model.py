@@ -29,7 +29,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, closest, part
 
 
 class Model(BaseModel):
@@ -106,18 +106,25 @@ def parsed(model: type[M], content: Any, location: str) -> M:
     try:
         return model.model_validate(content)
     except ValidationError as error:
+        for fault in _faults(error):
+            with part():
+                raise Fault(": ".join([location, *fault])) from None
         raise Fault(": ".join([location, *first_fault(error)])) from None
 
 
 def first_fault(error: ValidationError) -> list[str]:
     """The fault that is reported of several: the keys that lead to it, and its message's end."""
+    return _faults(error)[0]
+
+
+def _faults(error: ValidationError) -> list[list[str]]:
+    """All of them, those that others may follow from first."""
     # After a key that is itself wrong, pydantic puts `[key]`.
     faults = [
-        ([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None))
+        [*(str(key) for key in fault["loc"] if key != "[key]"), _fault(fault, None)]
         for fault in error.errors(include_url=False)
     ]
-    path, text = min(faults, key=lambda fault: (": unknown key" not in fault[1], len(fault[0])))
-    return [*path, text]
+    return sorted(faults, key=lambda fault: (": unknown key" not in fault[-1], len(fault)))
 
 
 def wrong(text: str) -> PydanticCustomError:
@@ -162,7 +169,9 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
         return f"{value}: unknown{closest(value, known)}"
     words = _EXPECTED.get(fault["type"])
     wanted = words.format_map(context) if words else context.get("text", fault["msg"])
-    return f"{shown(value)}: expected {field.description if field else wanted}"
+    of_yaml = isinstance(value, int | float) and "one line" in context.get("text", "")
+    quoted = f"; `{value}` is no text in YAML: put it in quotes" if of_yaml else ""
+    return f"{shown(value)}: expected {field.description if field else wanted}{quoted}"
 
 
 # Types of values. Numbers stay as they are written: 20 is part of names, and 20.0 another one.

@@ -23,7 +23,7 @@ from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
 from bezierplan.running.guard.interface import check_settings
-from bezierplan.schema.checked import Fault, check_known, closest
+from bezierplan.schema.checked import Fault, check_known, closest, part
 from bezierplan.schema.model import Model, first_fault, named, one_or_list, parsed
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, with_alternative
@@ -43,7 +43,8 @@ a setting of that name adds nothing.
 
 def check(study: Study) -> None:
     """Raise Fault for anything wrong in a study whose files are each valid on their own."""
-    _check_experiments(study, relative(study.folder / "experiments.yaml"))
+    with part():
+        _check_experiments(study, relative(study.folder / "experiments.yaml"))
     design, functions = Design(study), study_code.functions(study.code_for("functions"))
     for file in study.published_files():
         published.read(Path(file))
@@ -51,26 +52,30 @@ def check(study: Study) -> None:
     for method in study.looks:
         check_known(method, study.methods, f"{location}: looks")
     for name, table in study.tables.items():
-        where = f"{location}: tables: {name}"
-        _check_names(design, functions, table, where)
-        if isinstance(table, Pivot) and table.published:
-            published.check(design, table, where)
-            design.check_where([table.experiment], table.primary, f"{where}: primary")
+        with part():
+            where = f"{location}: tables: {name}"
+            _check_names(design, functions, table, where)
+            if isinstance(table, Pivot) and table.published:
+                published.check(design, table, where)
+                design.check_where([table.experiment], table.primary, f"{where}: primary")
     for name, figure in study.figures.items():
         if name in study.tables:
             raise Fault(f"{location}: figures: {name}: a table has this name already")
         for panel in figure.panels:
-            where = f"{location}: figures: {name}: panels: {panel.place}"
-            _check_names(design, functions, panel, where)
-            _check_panel(design, panel, where)
+            with part():
+                where = f"{location}: figures: {name}: panels: {panel.place}"
+                _check_names(design, functions, panel, where)
+                _check_panel(design, panel, where)
     location = relative(study.folder / "claims.yaml")
     _check_ids(study.claims, f"{location}: claims")
     for claim in study.claims:
-        _check_claim(design, functions, claim, f"{location}: claims: {claim.id}")
+        with part():
+            _check_claim(design, functions, claim, f"{location}: claims: {claim.id}")
     location = relative(study.folder / "assumptions.yaml")
     _check_ids(study.assumptions, f"{location}: assumptions")
     for assumption in study.assumptions:
-        check_assumption(study, assumption, f"{location}: assumptions: {assumption.id}")
+        with part():
+            check_assumption(study, assumption, f"{location}: assumptions: {assumption.id}")
 
 
 def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], location: str) -> None:
@@ -113,11 +118,12 @@ def _check_experiments(study: Study, location: str) -> None:
         if names:
             raise Fault(f"{location}: settings: {', '.join(names)}: missing; {planner} needs them")
     for name in study.methods:
-        check_settings(
-            planner_module(study.planner(name)),
-            study.resolved(name),
-            f"{location}: methods: {name}: settings",
-        )
+        with part():
+            check_settings(
+                planner_module(study.planner(name)),
+                study.resolved(name),
+                f"{location}: methods: {name}: settings",
+            )
     for name, workspace in study.workspaces.items():
         where = f"{location}: workspaces: {name}"
         for key, file in files_of(workspace).items():
@@ -130,14 +136,16 @@ def _check_experiments(study: Study, location: str) -> None:
             _valid(where, files.load, workspace.plain(), study.folder)
     built = cache(partial(_built, study))
     for name, problem in study.problems.items():
-        where = f"{location}: problems: {name}"
-        check_known(problem.workspace, study.workspaces, f"{where}: workspace")
-        for setting in problem.settings:
-            check_known(setting, used, f"{where}: settings")
-        _check_problem(study, name, where)
-        _valid(where, built, name)
+        with part():
+            where = f"{location}: problems: {name}"
+            check_known(problem.workspace, study.workspaces, f"{where}: workspace")
+            for setting in problem.settings:
+                check_known(setting, used, f"{where}: settings")
+            _check_problem(study, name, where)
+            _valid(where, built, name)
     for name in study.experiments:
-        _check_experiment(study, built, name, f"{location}: experiments: {name}")
+        with part():
+            _check_experiment(study, built, name, f"{location}: experiments: {name}")
     if study.baseline_comparison:
         where, baseline = f"{location}: baseline_comparison", study.baseline_comparison.baseline
         check_known(baseline, study.baselines, f"{where}: baseline")

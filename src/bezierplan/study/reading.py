@@ -12,7 +12,7 @@ from bezierplan.analysis import study_code
 from bezierplan.machine.modules import code_of
 from bezierplan.places import STUDIES
 from bezierplan.schema import checked
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, closest, part
 from bezierplan.schema.model import Model, parsed
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
@@ -106,9 +106,15 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
         experiments.settings[name] = (
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
         )
-    artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
-    claims = _read(folder, "claims", ClaimsFile)
-    assumptions = _read(folder, "assumptions", AssumptionsFile)
+    artefacts, claims, assumptions = None, None, None
+    with part():
+        artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
+    with part():
+        claims = _read(folder, "claims", ClaimsFile)
+    with part():
+        assumptions = _read(folder, "assumptions", AssumptionsFile)
+    if artefacts is None:  # while faults are gathered: what refers to tables would only repeat this
+        artefacts, claims = ArtefactsFile(), None
     for name in experiments.baselines:
         if name in experiments.methods:
             raise Fault(

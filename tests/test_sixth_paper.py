@@ -1,0 +1,75 @@
+"""A study of a paper that is not one of the five: nothing of it needs an edit in the package, and
+the package knows none of the five by name.
+"""
+
+import re
+from pathlib import Path
+
+import pytest
+import starts
+from studies import KEYS
+
+from bezierplan.__main__ import main
+
+ROOT = Path(__file__).parents[1]
+# Where a paper is the source of a formula, a docstring or an example may name it.
+EXAMPLES = {"commands/outcome.py"}
+
+
+@pytest.fixture
+def mine(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    main(["new", "mine", "--example"])
+    capsys.readouterr()
+    return tmp_path / "mine"
+
+
+def test_the_engine_names_no_paper():
+    """In what runs, which comments and docstrings are not."""
+    named = re.compile("|".join(KEYS))
+    package = ROOT / "src" / "bezierplan"
+    for file in package.rglob("*.py"):
+        place = file.relative_to(package).as_posix()
+        if place.split("/")[0] in ("papers", "planners") or place in EXAMPLES:
+            continue
+        text = re.sub(r'"""(.|\n)*?"""|#.*|"[^"\n]*such as [^"\n]*"', "", file.read_text())
+        assert not named.search(text), place
+
+
+def test_faults_are_found_at_once(mine, capsys):
+    changed = {
+        "artefacts.yaml": ("title: every field", "title: 50"),
+        "experiments.yaml": ("function: scattered", "function: scatered"),
+        "claims.yaml": ("name: never_above", "nam: never_above"),
+    }
+    for name, (old, new) in changed.items():
+        file = mine / name
+        file.write_text(file.read_text().replace(old, new))
+    with pytest.raises(SystemExit):
+        main(["check-study", "mine"])
+    lines = capsys.readouterr().out.splitlines()
+    for name, word in zip(changed, ("quotes", "worlds.py", "unknown key"), strict=True):
+        assert sum(f"mine/{name}" in line and word in line for line in lines) == 1, lines
+    for name, (old, new) in changed.items():
+        file = mine / name
+        file.write_text(file.read_text().replace(new, old))
+    main(["check-study", "mine"])
+    assert "no fault" in capsys.readouterr().out
+
+
+def test_the_example_runs(mine):
+    done = starts.snakemake(
+        mine.parent,
+        *("-s", ROOT / "Snakefile", "--workflow-profile", "none", "--cores", "2", "smoke"),
+        *("--config", "studies=[./mine]"),
+    )
+    assert done.returncode == 0, done.stderr
+    made = mine.parent / "results" / "smoke" / "mine"
+    claims = (made / "claims.csv").read_text()
+    assert all(name in claims for name in ("C1", "C2", "C3"))
+    # The worst directions, by hand: (24 + 10) / 26 and (14 + 10 sqrt 2) / 26.
+    (table,) = made.glob("*/ratios.csv")
+    assert "1.41,1.00" in table.read_text()
+    assert "1.31,1.08" in table.read_text()
+    (figure,) = made.glob("*/fields.csv")
+    assert "ratio" in figure.read_text()
