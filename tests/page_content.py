@@ -94,6 +94,7 @@ def job() -> PageJob:
         ],
         files=["claims", "checks", "audit", "sensitivity"],
         experiments={},
+        changed=[],
     )
     return PageJob("smoke", {"one": study}, outcome=False)
 
