@@ -47,18 +47,24 @@ def plans(
     name: str,
     limit: float | None = None,
 ) -> Iterator[worker.Made]:
-    """`worker.plans` in a process of its own, with plain plans. Raises PlannerFailure as `answers`
+    """`worker.plans` in a process of its own, with plain plans; before them that of `again` in a
+    process with another seed of `hash`, which must not count. Raises PlannerFailure as `answers`
     does.
     """
     arguments = {
         "planner": str(Path(planner).resolve()) if planner.endswith(".py") else planner,
         "problems": worker.packed_problems(problems),
-        "tasks": list(tasks),
-        "again": again,
     }
-    for number, plan, cpu, wall in answers("guard.worker.plain_plans", arguments, name, limit):
-        with plain_values(name):
-            yield worker.Made(number, answer.unpacked(plan), seconds(cpu), seconds(wall))
+    runs = [([again], None, 1)] if again else []
+    for own, warm, hashing in [*runs, (list(tasks), again, 0)]:
+        parts = arguments | {"tasks": own, "again": warm}
+        for number, plan, cpu, wall in answers(
+            "guard.worker.plain_plans", parts, name, limit, hashing
+        ):
+            with plain_values(name):
+                yield worker.Made(
+                    -1 if hashing else number, answer.unpacked(plan), seconds(cpu), seconds(wall)
+                )
 
 
 def answers(
