@@ -6,6 +6,7 @@ values of the varied settings. Under each, the median of its runs is divided by 
 baseline's runs; the table has the median of these ratios over the conditions. Columns:
 
 - study, method, baseline: what is measured, and against what
+- proposed: whether it is the method that the paper proposes
 - conditions: conditions under which both have runs
 - feasible, feasible_baseline: share of their runs whose path the certified checker accepts
 - compared: conditions under which both have a feasible run
@@ -26,7 +27,7 @@ from bezierplan.analysis.results import Results, read
 from bezierplan.running.inputs import Files
 
 COLUMNS = (
-    *("study", "method", "baseline", "conditions", "feasible", "feasible_baseline"),
+    *("study", "method", "baseline", "proposed", "conditions", "feasible", "feasible_baseline"),
     *("compared", "length", "bent", "curvature", "cpu"),
 )
 
@@ -76,20 +77,23 @@ def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
 
 
 def of_studies(
-    baselines: Mapping[str, str], repeats: Mapping[str, int], files: Mapping[str, Files]
+    baselines: Mapping[str, tuple[str, str | None]],
+    repeats: Mapping[str, int],
+    files: Mapping[str, Files],
 ) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
-    baselines: by study. repeats, files: of experiments, each by `study/experiment`.
+    baselines: by study, with the method that the paper proposes. repeats, files: of experiments, each by `study/experiment`.
     """
     tables = []
-    for study, baseline in baselines.items():
+    for study, (baseline, proposed) in baselines.items():
         experiments = {
             place.partition("/")[2]: read(files[place], number, place.partition("/")[2])
             for place, number in repeats.items()
             if place.startswith(f"{study}/")
         }
-        tables.append(measured(experiments, baseline).assign(study=study))
+        rows = measured(experiments, baseline)
+        tables.append(rows.assign(study=study, proposed=rows["method"] == proposed))
     rows = pd.concat(tables) if tables else pd.DataFrame()
     return rows.reindex(columns=COLUMNS)
 

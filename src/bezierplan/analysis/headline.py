@@ -12,27 +12,27 @@ from bezierplan.analysis.claims.verdicts import VERDICTS
 from bezierplan.analysis.markdown import table_text
 
 COLUMNS = {
-    "paper": "paper",
-    "numbers": "published numbers: agree or identified / disagree / inconclusive",
-    "deviation": "typical deviation",
-    "claims": "claims: supported / partly / contradicted or no effect / undecided or untestable",
-    "feasible": "feasible runs (baseline)",
-    "length": "length over the baseline's",
-    "cpu": "CPU time over the baseline's",
+    "numbers": "numbers: agree, disagree, open",
+    "close": "within 10 %",
+    "claims": "claims: hold, partly, fail, open",
+    "feasible": "proposed method: free paths",
+    "length": "its length",
+    "cpu": "its CPU time",
 }
 """Columns of the table -> their headings; the name of the study stands before them."""
 
 LEGEND = (
-    "*agree*: the published number lies in our 95 % prediction interval for an experiment of the "
-    "paper's size, and the interval is narrow enough to exclude most of the values published for "
-    "competing methods. *identified*: it is the length of a path that we can name, to the last "
-    "digit or to the decimals of a rounded root. *disagree*: it lies outside. *inconclusive*: the"
-    " interval is too wide or has no end on that side, or the paper does not define the quantity."
-    " *typical deviation*: median of |ours - published| / |published|. *partly*: the claim holds "
-    "in some of its comparisons. The baseline is the exact shortest path with rounded corners, "
-    "which needs no search; the last three columns go from the lowest to the highest of all "
-    "methods, our own variants of the paper's included."
+    "*agree*: inside our 95 % prediction interval for an experiment of the paper's size, which "
+    "must exclude a number that a run could have, such as most of those printed for competing "
+    "methods; or *identified*, the length of a path that we can name. *open*: the interval is too "
+    "wide, or the paper does not define the quantity; a claim is open if it is undecided, "
+    "untestable, or depends on what the paper leaves open. *fail*: contradicted, or no effect. "
+    "Length and CPU time of the proposed method are medians over those of the exact shortest path "
+    "with rounded corners, which needs no search and is always free."
 )
+
+CLOSE = 0.1
+"""Relative deviation up to which a number is close to the printed one."""
 
 _IN_WORDS = {
     "agrees": "in agreement",
@@ -89,11 +89,10 @@ def headline(
     counted = numbers[numbers["counted"].astype(bool)]
     rows = {
         study: {
-            "paper": titles[study].partition(":")[0],
             "numbers": _of(
                 [row["identified"] + row["agrees"], row["disagrees"], row["inconclusive"]]
             ),
-            "deviation": _percent(deviation(counted[counted["study"] == study])),
+            "close": _close(deviations(counted[counted["study"] == study])),
             "claims": _of(_fewer(row)),
             **_measured(measured[measured["study"] == study]),
         }
@@ -109,20 +108,18 @@ def markdown(found: Headline) -> str:
     return "\n\n".join([f"**{' '.join(found.sentences)}**", table_text(shown), LEGEND])
 
 
-def deviation(numbers: pd.DataFrame) -> float:
-    """The median of |ours - published| / |published|, NaN without numbers other than 0. Ours are
-    scaled to the paper's number of runs.
-
-    Quantities that the paper does not define say nothing.
+def deviations(numbers: pd.DataFrame) -> np.ndarray:
+    """|ours - published| / |published| of numbers, infinite beside a 0. Ours are scaled to the
+    paper's number of runs. Quantities that the paper does not define say nothing.
     """
     numbers = numbers[numbers["why"] != comparison.UNDEFINED]
     published, ours = (
         numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled")
     )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.abs(ours - published) / np.abs(published)
-    finite = relative[np.isfinite(relative)]
-    return float(np.median(finite)) if len(finite) else float("nan")
+    off = np.abs(ours - published)
+    return np.divide(
+        off, np.abs(published), out=np.where(off > 0, np.inf, 0.0), where=published != 0
+    )
 
 
 def beside_baseline(measured: pd.DataFrame) -> str:
@@ -176,23 +173,21 @@ def _fewer(row: pd.Series) -> list[int]:
 
 
 def _of(counts: list[int]) -> str:
-    return f"{' / '.join(str(count) for count in counts)} of {sum(counts)}" if sum(counts) else ""
+    return ", ".join(map(str, counts)) if sum(counts) else ""
 
 
-def _percent(share: float) -> str:
-    return "" if np.isnan(share) else f"{baseline_comparison.number(100 * share, 2)} %"
+def _close(off: np.ndarray) -> str:
+    return f"{int((off <= CLOSE).sum())} of {len(off)}" if len(off) else ""
 
 
 def _measured(rows: pd.DataFrame) -> dict[str, str]:
-    """What the methods of a study are beside the baseline: the least and the largest of each
-    column.
-    """
-    if rows.empty:
+    """The study's proposed method beside the baseline."""
+    own = rows[rows["proposed"].astype(bool)]
+    if own.empty:
         return dict.fromkeys(("feasible", "length", "cpu"), "")
-    span = baseline_comparison.span
-    feasible, baseline = span(100 * rows["feasible"], 2), span(100 * rows["feasible_baseline"], 3)
+    number, (row,) = baseline_comparison.number, own.to_dict("records")
     return {
-        "feasible": f"{feasible} % ({baseline} %)",
-        "length": span(rows["length"], 3) if rows["length"].notna().any() else "",
-        "cpu": span(rows["cpu"], 2),
+        "feasible": f"{number(100 * row['feasible'])} %",
+        "length": "" if np.isnan(row["length"]) else number(row["length"]),
+        "cpu": number(row["cpu"], 2),
     }

@@ -195,6 +195,7 @@ class BaselineComparison(Model):
     """The baseline with which the summary compares the study's methods."""
 
     baseline: Name = Field(description="a baseline")
+    proposed: Name = Field(None, description="the method that the paper proposes")
     experiments: listed(Name) = Field(
         description="the experiments in which the methods are compared with it; "
         "it must join each of them"

@@ -915,8 +915,8 @@ class Audit(Analysis):
 class BaselineComparison(Job):
     """The methods of all studies beside the baselines that the studies name."""
 
-    baselines: dict[str, str]
-    """By study."""
+    baselines: dict[str, tuple[str, str | None]]
+    """By study, and the method that its paper proposes."""
     repeats: dict[str, int]
     """By study/experiment."""
 
@@ -926,7 +926,7 @@ class BaselineComparison(Job):
         baselines, repeats, shows = {}, {}, {}
         for key, study in studies.items():
             if compared := study.baseline_comparison:
-                baselines[key] = compared.baseline
+                baselines[key] = (compared.baseline, compared.proposed)
                 for name in compared.experiments:
                     content = study.experiments[name]
                     methods = [*content.methods, compared.baseline]
