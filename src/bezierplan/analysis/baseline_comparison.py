@@ -83,7 +83,8 @@ def of_studies(
 ) -> pd.DataFrame:
     """One row for each method of all studies; `COLUMNS`.
 
-    baselines: by study, with the method that the paper proposes. repeats, files: of experiments, each by `study/experiment`.
+    baselines: by study, each with the method that the paper proposes. repeats, files: of
+    experiments, each by `study/experiment`.
     """
     tables = []
     for study, (baseline, proposed) in baselines.items():

@@ -104,4 +104,4 @@ def table(kept: Path) -> str:
     )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
-    return f"{follow}\n\n{headline.markdown(overview)}\n\nScale `{scale}`: {SCALES[scale]}"
+    return f"{headline.markdown(overview)}\n\n{follow}\n\nScale `{scale}`: {SCALES[scale]}"
