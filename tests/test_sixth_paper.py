@@ -73,3 +73,12 @@ def test_the_example_runs(mine):
     assert "1.31,1.08" in table.read_text()
     (figure,) = made.glob("*/fields.csv")
     assert "ratio" in figure.read_text()
+
+
+def test_names_are_explained(mine, capsys):
+    main(["list", "metrics", "mine"])
+    said = capsys.readouterr().out
+    assert "length of the truly shortest path" in said
+    assert "\nexpanded " in said
+    main(["list", "worlds"])
+    assert "\ndrawn " in capsys.readouterr().out
