@@ -9,7 +9,7 @@ import pytest
 
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan
-from bezierplan.running import execution, problems
+from bezierplan.running import execution, planning, problems
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.judge import answer
@@ -207,3 +207,9 @@ def test_a_region_shares_no_memory_with_its_workspace():
     made = region(circles)
     assert not np.shares_memory(made.centres, circles.centres)
     assert not np.shares_memory(made.radii, circles.radii)
+
+
+@pytest.mark.parametrize("claims", [(True, True), (True, False), (False, True)])
+def test_a_path_through_way_points_is_claimed_free_if_each_leg_is(claims):
+    legs = [PLAN._replace(claimed_feasible=claim) for claim in claims]
+    assert planning.joined(legs).claimed_feasible == all(claims)
