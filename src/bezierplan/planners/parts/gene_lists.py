@@ -48,8 +48,8 @@ def select(pool: Pool, survivors: int, filled: int) -> None:
         order[count] = i
         count += pool.cost[i] <= highest
     sort(order[:count], pool.cost)
-    best = order[:survivors]
-    pool.ones[:survivors] = pool.ones[best]
+    best, most = order[:survivors], pool.count.max()
+    pool.ones[:survivors, :most] = pool.ones[best, :most]
     pool.count[:survivors] = pool.count[best]
     pool.cost[:survivors] = pool.cost[best]
 

@@ -109,12 +109,10 @@ def length(
                 x[s] += z * weights[s]
     # The square roots are vectorised if their sum is separate; its four partial sums need not wait
     # for each other.
-    for s in range(samples - 1):
-        chords[s] = 0.0
     for axis in range(len(ends)):
         x = curve[axis]
         for s in range(samples - 1):
-            chords[s] += (x[s + 1] - x[s]) ** 2
+            chords[s] = (x[s + 1] - x[s]) ** 2 + (chords[s] if axis else 0.0)
     for s in range(samples - 1):
         chords[s] = np.sqrt(chords[s])
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
