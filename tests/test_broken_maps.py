@@ -92,7 +92,11 @@ MAPS = {
     ),
     "a number for an image": ("yaml", ROS.replace("room.png", "7"), "image: 7: expected the name"),
     "a resolution twice": ("yaml", ROS + "resolution: 1\n", "resolution: this key is given twice"),
-    "a tag": ("yaml", ROS + "other: !!python/name:os.system\n", "tags are not read"),
+    "a tag": (
+        "yaml",
+        ROS + "other: !!python/name:os.system\n",
+        "could not determine a constructor for the tag",
+    ),
 }
 
 

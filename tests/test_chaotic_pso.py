@@ -437,7 +437,7 @@ def test_a_path_a_rounding_error_deep_is_feasible():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"curve": "ferguson"}, "control_points: 3.*even number"),
+        ({"curve": "ferguson"}, "control_points: 3.*a multiple of 2 more, not 5"),
         ({"curve": "ferguson", "control_points": 0}, "control_points: 0.*at least 4"),
         ({"chaotic_map": "constant"}, "chaotic_start_rule: random; a constant map needs fixed"),
     ],

@@ -343,7 +343,7 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
 
 def audited(
     job: Any,
-    own: Callable[[dict[str, pd.DataFrame]], list[dict]],
+    of_paper: Callable[[dict[str, pd.DataFrame]], list[dict]],
     problem_files: Mapping[str, str],
     bound_files: Mapping[str, str],
     files: Mapping[str, str],
@@ -368,7 +368,7 @@ def audited(
         rows += identified.of_table(
             name, published[name], layout.identify, made.get(job.tables[name], {})
         )
-    return table(job.study, rows + own(published))
+    return table(job.study, rows + of_paper(published))
 
 
 def read_published(file: str) -> pd.DataFrame:

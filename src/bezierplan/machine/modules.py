@@ -30,16 +30,16 @@ def module(name: str) -> ModuleType:
     file = Path(name).resolve()
     # Modules know themselves by name, such as those that numba or pickle keep parts of; this one is
     # no library's.
-    own = f"study_{file.stem}"
-    spec = importlib.util.spec_from_file_location(own, name)
+    key = f"study_{file.stem}"
+    spec = importlib.util.spec_from_file_location(key, name)
     made = importlib.util.module_from_spec(spec)
-    known = {*sys.modules, own}
+    known = {*sys.modules, key}
     sys.path.append(str(file.parent))  # last, so that no user file shadows a library
-    sys.modules[own] = made
+    sys.modules[key] = made
     try:
         spec.loader.exec_module(made)
     except BaseException:
-        sys.modules.pop(own, None)  # whatever the file has done before it failed
+        sys.modules.pop(key, None)  # whatever the file has done before it failed
         raise
     finally:
         sys.path.remove(str(file.parent))

@@ -209,10 +209,10 @@ LARGEST = 1e12
 """Largest coordinate, length or weight."""
 
 
-def number(**limits: float) -> Any:
+def number(**limits: float | None) -> Any:
     """A type of number within limits: `gt`, `ge`, `le`."""
-    limits = {"ge": -LARGEST, "le": LARGEST} | limits
-    return Annotated[float, Field(**limits), WrapValidator(_as_written)]
+    given: Any = {"ge": -LARGEST, "le": LARGEST} | limits
+    return Annotated[float, Field(**given), WrapValidator(_as_written)]
 
 
 def whole(low: int, high: int) -> Any:
@@ -360,7 +360,7 @@ PrintedTable = Annotated[Line, Names("printed table")]
 Experiment = Annotated[Name, Names("experiment")]
 Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]
-Where = Annotated[dict[Column, Values], Names("where")]
+Where = Annotated[dict[Column, Values], Names("where")]  # type: ignore[valid-type]
 Arguments = dict[Name, Any]
 """Keyword-only arguments of a study's function, which `checks` compares with annotations."""
 ARGUMENTS = (

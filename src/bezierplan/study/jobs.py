@@ -52,6 +52,10 @@ class Job:
         """Do the work with the files of a rule, by their names there."""
         raise NotImplementedError
 
+    def __str__(self) -> str:
+        """For reports, whose readers' browsers must not run words of a study."""
+        return type(self).__name__
+
     def modules(self) -> Iterable[str]:
         """Modules that `run` imports by name, because of the values."""
         return ()

@@ -172,13 +172,13 @@ def judged(task: Task) -> Verdict:
         table = _table(file, chunk)
         digest = rows.rows_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
-        found = [
+        of_file = [
             Fault(file, "all rows", "digest", kept or "none: another program wrote it", digest)
             for kept in [rows.kept_digest(table)]
             if kept != digest
         ] or [*_identity_faults(file, table, chunk)]
-        faults += found
-        files |= {} if found else {file: table}
+        faults += of_file
+        files |= {} if of_file else {file: table}
     known: dict[tuple[str, str, bytes], _Judged] = {}
     regions = problems.remembered()
     for file, table in files.items():
@@ -261,13 +261,13 @@ def _differing(
     for name, (values, tolerance) in again.items():
         stored = _numbers(table, name)
         for row in np.flatnonzero(~same(stored, values, tolerance)):
-            one, other = table[name][row].as_py(), float(values[row])
+            before, after = table[name][row].as_py(), float(values[row])
             yield Fault(
                 file,
                 table["id"][row].as_py(),
                 name,
-                one,
-                bool(other) if isinstance(one, bool) else other,
+                before,
+                bool(after) if isinstance(before, bool) else after,
             )
 
 
@@ -430,20 +430,20 @@ def _again(chosen: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Fault]]:
     made, moving = _problems(problem_file)
     runs = [_runs(chunk)[n] for n in numbers]
     if moving:
-        found = [
+        remade = [
             rides.row(chunk, *run, ride, made[run[0].problem], moving[run[0].problem])[0]
             for run, (ride, *_) in zip(runs, rides.run(chunk, runs, made, moving))
         ]
     else:
         tasks = [execution.task(chunk, *run) for run in runs]
-        found = [
+        remade = [
             execution.row(
                 chunk, *run, each.plan, made[run[0].problem], region(made[run[0].problem].workspace)
             )
             for run, each in zip(runs, execution.plans(chunk, made, tasks))
         ]
     faults = []
-    for row, stored in zip(found, rows.read(file).take(numbers).to_pylist()):
+    for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
         for name, value in rows.table([row], Planned, Outcome).to_pylist()[0].items():
             # The text of a number tells all its bits, and unlike it a NaN is equal to itself.
             if repr(value) != repr(stored.get(name)):
