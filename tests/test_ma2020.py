@@ -24,7 +24,6 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
-SIDE = 20
 STUDY = checked.read(FOLDER / "experiments.yaml")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
@@ -181,64 +180,6 @@ def test_printed_numbers(table, rows):
             assert values["min"] < values["mean"] < values["max"]
 
 
-@pytest.mark.parametrize(
-    ("length", "moves"),
-    [
-        (34.6248, (12, 16)),
-        (32.8663, (6, 19)),
-        (31.7964, (12, 14)),
-        (31.2144, (10, 15)),
-        (35.4526, (10, 18)),
-        (33.7963, (14, 14)),
-    ],
-)
-def test_printed_minima_are_lattice_lengths(length, moves):
-    assert ma2020.nearest_lattice_length(length, SIDE) == moves
-    assert abs(moves[0] + moves[1] * math.sqrt(2) - length) < ma2020.LATTICE_TOLERANCE
-
-
-def test_nearest_lattice_length_is_one_of_a_path_from_corner_to_corner():
-    for length in np.linspace(SIDE * math.sqrt(2), 60, 200):
-        straight, diagonal = ma2020.nearest_lattice_length(length, SIDE)
-        assert straight % 2 == 0
-        assert straight + 2 * diagonal >= 40
-        assert diagonal >= 1
-    # Near, but no path from corner to corner.
-    assert ma2020.nearest_lattice_length(35.4147, SIDE) != (
-        34,
-        1,
-    )
-
-
-def test_lattice_lengths():
-    table = ma2020.lattice_lengths(PUBLISHED)
-    assert len(table) == 24
-    rivals = table["method"].isin(ma2020.LATTICE_METHODS)
-    met = table["met"] == "yes"
-    assert met[rivals & (table["statistic"] == "min")].all()
-    assert not met[rivals & (table["statistic"] == "max")].any()
-    assert not met[~rivals & (table["statistic"] == "min")].any()
-    chances = table["chance"].astype(float)
-    assert chances[rivals & (table["statistic"] == "min")].prod() < 1e-9
-    assert chances[rivals & (table["statistic"] == "max")].between(0.1, 1).all()
-
-
-def test_chance_of_lattice_lengths():
-    """Against lengths drawn at random; the eight printed minima are no chance."""
-    chance = ma2020.chance_of_lattice(31, 36, ma2020.LATTICE_TOLERANCE, SIDE)
-    drawn = np.random.default_rng(0).uniform(31, 36, 4000)
-    near = [
-        straight + diagonal * math.sqrt(2)
-        for straight, diagonal in (ma2020.nearest_lattice_length(length, SIDE) for length in drawn)
-    ]
-    assert np.mean(np.abs(near - drawn) <= ma2020.LATTICE_TOLERANCE) == pytest.approx(
-        chance, abs=0.012
-    )
-    assert chance == pytest.approx(0.068, abs=0.002)
-    assert chance**8 < 1e-9
-    assert ma2020.chance_of_lattice(31, 36, 1.0, SIDE) == pytest.approx(1)
-
-
 def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
     """The lengths of curves with eight free control points, of which claim C21 asks how near they
     come.
@@ -257,12 +198,6 @@ def test_no_run_of_the_outcome_is_shorter_than_the_best_known_curve():
 def test_audit():
     rows = audit.table("ma2020", own_audit.audit(PUBLISHED))
     wrong = rows[~rows["consistent"].astype(bool)]
-    lattice = rows[rows["rule"].str.startswith("a path of 8")]
-    assert len(lattice) == 16
-    assert lattice.groupby(lattice["place"].str[-3:])["consistent"].sum().to_dict() == {
-        "max": 0,
-        "min": 8,
-    }
     means = wrong[wrong["rule"].str.contains("mean length")]
     assert means["printed"].to_list() == [32.9973]  # of BCA-Q, above that of ASFA-GA
     slow = wrong[wrong["rule"].str.contains("slightly")]
@@ -272,7 +207,7 @@ def test_audit():
     assert (selected.printed, selected.limit) == pytest.approx((20 * math.sqrt(2), 40))
     assert (quarter.printed, quarter.limit) == (0.25, 0.25**2)
     assert "number of control points" in listed.rule
-    assert len(wrong) == 8 + 1 + 3 + 4
+    assert len(wrong) == 1 + 3 + 4
 
 
 def test_figure_2_swaps_the_genes_behind_the_cut():

@@ -9,12 +9,7 @@ import numpy as np
 from bezierplan.analysis import rules
 from bezierplan.analysis.audit_rows import checked, compared
 from bezierplan.geometry import curves
-from bezierplan.papers.ma2020.functions import (
-    LATTICE_METHODS,
-    LATTICE_TOLERANCE,
-    nearest_lattice_length,
-    side_of_maps,
-)
+from bezierplan.papers.ma2020.functions import side_of_maps
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Published
@@ -23,27 +18,11 @@ if TYPE_CHECKING:
 def audit(published: "Published") -> list[dict]:
     """Printed numbers that are impossible, or contradict others.
 
-    If the four lattice methods plan on cells, each of their shortest and longest paths has the
-    length of an 8-connected path: all minima do, the maxima do not. No path is shorter than the
-    straight line. Shares of occupied cells are whole numbers of cells. Statements in the text about
-    lengths and times are checked against the tables, that on the parameter of a curve and equation
-    (11) by computing.
+    No path is shorter than the straight line. Shares of occupied cells are whole numbers of cells.
+    Statements in the text about lengths and times are checked against the tables, that on the
+    parameter of a curve and equation (11) by computing.
     """
-    parts = (_audit_lengths, rules.audit, _audit_text)
-    return [row for part in parts for row in part(published)]
-
-
-def _audit_lengths(published: "Published") -> Iterator[dict]:
-    side = side_of_maps(published)
-    rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
-    for name in ("table1", "table2"):
-        cells = published[name].query("metric == 'length' and statistic != 'mean'")
-        for cell in cells[cells["method"].isin(LATTICE_METHODS)].itertuples():
-            location = f"method={cell.method}, metric=length, statistic={cell.statistic}"
-            straight, diagonal = nearest_lattice_length(cell.value, side)
-            nearest = straight + diagonal * math.sqrt(2)
-            fits = abs(cell.value - nearest) <= LATTICE_TOLERANCE
-            yield checked(name, location, rule, cell.value, nearest, fits)
+    return [*rules.audit(published), *_audit_text(published)]
 
 
 def _audit_text(published: "Published") -> Iterator[dict]:

@@ -15,15 +15,6 @@ if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
     from bezierplan.analysis.claims.kinds.function import Options as Check
 
-# Methods that plan on cells.
-LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
-
-# Tolerance, in cells, for matching a length s + d sqrt(2): the paper prints four decimals, with a
-# root that may be rounded to 1.414, and every printed minimum of the four lattice methods is within
-# it.
-LATTICE_TOLERANCE = 0.0045
-
-
 # Number of parameters at which the speed of a curve is sampled, and the share of its maximum below
 # which it counts as zero.
 SPEED_SAMPLES = 20_001
@@ -75,68 +66,6 @@ def printed_minima(check: "Check", results: "Experiments", published: "Published
     )
     apart = (quoted - pd.concat(tables).reindex(quoted.index)).abs()
     return "+" if (apart == 0).all() else "-", float(apart.max()), None, len(quoted)
-
-
-def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
-    """Straight and diagonal moves of the 8-connected paths from corner to corner of a map whose
-    length is nearest to a given one.
-
-    side: cells from start to target, along x and along y.
-
-    The half diagonals from start and to target count as one diagonal move. The number of straight
-    moves is even, and with s straight and d diagonal moves, s + 2 d is at least twice the side.
-    """
-    return min(
-        (abs(straight + diagonal * math.sqrt(2) - length), straight, diagonal)
-        for diagonal in range(1, int(length / math.sqrt(2)) + 2)
-        for straight in range(max(0, 2 * side - 2 * diagonal), int(length) + 2, 2)
-    )[1:]
-
-
-def lattice_lengths(published: "Published") -> pd.DataFrame:
-    """Printed shortest and longest lengths next to the nearest length of an 8-connected path.
-
-    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length,
-    distance (cells), chance (the probability that a random length is as near, over the lattice
-    methods' printed range of this statistic, in whole cells), met.
-    """
-    side = side_of_maps(published)
-    lengths = pd.concat([published["table1"], published["table2"]])
-    lengths = lengths[(lengths["metric"] == "length") & (lengths["statistic"] != "mean")]
-    rows = []
-    for statistic, own in lengths.groupby("statistic", sort=False):
-        rivals = own.loc[own["method"].isin(LATTICE_METHODS), "value"]
-        low, high = math.floor(rivals.min()), math.ceil(rivals.max())
-        for row in own.itertuples():
-            straight, diagonal = nearest_lattice_length(row.value, side)
-            length = straight + diagonal * math.sqrt(2)
-            distance = abs(row.value - length)
-            rows.append(
-                {
-                    "workspace": row.workspace,
-                    "method": row.method,
-                    "statistic": statistic,
-                    "printed": f"{row.value:.4f}",
-                    "straight moves": straight,
-                    "diagonal moves": diagonal,
-                    "lattice length": f"{length:.4f}",
-                    "distance": f"{distance:.4f}",
-                    "chance": f"{chance_of_lattice(low, high, distance, side):.3f}",
-                    "met": "yes" if distance <= LATTICE_TOLERANCE else "no",
-                }
-            )
-    return pd.DataFrame(rows)
-
-
-def chance_of_lattice(low: float, high: float, tolerance: float, side: int) -> float:
-    """The probability that a length drawn uniformly from an interval is within a tolerance of the
-    length of an 8-connected path.
-    """
-    diagonal, straight = np.meshgrid(np.arange(1, int(high)), np.arange(0, int(high) + 2, 2))
-    lengths = np.sort((straight + diagonal * math.sqrt(2))[straight + 2 * diagonal >= 2 * side])
-    starts, ends = np.clip(lengths - tolerance, low, high), np.clip(lengths + tolerance, low, high)
-    starts = np.maximum(starts, np.maximum.accumulate(np.append(low, ends[:-1])))
-    return float(np.maximum(ends - starts, 0).sum() / (high - low))
 
 
 def continuous_curvature(
