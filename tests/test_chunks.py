@@ -118,8 +118,8 @@ def chunks(tmp_path):
             times = pd.DataFrame(
                 {"id": [run["id"] for run in runs], "cpu_s": repeats / 100, "wall_s": repeats / 50}
             )
-            parquet.write_table(
-                rows.table(runs, columns.Planned, columns.Outcome), folder / f"{chunk}.parquet"
+            rows.write(
+                rows.table(runs, columns.Planned, columns.Outcome), str(folder / f"{chunk}.parquet")
             )
             parquet.write_table(
                 pa.Table.from_pandas(times[::-1]), folder / f"{chunk}.times.parquet"
@@ -215,7 +215,7 @@ def test_a_file_in_the_place_of_another_is_told(chunks, fault):
                 if value is None
                 else table.append_column(column, pa.array([value] * len(table)))
             )
-        parquet.write_table(table, chunks / place)
+        rows.write(table, str(chunks / place))
     else:
         (chunks / place).write_bytes(
             content if isinstance(content, bytes) else (chunks / content).read_bytes()

@@ -84,11 +84,11 @@ def _read(file: str, kind: str) -> pd.DataFrame:
     lacks a declared column or has it in another type.
     """
     table, declared = row_files.read(file), TABLES[kind]
-    if kind == "runs" and row_files.kept_digest(table) != row_files.rows_digest(table):
-        raise row_files.misplaced(file, "its rows are not those that were written")
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
     if fault := row_files.fault(table.schema, *declared.every, *drives):
         raise row_files.misplaced(file, fault)
+    if kind == "runs" and row_files.kept_digest(table) != row_files.rows_digest(table):
+        raise row_files.misplaced(file, "its rows are not those that were written")
     return table.to_pandas()
 
 
