@@ -356,7 +356,7 @@ def test_the_region_that_is_kept_of_a_map_is_the_map_s_own(occupied, shape, cell
     grid = Grid(np.array(occupied, dtype=bool).reshape(shape), cell, "m", origin)
     kept, own = region_of(grid), region(grid)
     assert (kept.cell, kept.bins.side) == (own.cell, own.bins.side)
-    for name in ("origin", "blocked", "counts", "edges", "contacts"):
+    for name in ("origin", "blocked", "counts", "edges"):
         assert np.array_equal(getattr(kept, name), getattr(own, name))
     assert region_of(Grid(grid.occupied.copy(), cell, "m", origin)) is kept
 
