@@ -93,7 +93,7 @@ claims:
 
 ASSUMPTIONS = """
 assumptions:
-  - {id: O1, detail: How far the low bend goes, setting: bend, default: {low: 3.0},
+  - {id: O1, detail: How far the low bend goes, setting: bend, methods: [low],
      alternatives: [6.0], claims: [C1], reason: invented, source: assumed}
 """
 
@@ -227,4 +227,4 @@ def test_figure_shows_the_own_planner(results):
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
     assert "2 published numbers: 1 in agreement, 1 in disagreement. 2 claims: 1 supp" in summary
-    assert "| 1 / 1 / 0 of 2 |" in summary
+    assert "| bends | 1, 1, 0 | 1 of 2 | 1, 0, 1, 0 |" in summary
