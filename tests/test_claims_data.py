@@ -10,11 +10,13 @@ from itertools import chain
 from pathlib import Path
 
 import pytest
+from studies import study
 
 from bezierplan.analysis.claims import kinds
 from bezierplan.schema import checked
 from bezierplan.schema.model import Model, keys, one_or_list, parsed
 from bezierplan.study import claims as study_claims
+from bezierplan.study.alternatives import default_of
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 CLAIMS = {"song2016": 12, "tharwat2018": 51, "ma2020": 25, "meledje": 16, "elhoseny2017": 28}
@@ -148,12 +150,12 @@ def test_assumptions_are_numbered_and_name_claims(key):
     assert sorted(set(numbers)) == list(range(1, max(numbers) + 1))
     assert numbers == sorted(numbers)
     known = {claim["id"] for claim in claims(key)}
-    for assumption in assumptions(key):
-        assert set(assumption.get("claims", [])) <= known
-        default = assumption["default"]
+    for assumption in study(key).assumptions:
+        assert {*assumption.claims} <= known
+        default = default_of(study(key), assumption)
         in_force = default.values() if isinstance(default, dict) else [default]
-        assert not set(in_force) & set(assumption["alternatives"]), (
-            f"{assumption['id']}: the default is not an alternative"
+        assert not set(in_force) & set(assumption.alternatives), (
+            f"{assumption.id}: the default is not an alternative"
         )
 
 
