@@ -3,9 +3,9 @@ instead of one of its two random numbers: that of the cognitive term (CPSO-I) or
 (CPSO-II) (tharwat2018, Sections 3.2 and 4).
 
 A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one
-curve; among spheres, z_1, ..., z_n follow (Section 6). The curve is linear in them, so to the
-kernels every curve kind is a constant matrix. Obstacles are tested at samples of the curve; the
-paper's equation (20) names its control points, which can be free on a path that is not.
+curve. The curve is linear in them, so to the kernels every curve kind is a constant matrix.
+Obstacles are tested at samples of the curve; the paper's equation (20) names its control points,
+which can be free on a path that is not.
 
 All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from
 three generators; positions are drawn particle by particle, and for each move r1 before r2; the
@@ -199,7 +199,7 @@ def plan(
     Parameters
     ----------
     problem : Problem
-        Among circles or polygons, or spheres in three dimensions.
+        Among circles or polygons.
     rng : numpy.random.Generator
         The only source of random numbers.
     start : ndarray, (n, d), optional

@@ -203,11 +203,6 @@ def _check_shared_settings(study: Study, used: set[str], location: str) -> None:
 def _check_problem(study: Study, name: str, location: str) -> None:
     """A problem has the keys of its kind of workspace."""
     problem, home = study.problems[name], study.workspace_of(name)
-    if not home.planar:
-        raise Fault(
-            f"{location}: workspace: {problem.workspace}: has three dimensions; a panel of kind "
-            f"{home.kind} plans there, and no experiment"
-        )
     for key, needed in (("layouts", bool(home.drawn)), ("side", home.with_side)):
         if needed != (getattr(problem, key) is not None):
             kind = f"of kind {home.kind}"
@@ -381,18 +376,9 @@ def _check_arguments(function: Callable, arguments: dict[str, Any], location: st
 
 def _check_panel(design: Design, panel: Panel, location: str) -> None:
     """A panel's runs are of the kind that it shows, of one method if it shows one run, and of
-    enough methods; what it plans itself is valid.
+    enough methods.
     """
     study = design.study
-    if panel.plans:
-        check_known(panel.method, study.methods, f"{location}: method")
-        check_known(study.methods[panel.method].planner, [panel.plans], f"{location}: method")
-        for setting in panel.settings:
-            check_known(setting, study.accepted(panel.method), f"{location}: settings")
-        settings = study.resolved(panel.method) | panel.settings
-        check_settings(planner_module(panel.plans), settings, f"{location}: settings")
-        home = files.load(study.workspaces[panel.workspace].plain(), study.folder)
-        _valid(location, panel.check, home)
     if not getattr(panel, "experiment", None):
         return
     if panel.drives and not study.moves(panel.experiment):

@@ -575,7 +575,7 @@ class Figure(Analysis):
             study=study,
             columns=spec.columns,
             width=spec.width,
-            panels=[_planned(content, panel) for panel in spec.panels],
+            panels=spec.panels,
             labels=labels_of(content, figure),
             looks={
                 name: look for name, look in looks(content).items() if any_method or name in methods
@@ -646,13 +646,6 @@ def workspaces_of_figure(study: Study, figure: str) -> list[str]:
     """Names of the workspaces that a figure draws without runs."""
     panels = study.figures[figure].panels
     return sorted({panel.workspace for panel in panels if getattr(panel, "workspace", None)})
-
-
-def _planned(study: Study, panel: Panel) -> Panel:
-    """A panel with all its settings, if it plans by itself."""
-    return (
-        panel.but(settings=study.resolved(panel.method) | panel.settings) if panel.plans else panel
-    )
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:

@@ -112,14 +112,12 @@ class Sources:
 class Panel(Model, ABC):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
-    rerun: whether runs are repeated to draw what no table keeps. plans: the planner by which it
-    plans itself, with a method of the study. one: columns of which the runs that it shows have one
-    value. drives: whether these are drives. tracks: whether their planner must have `track`.
-    fewest_methods: how many methods it compares at least.
+    rerun: whether runs are repeated to draw what no table keeps. one: columns of which the runs
+    that it shows have one value. drives: whether these are drives. tracks: whether
+    their planner must have `track`. fewest_methods: how many methods it compares at least.
     """
 
     rerun: ClassVar[bool] = False
-    plans: ClassVar[str] = ""
     one: ClassVar[tuple[str, ...]] = ()
     drives: ClassVar[bool] = False
     tracks: ClassVar[bool] = False

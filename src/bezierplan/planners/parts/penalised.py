@@ -1,11 +1,10 @@
-"""The length of a particle's curve, and the penalty for the circles, spheres and polygons it meets;
+"""The length of a particle's curve, and the penalty for the circles and polygons it meets;
 a particle holds the free control points.
 
-Kernels take the number of dimensions d, 2 or 3, from the shape of their arrays. tharwat2018 has
-circles only. Its measure, depth as a share of the circle's radius, is read as depth below the
-obstacle's edge as a share of the largest such depth, which for a circle is the same; so it applies
-to a polygon too, whose largest depth is the radius of its largest inscribed circle. The border is
-no obstacle: the swarm's own bounds keep the control points inside.
+tharwat2018 has circles only. Its measure, depth as a share of the circle's radius, is read as depth
+below the obstacle's edge as a share of the largest such depth, which for a circle is the same; so
+it applies to a polygon too, whose largest depth is the radius of its largest inscribed circle. The
+border is no obstacle: the swarm's own bounds keep the control points inside.
 """
 
 from enum import IntEnum
@@ -18,7 +17,6 @@ from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
-from bezierplan.workspaces.spheres import Spheres
 
 if TYPE_CHECKING:
     from shapely import LinearRing
@@ -47,9 +45,9 @@ class Polygonal(NamedTuple):
 class Objective(NamedTuple):
     """The fitness of a path, for the kernels.
 
-    ends: (d, samples), the contributions of start and target to the samples, by coordinate. free:
-    (n, samples), the weights of the free control points. balls: (obstacles, d + 1), centre and
-    radius of circles or spheres, in units. polygons: the other obstacles, in the plane. penalty:
+    ends: (2, samples), the contributions of start and target to the samples, by coordinate. free:
+    (n, samples), the weights of the free control points. balls: (obstacles, 3), centre and
+    radius of circles, in units. polygons: the other obstacles, in the plane. penalty:
     the rule's number. beta: its factor.
     """
 
@@ -127,17 +125,17 @@ def length(
     return (a + b) + (c + d)
 
 
-def round_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -> np.ndarray:
-    """The circles or spheres of a workspace, grown by a distance in units: (obstacles, d + 1),
-    centre and radius; none among polygons.
+def round_obstacles(workspace: Circles | Polygons, d_min: float) -> np.ndarray:
+    """The circles of a workspace, grown by a distance in units: (obstacles, 3), centre and radius;
+    none among polygons.
     """
     if isinstance(workspace, Polygons):
         return np.empty((0, 3))
     return np.column_stack([workspace.centres, workspace.radii + d_min])
 
 
-def polygonal_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -> Polygonal:
-    """The polygons of a workspace, grown by a distance in units; none among circles and spheres."""
+def polygonal_obstacles(workspace: Circles | Polygons, d_min: float) -> Polygonal:
+    """The polygons of a workspace, grown by a distance in units; none among circles."""
     if not isinstance(workspace, Polygons) or not workspace.obstacles:
         return Polygonal(
             np.empty((0, 4)), np.zeros(1, dtype=np.int64), np.empty((0, 4)), np.empty(0)
@@ -224,19 +222,16 @@ def _depth(x, y, edges):
 
 @allocation_free
 def _among_balls(curve, balls, squares):
-    """The parts of `violation` for circles or spheres (obstacles, d + 1)."""
-    dimensions, samples = curve.shape
+    """The parts of `violation` for circles (obstacles, 3)."""
+    samples = curve.shape[1]
     x, y = curve[0], curve[1]
     total, colliding = 0.0, 0
     for o in range(len(balls)):
-        x_centre, y_centre, radius = balls[o, 0], balls[o, 1], balls[o, dimensions]
+        x_centre, y_centre, radius = balls[o, 0], balls[o, 1], balls[o, 2]
         square = radius * radius
         for s in range(samples):
             dx, dy = x[s] - x_centre, y[s] - y_centre
             squares[s] = dx * dx + dy * dy
-        for axis in range(2, dimensions):
-            for s in range(samples):
-                squares[s] += (curve[axis, s] - balls[o, axis]) ** 2
         inside = 0
         for s in range(samples):
             inside += squares[s] < square

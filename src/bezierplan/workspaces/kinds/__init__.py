@@ -100,12 +100,11 @@ class Workspace(Model):
     """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see;
     made: for one converted from files of another format, the kind that planners see; with_side:
     whether its problems have a `side`; moves: whether it is a world, in which runs are simulated
-    drives; planar: whether it has two dimensions.
+    drives.
     """
 
     drawn: ClassVar[str | None] = None
     made: ClassVar[str | None] = None
-    planar: ClassVar[bool] = True
     with_side: ClassVar[bool] = False
     moves: ClassVar[bool] = False
 
