@@ -129,7 +129,10 @@ def page(folder: Path) -> SimpleNamespace:
         "numbers": numbers[printed].assign(study="one", table="table1", counted=True),
         "claims": claims,
         "baseline_comparison": pd.DataFrame(
-            [row | {"method": "a", "curvature": 1.25}, row | {"method": "c", "curvature": "inf"}]
+            [
+                row | {"method": "a", "curvature": 1.25, "proposed": True},
+                row | {"method": "c", "curvature": "inf", "proposed": False},
+            ]
         ),
     }
     for name, table in files.items():

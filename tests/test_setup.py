@@ -14,6 +14,7 @@ TARGETS = {
     "help",
     "reproduce",
     "smoke",
+    "beyond",
     "extended",
     "test",
     "docs",

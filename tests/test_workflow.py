@@ -350,7 +350,7 @@ def test_single_figure_needs_only_its_own_methods(tree):
         "problems": 1,
         "bounds": 1,
         "figure figure4": 1,
-        **runs(2, ["smooth", "smooth_cubic", "smooth_single"]),
+        **runs(2, ["smooth"]),
     }
     assert {
         name: number
