@@ -194,11 +194,15 @@ def test_files_of_problems_keep_the_world(tmp_path):
             "policy: replan",
             "methods: mine: policy: replan: unknown; did you mean replans",
         ),
-        ("policy: replans, ", "", "methods: mine: has no policy, which a world that moves needs"),
+        (
+            "policy: replans, ",
+            "",
+            "methods: mine: needs a policy, which experiments in worlds that move",
+        ),
         (
             "methods: [still]",
             "methods: [mine]",
-            "methods: mine: has a policy, but nothing moves here",
+            "methods: mine: has a policy, which experiments in worlds that move",
         ),
         (
             "problems: [across]",
