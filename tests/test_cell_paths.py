@@ -85,19 +85,21 @@ def joined_list(places, cells, longest):
 
 
 @given(seeds, st.sampled_from(["one", "none"]), st.integers(10, 60))
-@settings(max_examples=200)
+@settings(max_examples=100)
 def test_cells_are_joined_as_a_list_that_grows_in_its_middle(seed, corners, longest):
     grid, rng = random_grid(seed), np.random.default_rng(seed)
     places, marks = places_of(grid, corners), marks_of(places_of(grid))
     cells = np.array(
         [places.start, *rng.choice(np.flatnonzero(~places.occupied), size=4), places.target]
     )
-    path = np.empty(longest, dtype=np.int64)
-    size = cell_paths.join(places, cells, path, marks)
-    expected = joined_list(places, cells.tolist(), longest)
-    assert path[:size].tolist() == (expected or [])
-    assert expected is None or is_path(expected, places)
-    assert not marks.any()
+    # Also where the path just fits.
+    for most in {longest, len(joined_list(places, cells.tolist(), 1000) or cells)}:
+        path = np.empty(most, dtype=np.int64)
+        size = cell_paths.join(places, cells, path, marks)
+        expected = joined_list(places, cells.tolist(), most)
+        assert path[:size].tolist() == (expected or [])
+        assert expected is None or is_path(expected, places)
+        assert not marks.any()
 
 
 @given(seeds)

@@ -29,6 +29,9 @@ COMMANDS = [
 DRY = {
     "make reproduce": "make -n reproduce",
     "make test": "make -n test",
+    # Nothing but the study of one's own is there in full.
+    "python -m bezierplan verify results/full": "python -m bezierplan verify results/full "
+    "--studies ./mystudy",
     "snakemake song2016": "snakemake -n song2016",
     "snakemake song2016_figure4": "snakemake -n song2016_figure4",
     "snakemake song2016_table1": "snakemake -n song2016_table1",

