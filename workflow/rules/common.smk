@@ -179,3 +179,40 @@ def caption(wildcards, output):
     """
     name = wildcards.get("table") or wildcards.figure
     return jobs.escaped(jobs.caption(STUDIES[wildcards.study], name, wildcards.scale))
+
+
+COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
+FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
+CLAIMED = [key for key, study in STUDIES.items() if study.claims]
+
+
+def shown(wildcards):
+    """Files of a scale that the page shows: what the papers have, and of the rest what there is."""
+    artefacts = [
+        file
+        for study in STUDIES.values()
+        for name in page.shown_of(study, wildcards.scale, PREFIX)
+        for file in files_of(wildcards.scale, study, name)
+    ]
+    named = {
+        "claims": CLAIMED,
+        "claim_checks": CLAIMED,
+        "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
+        "sensitivity": [
+            key for key, study in STUDIES.items() if page.tried(study, wildcards.scale, PREFIX)
+        ],
+    }
+    summary = [
+        f"results/{wildcards.scale}/{name}" for name in ("summary.md", "wholes.csv") if COMPARED
+    ]
+    verdicts = [f"results/{wildcards.scale}/{key}/verdict.md" for key in FOLLOWING]
+    return [
+        *artefacts,
+        *summary,
+        *verdicts,
+        *(
+            f"results/{wildcards.scale}/{key}/{name}.csv"
+            for name, keys in named.items()
+            for key in keys
+        ),
+    ]

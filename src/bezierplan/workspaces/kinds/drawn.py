@@ -43,7 +43,9 @@ def draw(description: dict, problem: dict, name: str) -> Circles | Grid | Polygo
     """
     function = getattr(module(description["file"]), description["function"])
     rng = generator(name, problem["layout"])
-    workspace = function(rng, problem, **description.get("arguments", {}))
+    workspace: Circles | Grid | Polygons = function(
+        rng, problem, **description.get("arguments", {})
+    )
     if not isinstance(workspace, TYPES[description["sees"]]):
         raise ValueError(
             f"function: {function.__name__}: returns {type(workspace).__name__}; expected "

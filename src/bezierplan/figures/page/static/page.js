@@ -1,20 +1,6 @@
 // Links into closed parts, tooltips by keyboard, search, filters, and tables that sort. Without this script the page shows the same content.
 const find = (id) => document.getElementById(id);
 
-// Packed text: data of the viewer, and pictures.
-async function unpack(packed) {
-  const bytes = Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
-}
-
-async function unpackPictures() {
-  for (const picture of document.querySelectorAll("[data-packed]")) {
-    const text = await unpack(picture.dataset.packed);
-    delete picture.dataset.packed;
-    Object.assign(picture, { loading: "lazy", src: URL.createObjectURL(new Blob([text], { type: "image/svg+xml" })) });
-  }
-}
-
 // Tables that sort: by data-order, or else by what a cell shows; empty cells come last.
 
 for (const heading of document.querySelectorAll("table.sortable thead th")) {

@@ -1,4 +1,18 @@
 // The path viewer: choose a run, see it in its workspace; a drive plays.
+// Packed text: data of the viewer, and pictures.
+async function unpack(packed) {
+  const bytes = Uint8Array.from(atob(packed), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
+}
+
+async function unpackPictures() {
+  for (const picture of document.querySelectorAll("[data-packed]")) {
+    const text = await unpack(picture.dataset.packed);
+    delete picture.dataset.packed;
+    Object.assign(picture, { loading: "lazy", src: URL.createObjectURL(new Blob([text], { type: "image/svg+xml" })) });
+  }
+}
+
 const data = JSON.parse(await unpack(find("page-data").textContent));
 const form = document.getElementById("viewer");
 const SVG = "http://www.w3.org/2000/svg";
