@@ -199,6 +199,8 @@ def test_a_signal_ends_a_command_and_its_planner(number, tmp_path):
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        # A shell's job in the background would leave it ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     until = time.monotonic() + 60
     while not begun.exists() and time.monotonic() < until:
