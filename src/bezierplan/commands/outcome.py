@@ -4,6 +4,7 @@ Verdicts and numbers are those of scale extended: they are about the methods, no
 samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
 """
 
+import re
 import shutil
 from pathlib import Path
 
@@ -20,6 +21,8 @@ PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
 # The run of the README's animation, and its file.
 DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
+# Between two sentences: the README has the first of a paper.
+_SENTENCE = re.compile(r"(?<=[.])\s+(?=[A-Z0-9])")
 # The table of alternatives of each study at scale full.
 SENSITIVITY = "sensitivity.csv"
 AUDIT = "audit.csv"
@@ -99,7 +102,7 @@ def table(kept: Path) -> str:
     ]
     overview = headline.headline(*tables, titles)
     follow = "\n".join(
-        f"- {titles[key].partition(':')[0]}: {text.partition(chr(10))[0]}"
+        f"- {titles[key].partition(':')[0]}: {_SENTENCE.split(text)[0]}"
         for key, text in following(kept, *tables).items()
     )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
