@@ -68,7 +68,7 @@ LIES = {
     ),
     "odd points": (
         path(LINE[[0, 0, 1, 1, 1]], "ferguson"),
-        "path: a curve of kind ferguson needs an even number",
+        "path: a curve of kind ferguson needs at least ",
     ),
     "unknown curve": (path(LINE, "nurbs"), "path: curve: 'nurbs'; expected one of "),
     "curve no text": (path(LINE, ["polyline"]), "path: curve: ['polyline']; expected one of"),

@@ -484,9 +484,10 @@ def altered(key, table, change) -> dict[str, pd.DataFrame]:
 
 
 def q_statistics(monkeypatch, truth):
-    return {}, None if truth else altered(
-        "elhoseny2017", "table1", lambda values: 1 - values.where(values.index > 0, 1 - values)
-    )
+    tables = published("elhoseny2017")
+    alike = tables["table1"].copy()
+    alike.iloc[1, 1:] = alike.iloc[0, 1:]
+    return {}, None if truth else tables | {"table1": alike}
 
 
 def printed_lengths(monkeypatch, truth):

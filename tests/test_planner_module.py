@@ -170,6 +170,8 @@ def test_an_interrupt_ends_the_workflow_that_a_command_has_started(tmp_path):
         [*command, "run", "mine", "--cores", "1"],
         cwd=tmp_path,
         env=environment,
+        # A shell's job in the background would leave it ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
