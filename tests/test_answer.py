@@ -68,7 +68,8 @@ LIES = {
     ),
     "odd points": (
         path(LINE[[0, 0, 1, 1, 1]], "ferguson"),
-        "path: a curve of kind ferguson needs at least ",
+        "path: a curve of kind ferguson needs at least 4 control points, or by a multiple of 2 "
+        "more, not 5",
     ),
     "unknown curve": (path(LINE, "nurbs"), "path: curve: 'nurbs'; expected one of "),
     "curve no text": (path(LINE, ["polyline"]), "path: curve: ['polyline']; expected one of"),

@@ -8,6 +8,7 @@ must run again. Files stand in the rules alone.
 
 import hashlib
 import inspect
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -34,7 +35,7 @@ Studies = dict[str, Study]
 
 
 @dataclass(frozen=True)
-class Job:
+class Job(ABC):
     """What a job is made of. `of` makes it from the studies and the wildcards of its rule.
 
     shows: experiment, or study/experiment -> method -> number of chunks: the results that it reads,
@@ -44,13 +45,13 @@ class Job:
     shows: Shows = field(default_factory=dict, kw_only=True)
 
     @classmethod
+    @abstractmethod
     def of(cls, studies: Studies, **wildcards: str) -> Self:
         """The job of some wildcards."""
-        raise NotImplementedError
 
+    @abstractmethod
     def run(self, input_files: Any, output_files: Any, threads: int) -> None:
         """Do the work with the files of a rule, by their names there."""
-        raise NotImplementedError
 
     def __str__(self) -> str:
         """For reports, whose readers' browsers must not run words of a study."""
