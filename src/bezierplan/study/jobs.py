@@ -699,12 +699,12 @@ class Claims(Analysis):
     def of(cls, studies, scale, study):
         """The claims of a study."""
         content = studies[study]
-        experiments = alternatives.experiments_of_claims(content.claims)
+        claims = [claim for claim in content.claims if claim.scale in (None, scale)]
         shows = {
             name: chunks_of(content, name, content.experiments[name].methods, scale)
-            for name in experiments
+            for name in alternatives.experiments_of_claims(claims)
         }
-        return cls(**_claims(content, content.claims, scale), shows=shows)
+        return cls(**_claims(content, claims, scale), shows=shows)
 
     def modules(self):
         """Kinds of check as well."""

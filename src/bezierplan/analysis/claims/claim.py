@@ -45,6 +45,11 @@ class Claim(Model):
     finding: Literal[True] = Field(
         None, description="true: our own finding, no sentence of the paper; left out otherwise"
     )
+    scale: Literal["extended"] = Field(
+        None,
+        description="extended: judged at that scale alone, for the paper has nothing that its runs "
+        "are behind; left out for all other claims",
+    )
     criterion: Literal["ours"] = Field(
         None,
         description="ours: the paper gives no number, and the threshold or margin that decides is "
