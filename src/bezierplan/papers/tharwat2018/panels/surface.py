@@ -40,4 +40,6 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Not
     numbers = landscape.round_numbers(values)
     axes.set_zticks(np.log10(numbers), [f"{number:g}" for number in numbers])
     axes.tick_params(pad=-3)
+    for axis in "xy":
+        axes.locator_params(axis, nbins=5)
     return landscape.minima_note(frame, scene.unit)
