@@ -16,7 +16,7 @@ os.environ.update(
 
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
-from bezierplan.schema.checked import Fault
+from bezierplan.schema import checked
 from bezierplan.study import alternatives, experiments, jobs, page, reading
 
 # The directive `script` calls the function of this name: here a fork of one process with all
@@ -30,17 +30,18 @@ def or_exit(work, *of):
     """What a function returns; a fault ends the program, in one line."""
     try:
         return work(*of)
-    except Fault as fault:
+    except checked.Fault as fault:
         print(fault, file=sys.stderr)
         sys.exit(2)
 
 
-CONFIG = "config/config.yaml"
+CONFIG = reading.config_file()
 # In a module, the configuration is that of the workflow which uses it.
-or_exit(reading.check_config, CONFIG if not config else "")
-if Path(CONFIG).is_file():
+if not config:
+    or_exit(checked.read, CONFIG)
 
-    configfile: CONFIG
+
+configfile: CONFIG
 
 
 STUDIES = or_exit(lambda: reading.load(reading.read_config(config)))

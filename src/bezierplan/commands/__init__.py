@@ -31,8 +31,9 @@ def config_of(names: Sequence[str] = ()) -> dict[str, Any]:
     """
     if names:
         return {"studies": [study_named(name) for name in names]}
-    files = (folder / "config" / "config.yaml" for folder in (Path(), TREE))
-    return checked.read(next(file for file in files if file.is_file()))
+    from bezierplan.study import reading
+
+    return checked.read(reading.config_file())
 
 
 def study_named(word: str) -> str:

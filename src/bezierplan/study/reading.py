@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from bezierplan.analysis import study_code
 from bezierplan.machine.modules import code_of
-from bezierplan.places import STUDIES
+from bezierplan.places import STUDIES, TREE
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest, part
 from bezierplan.schema.model import Model, parsed
@@ -26,10 +26,10 @@ Folders = dict[Path, dict[str, Any]]
 """Folders of studies, with the settings that take the place of a study's own."""
 
 
-def check_config(file: str) -> None:
-    """Raise Fault unless a configuration, if there is one, is YAML as it is read here."""
-    if Path(file).is_file():
-        checked.read(Path(file))
+def config_file() -> Path:
+    """The file that names the studies to run: the working folder's, or the project's."""
+    own = Path("config", "config.yaml")
+    return own if own.is_file() else TREE / own
 
 
 def read_config(config: Mapping[str, Any]) -> Folders:
