@@ -18,13 +18,13 @@ import numpy as np
 
 import bezierplan
 from bezierplan.geometry import checker, curves, path_files, samples, shortest_paths
+from bezierplan.geometry.region import region
 from bezierplan.places import STUDIES
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import planning, problems
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.running.judge import answer as answers
-from bezierplan.running.problems import Regions
 from bezierplan.schema.checked import closest
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
@@ -317,12 +317,10 @@ def shortest_path(problem: Problem) -> Shortest:
     return Shortest(*_bound(problem)[1])
 
 
-def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound, Regions]:
-    """A problem with its exact shortest path, and the blocked regions of maps."""
-    regions = problems.remembered()
-    placed = problems.placed(problem, regions)
-    blocked = regions(placed.workspace)
-    return placed, shortest_paths.shortest_path(placed, blocked=blocked), regions
+def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound]:
+    """A problem with its exact shortest path."""
+    placed = problems.placed(problem)
+    return placed, shortest_paths.shortest_path(placed)
 
 
 def check(problem: Problem, path: Path) -> Judged:
@@ -365,12 +363,11 @@ def check(problem: Problem, path: Path) -> Judged:
 def verdict(
     problem: Problem,
     shortest: shortest_paths.Bound,
-    regions: Regions,
     path: Path | None,
 ) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
-    shortest: the exact shortest path. regions: the blocked regions of maps.
+    shortest: the exact shortest path.
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
 
@@ -384,8 +381,8 @@ def verdict(
     if path is None:
         return fields
     pieces = curves.bezier_pieces(path)
-    verdict = checker.check(pieces, regions(problem.workspace))
-    at_home = checker.check(pieces, regions(grown.original)) if grown else verdict
+    verdict = checker.check(pieces, region(problem.workspace))
+    at_home = checker.check(pieces, region(grown.original)) if grown else verdict
     length, jump = curves.length(path), curves.curvature_jump(path)
     if verdict.feasible:
         assert at_home.clearance >= fields["robot_radius"] - robot.TOLERANCE
@@ -479,17 +476,16 @@ def plan(
             raise ValueError(f"{wish}: only for {' and '.join(allowed)}; the planner is {name}")
     plain = {k: v.item() if isinstance(v, np.generic) else v for k, v in settings.items()}
     settings = preset | plain
-    grown = problem._replace(workspace=robot.grow(problem.workspace, robot_radius))
-    regions = problems.remembered()
-    placed = problems.placed(grown, regions, getattr(module, "workspaces", None))
+    grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
+    placed = problems.placed(grown, getattr(module, "workspaces", None))
     _check_settings(name, module, settings, placed)
-    parts = planning.legs(placed, places, regions)
-    shortest, label = planning.shortest(parts, regions(placed.workspace)), f"method: {name}"
+    parts = planning.legs(placed, places)
+    shortest, label = planning.shortest(parts), f"method: {name}"
     try:
         answer, cpu_s = planning.planned(
             label, module.plan, parts, settings, seed, planner if is_file(planner) else ""
         )
-        judged = verdict(placed, shortest, regions, answer.path)
+        judged = verdict(placed, shortest, answer.path)
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:

@@ -6,6 +6,7 @@ border. A path may touch its boundary. The union is formed before any test, beca
 seam of two touching obstacles enters neither of them and yet is deep inside their union.
 """
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -110,6 +111,8 @@ class PolygonRegion(NamedTuple):
 Region = GridRegion | CircleRegion | PolygonRegion
 
 
+# Few: that of a map of 4,000 x 4,000 cells takes half a gigabyte.
+@lru_cache(maxsize=4)
 def region(workspace: Workspace) -> Region:
     """The blocked region of a workspace; of cells drawn from polygons, that of the polygons.
 
@@ -121,7 +124,7 @@ def region(workspace: Workspace) -> Region:
     Returns
     -------
     GridRegion, CircleRegion or PolygonRegion
-        It shares no memory with the workspace. Build it once and use it for many paths.
+        It shares no memory with the workspace. Those of the last maps are remembered.
     """
     if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
         return _polygon_region(workspace.drawn)

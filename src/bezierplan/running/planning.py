@@ -10,14 +10,12 @@ from typing import Any
 import numpy as np
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
 from bezierplan.running import problems
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.running.judge import answer
-from bezierplan.running.problems import Regions
 from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
@@ -49,7 +47,7 @@ def preset(workspace: Workspace) -> dict[str, Any]:
     return {"turning_radius": SHARE * max(x_high - x_low, y_high - y_low), "offset": 0.0}
 
 
-def legs(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions) -> list[Problem]:
+def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
     """The problems from start to the first way point, and so on to the target.
 
     Raises ValueError for a way point that is not free, or equals its neighbour.
@@ -58,7 +56,7 @@ def legs(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions)
     for point in via:
         ends = {"start": point, "target": point}
         try:
-            places.append(problems.build("", ends, problem.workspace, regions).start)
+            places.append(problems.build("", ends, problem.workspace).start)
         except ValueError as error:
             raise ValueError(f"via{str(error).removeprefix('start')}") from None
     pairs = list(pairwise([*places, problem.target]))
@@ -68,9 +66,9 @@ def legs(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions)
     return [problem._replace(start=start, target=target) for start, target in pairs]
 
 
-def shortest(parts: Sequence[Problem], blocked: Region) -> shortest_paths.Bound:
-    """The exact shortest path through all legs. blocked: the region of their map."""
-    bounds = [shortest_paths.shortest_path(part, blocked=blocked) for part in parts]
+def shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
+    """The exact shortest path through all legs."""
+    bounds = [shortest_paths.shortest_path(part) for part in parts]
     return shortest_paths.Bound(
         sum(bound.length for bound in bounds), np.concatenate([bound.points for bound in bounds])
     )

@@ -7,7 +7,7 @@ bounds: `columns.Bound`.
 """
 
 import math
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ import numpy as np
 
 from bezierplan.geometry import cell_length
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import Region, blocks, region
+from bezierplan.geometry.region import blocks, region
 from bezierplan.running.columns import Bound
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.workspaces import files, lattice, robot
@@ -30,47 +30,27 @@ if TYPE_CHECKING:
     from bezierplan.geometry import shortest_paths
 
 
-Regions = Callable[[Workspace], Region]
-"""The blocked region of a map in its own frame."""
-
-
-def remembered() -> Regions:
-    """`region` that builds the one of each map once, for callers who keep their maps."""
-    known: dict[int, tuple[Workspace, Region]] = {}
-
-    def find(workspace: Workspace) -> Region:
-        if id(workspace) not in known:
-            known[id(workspace)] = workspace, region(workspace)
-        return known[id(workspace)][1]
-
-    return find
-
-
-def placed(
-    problem: Problem, regions: Regions = region, served: Collection[str] | None = None
-) -> Problem:
+def placed(problem: Problem, served: Collection[str] | None = None) -> Problem:
     """A problem whose start and target are known to be free, on the map that suits a planner of
     some kinds of workspace, None for all.
 
     Raises ValueError as `build` does.
     """
     home = robot.suited(problem.workspace, served)
-    return build(problem.name, {"start": problem.start, "target": problem.target}, home, regions)
+    return build(problem.name, {"start": problem.start, "target": problem.target}, home)
 
 
-def build(name: str, description: dict, workspace: Workspace, regions: Regions = region) -> Problem:
+def build(name: str, description: dict, workspace: Workspace) -> Problem:
     """A problem from its description: start and target, (x, y) in units, or start_cell and
     target_cell, cell numbers of a grid.
 
     Raises ValueError, naming key and value, unless they lie in free space.
     """
-    start, target = (_end(end, description, workspace, regions) for end in ("start", "target"))
+    start, target = (_end(end, description, workspace) for end in ("start", "target"))
     return Problem(name, workspace, start, target)
 
 
-def _end(
-    end: str, description: dict, workspace: Workspace, regions: Regions
-) -> tuple[float, float]:
+def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
     key = end if end in description else f"{end}_cell"
     value = description[key]
     if key == end:
@@ -89,10 +69,10 @@ def _end(
             f"{key}: {value}: outside the workspace; expected x from {x_low:.12g} to {x_high:.12g} "
             f"and y from {y_low:.12g} to {y_high:.12g}"
         )
-    if blocks(regions(home), point):
+    if blocks(region(home), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
-    if grown and blocks(regions(workspace), point):
-        distance = check(np.array([[point, point]]), regions(home)).clearance
+    if grown and blocks(region(workspace), point):
+        distance = check(np.array([[point, point]]), region(home)).clearance
         least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
         cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.drawn else ""
         raise ValueError(
@@ -123,7 +103,7 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
         for name, each in described.workspaces.items()
         if hasattr(kinds[name], "load")
     }
-    problems, of_fixed = {}, remembered()
+    problems = {}
     for name, description in described.problems.items():
         home = description["workspace"]
         arguments = described.workspaces[home], description, f"{described.study}/{home}"
@@ -135,10 +115,7 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
             workspace = _suitable(
                 kinds[home], kinds[home].candidates(*arguments), arguments[0], description
             )
-        # Start and target are looked up in the region of the same map, as are those of all problems
-        # on a map from a file; drawn maps are as many as problems, and so are not kept.
-        regions = of_fixed if home in fixed else remembered()
-        problems[name] = build(name, description, workspace, regions)
+        problems[name] = build(name, description, workspace)
     return problems
 
 

@@ -8,7 +8,7 @@ from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.grown import Grown
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Circles:
     """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units.
     radii: (n,) in units. unit: its name.

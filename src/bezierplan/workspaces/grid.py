@@ -21,7 +21,7 @@ from bezierplan.workspaces.polygons import Polygons
 ON_LINE = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Grid:
     """Cells of a rectangle.
 

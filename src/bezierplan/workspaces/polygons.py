@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import shapely
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Polygons:
     """bounds: lowest and highest x, lowest and highest y, in units.
 

@@ -11,6 +11,7 @@ whole cells.
 import math
 from collections.abc import Collection
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,6 +53,7 @@ _SAME_POINT = 1e-10
 _STRAIGHT = 1e-9
 
 
+@lru_cache(maxsize=4)
 def grow(workspace: Workspace, radius: float) -> Workspace:
     """The map for the centre of a robot of a radius, in units, with its original as `grown`.
 

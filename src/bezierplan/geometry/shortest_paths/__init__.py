@@ -8,7 +8,7 @@ allowed. There is one file for each kind of region, and one for the lattice.
 import numpy as np
 
 from bezierplan.geometry.checker import TOLERANCE, check
-from bezierplan.geometry.region import CircleRegion, GridRegion, Region, region
+from bezierplan.geometry.region import CircleRegion, GridRegion, region
 from bezierplan.geometry.shortest_paths.circles import shortest_around_circles
 from bezierplan.geometry.shortest_paths.graph import Bound, no_path
 from bezierplan.geometry.shortest_paths.grid import centre_path, shortest_on_grid
@@ -19,15 +19,13 @@ from bezierplan.workspaces.problem import Problem
 __all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_path"]
 
 
-def shortest_path(problem: Problem, blocked: Region | None = None) -> Bound:
+def shortest_path(problem: Problem) -> Bound:
     """The shortest path from start to target.
 
     Parameters
     ----------
     problem : Problem
         The workspace with both ends.
-    blocked : Region, optional
-        The region of the workspace, if it is known.
 
     Returns
     -------
@@ -53,7 +51,7 @@ def shortest_path(problem: Problem, blocked: Region | None = None) -> Bound:
     >>> found.points.tolist()
     [[0.5, 0.5], [1.0, 2.0], [3.5, 2.5]]
     """
-    blocked = region(problem.workspace) if blocked is None else blocked
+    blocked = region(problem.workspace)
     for point in (problem.start, problem.target):
         if not check(np.array([[point, point]]), blocked).feasible:
             return no_path()

@@ -180,12 +180,11 @@ def judged(task: Task) -> Verdict:
         faults += of_file
         files |= {} if of_file else {file: table}
     known: dict[tuple[str, str, bytes], _Judged] = {}
-    regions = problems.remembered()
     for file, table in files.items():
         faults += (
             _drive_faults(file, table, made, moving)
             if moving
-            else _path_faults(file, table, made, known, regions)
+            else _path_faults(file, table, made, known)
         )
     faults += _alike(files, task.runs)
     runs = sum(map(len, files.values()))
@@ -299,7 +298,6 @@ def _path_faults(
     table: pa.Table,
     made: dict[str, Problem],
     known: dict[tuple[str, str, bytes], _Judged],
-    regions: problems.Regions,
 ) -> Iterator[Fault]:
     """What of runs differs from what their points say. known: what different paths say."""
     verdicts = np.full((len(table), 6), math.nan)
@@ -307,7 +305,7 @@ def _path_faults(
     for row, (run, name, curve, points) in enumerate(zip(*words, _lists(table, "path_points"))):
         key = name, curve, points.tobytes()
         if key not in known:
-            known[key] = _path_judged(curve, points, made[name], regions(made[name].workspace))
+            known[key] = _path_judged(curve, points, made[name], region(made[name].workspace))
         verdicts[row], faults = known[key]
         yield from (Fault(file, run, *fault) for fault in faults)
     length, feasible, collision_at, depth, clearance, tolerance = verdicts.T
