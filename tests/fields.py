@@ -9,6 +9,7 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
+from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
 # The six benchmark maps of elhoseny2017.
@@ -57,3 +58,15 @@ def assert_path_fits(problem: Problem, found: Plan) -> None:
         <= cell_length.length8(found.path, grid)
         <= cell_length.length4(found.path, grid)
     )
+
+
+def on_map(
+    *lines: str,
+    start: tuple[float, float] | None = None,
+    target: tuple[float, float] | None = None,
+    cell: float = 1.0,
+) -> Problem:
+    """From the lower left to the upper right cell of a map of cells, unless told otherwise."""
+    grid = from_lines(list(lines), cell, "unit")
+    ends = start or grid.centre(0), target or grid.centre(grid.occupied.size - 1)
+    return Problem("test", grid, *ends)

@@ -6,9 +6,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import drawings, results
+from bezierplan.planners import Plan, planner_module
 from bezierplan.running import problems
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
@@ -58,3 +60,12 @@ def built(study: Study, experiment: str, name: str) -> Problem:
     home = alone["workspace"]
     described = every._replace(problems={name: alone}, workspaces={home: every.workspaces[home]})
     return problems.build_all(described, study.folder)[name]
+
+
+def planned(key: str, method: str, problem: Problem, seed: int = 0, **changes: Any) -> Plan:
+    """The plan of a method of a study, with its settings but for some changes."""
+    own = study(key)
+    settings = own.resolved(method) | changes
+    return planner_module(own.planner(method)).plan(
+        problem, np.random.default_rng(seed), **settings
+    )

@@ -43,9 +43,3 @@ def test_the_history_begins_with_the_ants():
     assert len(found.history) == 15
     assert found.history[:6].tolist() == colony.history.tolist()
     assert found.evaluations == 20 * 6 + 100 * 9
-
-
-def test_the_genetic_algorithm_betters_the_ants_paths():
-    for seed in range(5):
-        found = plan("aco_ga", seed=seed)
-        assert found.objective < found.history[49]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from studies import planned
 
 from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import region
@@ -15,25 +16,7 @@ from bezierplan.planners import bca
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = {
-    "curve": "bezier",
-    "control_points": 8,
-    "samples": 201,
-    "initial": "uniform",
-    "population": 20,
-    "generations": 10,
-    "crossover_probability": 0.9,
-    "mutation_probability": 0.1,
-    "mutation": "bit_flip",
-    "elitism": 1,
-    "fitness": "length",
-    "fitness_feasible": "collision_free",
-    "length_weight": 0.8,
-    "safety_weight": 0.1,
-    "safety_distance": 0.25,
-    "collision_factor": 5.0,
-    "collision_surcharge": 10.0,
-}
+FEW = {"population": 20, "generations": 10}
 OPEN = Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell")
 STRAIGHT = 20 * math.sqrt(2)
 BLOCK = from_lines(["....", ".##.", ".##.", "...."], 1.0, "cell")
@@ -48,9 +31,7 @@ def random_grid(seed, share=0.15):
 
 def plan(grid=OPEN, seed=0, start=(0.0, 0.0), target=None, **changes):
     target = target or (grid.bounds[1], grid.bounds[3])
-    return bca.plan(
-        Problem("test", grid, start, target), np.random.default_rng(seed), **(SETTINGS | changes)
-    )
+    return planned("ma2020", "bca", Problem("test", grid, start, target), seed, **FEW | changes)
 
 
 def reference(path, grid, samples):
@@ -176,18 +157,6 @@ def test_no_mutation_and_no_crossover_only_copies():
     assert len(set(found.history.tolist())) == 1
 
 
-def test_no_generation_leaves_the_best_of_the_first():
-    assert plan(generations=0).objective == plan(generations=5).history[0]
-
-
-@pytest.mark.parametrize("fitness", tuple(bca.Fitness.__members__))
-def test_start_equal_to_target_is_answered_without_a_search(fitness):
-    found = plan(start=(3.0, 4.0), target=(3.0, 4.0), fitness=fitness)
-    assert (found.objective, found.evaluations, len(found.history)) == (0, 1, 1)
-    assert found.claimed_feasible
-    assert curves.length(found.path) == 0
-
-
 @pytest.mark.parametrize(("grid", "free"), [(OPEN, True), (BLOCK, False)])
 def test_no_control_point_leaves_the_straight_line(grid, free):
     found = plan(grid, control_points=0)
@@ -196,13 +165,6 @@ def test_no_control_point_leaves_the_straight_line(grid, free):
     assert (found.evaluations, len(found.history)) == (1, 1)
     if free:
         assert found.objective == pytest.approx(STRAIGHT)
-
-
-def test_one_control_point_cannot_be_cut():
-    block = Grid(np.pad(np.ones((2, 2), dtype=bool), 2), 1.0, "cell")
-    found = plan(block, control_points=1, generations=30)
-    assert len(found.path.points) == 3
-    assert found.claimed_feasible
 
 
 def test_an_empty_map_has_no_safety_term():
@@ -241,27 +203,6 @@ def test_no_safety_distance_is_never_undercut():
     )
 
 
-@pytest.mark.parametrize("fitness", ["length", "repaired", "hard_safety"])
-def test_the_unit_of_length_does_not_matter(fitness):
-    small = random_grid(6)
-    large = Grid(small.occupied, 10.0, "unit")
-    one = plan(small, fitness=fitness)
-    other = plan(large, fitness=fitness, safety_distance=2.5, collision_surcharge=100.0)
-    assert np.allclose(other.path.points, 10 * one.path.points)
-    assert other.objective == pytest.approx(one.objective * (1 if fitness == "repaired" else 10))
-
-
-def test_grids_need_not_be_square():
-    found = plan(Grid(np.zeros((3, 7), dtype=bool), 1.0, "cell"), generations=30)
-    assert found.path.points[:, 0].max() <= 7
-    assert found.path.points[:, 1].max() <= 3
-
-
-def test_a_full_map_is_an_error():
-    with pytest.raises(ValueError, match="all cells are occupied"):
-        plan(Grid(np.ones((3, 3), dtype=bool), 1.0, "cell"))
-
-
 def test_a_chain_of_pieces_is_measured_like_its_path():
     found = plan(random_grid(1), curve="piecewise_quadratic", samples=701, generations=20)
     assert found.path.curve == "piecewise_quadratic"
@@ -270,16 +211,3 @@ def test_a_chain_of_pieces_is_measured_like_its_path():
         assert found.objective == pytest.approx(curves.length(found.path), rel=1e-4)
     single = plan(random_grid(1), generations=20)
     assert not np.array_equal(found.history, single.history)
-
-
-@pytest.mark.parametrize(
-    ("changes", "named"),
-    [
-        ({"population": 21}, "population: 21"),
-        ({"curve": "piecewise_quadratic", "control_points": 0}, "control_points: 0"),
-        ({"curve": "piecewise_quadratic", "control_points": 8, "samples": 8}, "samples: 8"),
-    ],
-)
-def test_settings_that_do_not_fit_together_are_named(changes, named):
-    with pytest.raises(ValueError, match=named):
-        bca.check(SETTINGS | changes)

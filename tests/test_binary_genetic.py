@@ -9,29 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from studies import planned, study
 
 from bezierplan.geometry import curves
 from bezierplan.planners import binary_genetic
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = {
-    "curve": "piecewise_quadratic",
-    "genes": 6,
-    "samples": 601,
-    "spacing": "parameter",
-    "population": 20,
-    "generations": 10,
-    "crossover_probability": 0.5,
-    "cut": "bit",
-    "mutation_probability": 0.1,
-    "mutation": "one_bit",
-    "elitism": 1,
-    "penalty": 10.0,
-    "penalty_for": "each_sample",
-    "occupied_point_penalty": 0.0,
-    "report": "best_so_far",
-}
+SETTINGS = study("song2016").resolved("smooth") | {"population": 20, "generations": 10}
 SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 601, "bezier": 601}
 OPEN = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
 WALL = from_lines(["......#.", "......#.", "......#.", "......#."], 1.0, "unit")
@@ -42,8 +27,8 @@ def problem(workspace, start, target):
 
 
 def plan(workspace=OPEN, start=0, target=255, seed=0, **changes):
-    return binary_genetic.plan(
-        problem(workspace, start, target), np.random.default_rng(seed), **(SETTINGS | changes)
+    return planned(
+        "song2016", "smooth", problem(workspace, start, target), seed, **SETTINGS | changes
     )
 
 
@@ -159,39 +144,6 @@ def test_the_last_generation_can_be_worse_than_an_earlier_one(penalty):
     assert worse > 0
 
 
-def test_start_equal_to_target_is_answered_without_a_search():
-    found = plan(start=17, target=17)
-    assert found.objective == pytest.approx(0, abs=1e-9)
-    assert found.evaluations == 1
-    assert len(found.history) == 1
-    assert curves.length(found.path) == 0
-
-
-@pytest.mark.parametrize("curve", ["polyline", "bezier"])
-def test_no_free_gene_leaves_the_straight_line(curve):
-    found = plan(genes=0, curve=curve, samples=101)
-    assert found.objective == pytest.approx(150 * math.sqrt(2))
-    assert found.evaluations == 1
-
-
-def test_start_and_target_need_not_be_centres_of_cells():
-    anywhere = Problem("test", OPEN, (1.0, 2.5), (159.0, 30.0))
-    found = binary_genetic.plan(anywhere, np.random.default_rng(0), **SETTINGS)
-    assert np.array_equal(found.path.points[[0, -1]], [anywhere.start, anywhere.target])
-    assert found.objective == pytest.approx(reference(found.path, OPEN, 601)[0])
-
-
-def test_no_generation_leaves_the_best_of_the_first():
-    assert plan(generations=0).objective == plan(generations=5).history[0]
-
-
-def test_closed_wall_gives_a_path_that_is_said_to_collide():
-    found = plan(WALL, start=0, target=7, generations=40)
-    assert not found.claimed_feasible
-    assert found.objective > curves.length(found.path)
-    assert found.extra["bad_samples"] > 0
-
-
 def test_surplus_cells_of_a_narrow_grid_are_occupied():
     narrow = Grid(np.zeros((3, 5), dtype=bool), 1.0, "unit")
     found = plan(narrow, start=0, target=14, generations=30)
@@ -226,21 +178,6 @@ def test_occupied_control_points_cost_what_the_setting_says():
     assert found.objective == pytest.approx(
         length + 10 * bad + 7 * grid.occupied[row, column].sum()
     )
-
-
-@pytest.mark.parametrize(
-    ("changes", "named"),
-    [
-        ({"population": 21}, "population: 21"),
-        ({"genes": 0}, "genes: 0"),
-        ({"curve": "piecewise_cubic", "genes": 1}, "genes: 1"),
-        ({"spacing": "arc_length"}, "spacing"),
-        ({"samples": 6}, "samples: 6"),
-    ],
-)
-def test_settings_that_do_not_fit_together_are_named(changes, named):
-    with pytest.raises(ValueError, match=named):
-        binary_genetic.check(SETTINGS | changes)
 
 
 BITS, GENES = 8, 6

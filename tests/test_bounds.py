@@ -180,23 +180,6 @@ def test_paths_of_the_environments_of_ma2020(environment, any_angle, one, none):
         ).length + ROOT2 == pytest.approx(length, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("environment", "length"),
-    [
-        ("env1_initial", 26.268314),
-        ("env1_modified", 28.946764),
-        ("env2_initial", 35.548689),
-        ("env2_modified", 32.194010),
-    ],
-)
-def test_centre_paths_of_the_environments_of_meledje(environment, length):
-    grid = grid_map(f"meledje/{environment}.txt")
-    problem = Problem("", grid, grid.centre(0), grid.centre(255))
-    assert centre_path(problem).length == pytest.approx(length, abs=1e-6)
-    assert_is_path(centre_path(problem), problem)
-    assert shortest_path(problem).length < length
-
-
 CORNER_CONTACT = np.zeros((4, 4), dtype=bool)
 CORNER_CONTACT[1, 1] = CORNER_CONTACT[2, 2] = True
 

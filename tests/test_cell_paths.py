@@ -280,20 +280,3 @@ def test_evolution_ends_with_a_path_of_the_length_that_it_says(rules, seed):
     assert history[-1] == cell_paths.length(best, places)
     assert (np.diff(history) <= 0).all()
     assert history[-1] < shortest
-
-
-def test_children_that_do_not_fit_stay_as_their_parents_were():
-    """Loops are kept here, so that paths would grow without end."""
-    rules = cell_paths.Rules(1.0, 1.0, 0, cell_paths.RECONNECT, 60, shorter_parts=False)
-    paths, sizes = first_paths(OPEN, 1)
-    longest = sizes.max()
-    tight = np.ascontiguousarray(paths[:, :longest])
-    best, history = cell_paths.evolve(np.random.default_rng(0), OPEN, tight, sizes, 200, rules)
-    assert is_path(best, OPEN)
-    assert history[-1] == cell_paths.length(best, OPEN)
-
-
-def test_without_crossover_and_mutation_the_best_of_the_first_stays():
-    rules = cell_paths.Rules(0.0, 0.0, 0, cell_paths.ONE_CELL, 1)
-    _, history = cell_paths.evolve(np.random.default_rng(0), OPEN, *first_paths(OPEN, 0), 20, rules)
-    assert (history == history[0]).all()

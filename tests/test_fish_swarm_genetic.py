@@ -3,9 +3,9 @@
 import itertools
 
 import numpy as np
-from test_lattice_planners import SETTINGS, environment, plan
+from studies import study
+from test_lattice_planners import environment
 
-from bezierplan.planners import fish_swarm_genetic
 from bezierplan.planners.fish_swarm_genetic import (
     _ARRIVED,
     _DEAD,
@@ -22,7 +22,7 @@ from bezierplan.workspaces.lattice import lattice
 COLUMNS = 12
 GRID = Grid(np.zeros((COLUMNS, COLUMNS), dtype=bool), 1.0, "unit")
 PLACES = lattice(GRID, (0.0, 0.0), (12.0, 12.0), "one")
-SWARM = filled(Settings, SETTINGS["fish_swarm_genetic"] | {"fish": 5})
+SWARM = filled(Settings, study("ma2020").resolved("asfa_ga") | {"fish": 5})
 
 
 def cell(row, column):
@@ -98,26 +98,6 @@ def test_fish_that_arrive_give_as_many_paths_as_wanted():
 def test_releases_end_when_there_are_enough_paths():
     *_, sizes, count = released(wanted=10)
     assert (len(sizes), count) == (10, 1)
-
-
-def test_the_compiled_releases_agree_with_their_plain_python(monkeypatch):
-    compiled = released(wanted=10, seed=4)[1:]
-    monkeypatch.setattr(fish_swarm_genetic, "_release", _release.py_func)
-    places = released()[0]
-    plain = _release.py_func(
-        np.random.default_rng(4), places, SWARM._replace(fish=20, population=10)
-    )
-    for (one, size), (other, other_size) in zip(
-        zip(*compiled[:2], strict=True), zip(*plain[:2], strict=True), strict=True
-    ):
-        assert one[:size].tolist() == other[:other_size].tolist()
-
-
-def test_evaluations_are_the_fish_and_the_children():
-    found = plan("asfa_ga", generations=4)
-    fish = found.evaluations - 400
-    assert fish % 20 == 0
-    assert fish >= 100
 
 
 def test_tries_make_first_paths_shorter():

@@ -8,11 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan.geometry import checker, curves
-from bezierplan.geometry.region import region
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import Corners, lattice, neighbours, points
-from bezierplan.workspaces.problem import Path
 
 RULES = tuple(Corners.__members__)
 OPEN = Grid(np.zeros((4, 5), dtype=bool), 2.0, "unit")
@@ -49,17 +46,6 @@ def test_a_step_leads_to_a_free_cell_beside_so_many_occupied_ones(seed, corners)
         found = [cell for cell in reached[row, column].tolist() if cell >= 0]
         assert set(found) == allowed
         assert len(found) == len(allowed)
-
-
-@given(st.integers(0, 10_000), st.sampled_from(RULES))
-@settings(max_examples=30)
-def test_every_step_is_free_by_the_checker(seed, corners):
-    grid = Grid(random_cells(seed), 2.0, "unit")
-    blocked = region(grid)
-    for cell, reached in enumerate(neighbours(grid.occupied, corners)):
-        for other in reached[reached >= 0].tolist():
-            path = Path("polyline", np.array([grid.centre(cell), grid.centre(other)]))
-            assert checker.check(curves.bezier_pieces(path), blocked).feasible
 
 
 def test_steps_come_in_the_order_west_east_north_south_and_the_diagonals():

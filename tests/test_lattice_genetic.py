@@ -22,10 +22,6 @@ def test_without_a_gene_start_and_target_are_joined():
     assert (found.history == found.history[0]).all()
 
 
-def test_one_gene_is_searched_without_crossover():
-    assert plan("ga", environment(1), genes=1).claimed_feasible
-
-
 def test_genes_sorted_along_the_way_give_shorter_first_paths():
     first = {
         name: np.mean([plan(name, seed=seed, generations=0).objective for seed in range(10)])
@@ -81,9 +77,3 @@ def test_a_row_without_a_free_cell_has_no_path():
     found = plan("ga_rows", Problem("test", grid, (0.0, 0.0), (4.0, 3.0)))
     assert found.path is None
     assert found.history.tolist() == [math.inf]
-
-
-def test_evaluations_are_the_chromosomes_of_all_generations():
-    assert (
-        plan("ga", generations=7).evaluations == plan("ga_rows", generations=7).evaluations == 800
-    )

@@ -4,65 +4,30 @@ hand and by properties.
 
 import itertools
 import math
-from functools import cache
+from functools import partial
 
 import numpy as np
 import pytest
+from fields import assert_path_fits, drawn
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy
+from studies import planned, study
 
-from bezierplan.geometry import cell_length, shortest_paths
-from bezierplan.geometry.checker import check as certified
-from bezierplan.geometry.curves import bezier_pieces
-from bezierplan.geometry.region import region
+from bezierplan.geometry import cell_length
 from bezierplan.planners import modified_genetic as planner
 from bezierplan.planners.parts import diversity, gene_curves, gene_lattice, gene_lists
+from bezierplan.planners.parts.settings import filled
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
-SETTINGS = {
-    "population": 60,
-    "iterations": 80,
-    "crossover_probability": 0.8,
-    "mutation": "gene",
-    "mutation_rate": 0.006,
-    "diversity": "more_offspring",
-    "eta": 0.8,
-    "eta_decay": 0.99,
-    "most_batches": 1,
-    "gene_lattice": "coarse",
-    "point_order": "projection",
-    "first_population": "random",
-    "first_points": 5,
-    "first_draws": 400,
-    "replacements": 1,
-    "least_distance": 2.5,
-    "curve": "single",
-    "fitness_length": "length",
-}
+SETTINGS = study("elhoseny2017").resolved("mga")
+run = partial(planned, "elhoseny2017", "mga")
+FIELD = drawn(0, obstacles=15)
 FEW = {"population": 20, "iterations": 10}
-
-
-def problem(number=0, side=100, radius=0.06, obstacles=15, route=1):
-    start, target = ((0, 0), (side, side)) if route == 1 else ((side, 0), (0, side))
-    description = {
-        "side": side,
-        "start": start,
-        "target": target,
-        "obstacles": obstacles,
-        "layout": number,
-    }
-    grid = random_field.field(
-        {"radius": radius, "clear_ends": 2.0, "unit": "cell"}, description, "test"
-    )
-    return Problem("field", grid, tuple(map(float, start)), tuple(map(float, target)))
-
-
-BARE = problem(side=10, obstacles=0)
 
 
 def field(
@@ -80,34 +45,9 @@ def field(
     return planner.field_of(grid, grid.in_cells(ends), gene_lattice, point_order)
 
 
-@cache
-def rules(**changed):
-    """The settings as `plan` hands them to the search."""
-    seen = []
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            planner, "search", lambda rng, field, rules, *_: seen.append(rules) or nothing_found()
-        )
-        planner.plan(BARE, np.random.default_rng(0), **(SETTINGS | changed))
-    return seen[0]
-
-
-def nothing_found():
-    return planner.Found(
-        np.empty(0, dtype=np.int64),
-        np.inf,
-        np.zeros(1),
-        np.zeros(1),
-        np.zeros(1),
-        np.zeros(1),
-        0,
-        1,
-        1.0,
-    )
-
-
-def run(task, seed=0, **changed):
-    return planner.plan(task, np.random.default_rng(seed), **(SETTINGS | changed))
+def rules(**changes):
+    """The settings as the search reads them."""
+    return filled(planner.Settings, SETTINGS | changes)
 
 
 def gene(x, y):
@@ -132,17 +72,6 @@ def test_every_cell_can_be_a_gene():
     assert len(found.points) == 100
     np.testing.assert_array_equal(found.points[37] - 0.5, (3, 7))
     assert len(found.choices) == 100 - 2 - 5
-
-
-def test_a_field_without_a_free_gene_is_told():
-    occupied = np.ones((21, 21), dtype=bool)
-    occupied[[0, -1], [0, -1]] = False
-    grid = Grid(occupied, 1.0, "cell", (-0.5, -0.5))
-    with pytest.raises(ValueError, match="no free gene"):
-        planner.field_of(grid, np.array([[0.5, 0.5], [20.5, 20.5]]), "coarse", "projection")
-
-
-# Decoding.
 
 
 # Validation.
@@ -236,7 +165,7 @@ def test_first_sights_never_change_a_verdict(radius, lattice, curve):
     rng = np.random.default_rng(3)
     free = colliding = 0
     for number in range(20):
-        task = problem(number, side=(100, 32)[number % 2], radius=radius)
+        task = drawn(number, radius, 15, (100, 32)[number % 2])
         ends = task.workspace.in_cells(np.array([task.start, task.target]))
         if number % 3 == 0:
             ends = np.floor(ends)  # on grid lines
@@ -287,12 +216,6 @@ def test_a_curve_keeps_close_to_the_chords_of_its_parts(points, count):
         ends = values[::16]
         chord = np.repeat(ends[:-1], 16) * (1 - share) + np.repeat(ends[1:], 16) * share
         assert np.abs(values[:-1] - chord).max() <= gene_curves._from_chords(points, count) + 1e-9
-
-
-def test_a_parabola_gets_as_far_from_its_chord_as_the_bound_says():
-    points = np.array([[0.0, 0.0], [5.0, 8.0], [10.0, 0.0]])
-    assert gene_curves._from_chords(points, 1) == 4.0
-    assert gene_curves._from_chords(points, 2) == 1.0
 
 
 @pytest.mark.parametrize(
@@ -361,76 +284,32 @@ def test_ends_on_the_border_are_joined(ends):
 
 
 @pytest.mark.parametrize("diversity_rule", ["none", "more_offspring", "relaxing", "unique"])
-@pytest.mark.parametrize(
-    "changed",
-    [
-        {},
-        {"curve": "composite"},
-    ],
-)
-def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
+@pytest.mark.parametrize("curve", ["single", "composite"])
+def test_plans_are_free_and_as_long_as_said(diversity_rule, curve):
     for number in range(3):
-        task = problem(number, route=1 + number % 2)
-        found = run(task, number, diversity=diversity_rule, **FEW, **changed)
-        assert found.claimed_feasible
-        assert certified(bezier_pieces(found.path), region(task.workspace)).feasible
-        cells = cell_length.touched_cells(*cell_length.samples(found.path, task.workspace))
-        assert cell_length.occupied_cells(*cells, task.workspace.occupied) == 0
-        least = shortest_paths.lattice_path(
-            task.workspace.occupied,
-            *(task.workspace.cell_of(*end) for end in (task.start, task.target)),
-            1.5,
-            "free",
-        )
-        assert (
-            cell_length.length4(found.path, task.workspace)
-            >= cell_length.length8(found.path, task.workspace)
-            >= least.length
-        )
+        task = drawn(number, obstacles=15)
+        found = run(task, number, diversity=diversity_rule, curve=curve, **FEW)
+        assert_path_fits(task, found)
         assert found.objective == pytest.approx(
             length_of(*cell_length.samples(found.path, task.workspace)), rel=1e-12
         )
         assert len(found.history) == 11
-        assert np.all(np.diff(found.history[np.isfinite(found.history)]) <= 0)
-        assert found.history[-1] == found.objective
-
-
-def test_start_is_target():
-    task = problem()._replace(target=(0.0, 0.0))
-    found = run(task)
-    assert found.objective == 0.0
-    assert len(found.history) == 1
-    assert np.array_equal(found.path.points, [(0, 0), (0, 0)])
-
-
-def test_a_wall_leaves_nothing_to_show():
-    occupied = np.zeros((41, 41), dtype=bool)
-    occupied[20, :] = True
-    task = Problem("wall", Grid(occupied, 1.0, "cell", (-0.5, -0.5)), (0.0, 0.0), (40.0, 40.0))
-    found = run(task, **FEW)
-    assert found.path is None
-    assert not found.claimed_feasible
-    assert found.stop == "no valid chromosome"
-    assert np.isinf(found.objective)
-    assert found.evaluations > 20 * 400
 
 
 def test_without_a_rule_it_is_the_plain_algorithm_bit_by_bit():
     """A threshold that Q never exceeds, or no further batch, asks for nothing."""
-    plain = run(problem(), 4, diversity="none")
+    plain = run(FIELD, 4, diversity="none")
     for changed in ({"eta": 1.0, "eta_decay": 1.0}, {"most_batches": 0}):
-        watched = run(problem(), 4, **changed)
+        watched = run(FIELD, 4, **changed)
         assert np.array_equal(plain.path.points, watched.path.points)
         assert np.array_equal(plain.history, watched.history)
         assert plain.evaluations == watched.evaluations
         assert watched.extra["extra_batches"] == 0
-    assert run(problem(), 4, eta=-1.0, eta_decay=1.0).extra["extra_batches"] == 80
+    assert run(FIELD, 4, eta=-1.0, eta_decay=1.0).extra["extra_batches"] == 80
 
 
 def test_unique_lets_no_two_children_be_alike():
-    plain, unique = (
-        run(problem(), 5, diversity=rule, first_draws=1) for rule in ("none", "unique")
-    )
+    plain, unique = (run(FIELD, 5, diversity=rule, first_draws=1) for rule in ("none", "unique"))
     assert unique.extra["distinct_chromosomes"] > plain.extra["distinct_chromosomes"]
     # Only random chromosomes of the first population can be equal by chance.
     assert unique.extra["distinct_chromosomes"] > 59
@@ -440,7 +319,7 @@ def test_children_that_are_not_crossed_mutate_as_well():
     """Without crossover a child that does not mutate is a copy, so that nothing could be found that
     the first population does not have.
     """
-    found = run(problem(), 7, crossover_probability=0.0, replacements=0)
+    found = run(FIELD, 7, crossover_probability=0.0, replacements=0)
     assert found.objective < found.history[0]
     assert found.extra["valid_share"] < 1.0
 
@@ -533,14 +412,6 @@ def test_q_statistic():
     assert diversity.q_of_rows(two, three) == pytest.approx(-1 / 3, rel=1e-15)
 
 
-def test_settings_that_do_not_fit():
-    with pytest.raises(ValueError, match="population: 61; parents are crossed in pairs"):
-        planner.check(SETTINGS | {"population": 61})
-    with pytest.raises(ValueError, match="first_points: 60; a curve has at most 59"):
-        planner.check(SETTINGS | {"first_points": 60})
-    planner.check(SETTINGS)
-
-
 # MGA-C: what it takes to get through a maze.
 
 WALLED = np.zeros((9, 9), dtype=bool)
@@ -597,32 +468,10 @@ def test_a_change_removes_adds_or_shifts_one_point_each_as_often():
     assert tally[1] / 3000 == pytest.approx(1 / 3, abs=0.04)
 
 
-def test_the_last_point_is_never_removed():
-    _, maze_field = maze()
-    rng = np.random.default_rng(3)
-    for _ in range(200):
-        child = np.zeros(planner._ROOM, dtype=np.int64)
-        child[0] = 9 * 4
-        assert planner._change_point(rng, child, 1, maze_field) >= 1
-
-
 def test_a_warm_start_is_never_worse_than_the_path_that_it_starts_from():
-    where = problem(3)
-    first, last = planner.resume(where, np.random.default_rng(1), None, **(SETTINGS | FEW))
-    assert (
-        first.objective
-        == planner.plan(where, np.random.default_rng(1), **(SETTINGS | FEW)).objective
-    )
-    again, _ = planner.resume(
-        where, np.random.default_rng(2), last, **(SETTINGS | FEW | {"iterations": 1})
-    )
-    cold = planner.plan(where, np.random.default_rng(2), **(SETTINGS | FEW | {"iterations": 1}))
-    assert again.history[0] <= first.objective < cold.history[0]
-
-
-def test_genes_that_are_occupied_or_behind_are_left_out():
-    found = field(100, (50, 50, 3))
-    points = found.points[[gene(30, 20), gene(50, 50), gene(40, 60)]]
-    assert gene_lattice.genes_at(points, found).tolist() == [gene(30, 20), gene(40, 60)]
-    later = field(100, ends=((40, 40), (100, 100)))
-    assert gene_lattice.genes_at(points, later).tolist() == [gene(40, 60), gene(50, 50)]
+    where = drawn(11, obstacles=15)
+    first, last = planner.resume(where, np.random.default_rng(1), None, **SETTINGS | FEW)
+    assert first.objective == run(where, 1, **FEW).objective
+    few = FEW | {"iterations": 1}
+    again, _ = planner.resume(where, np.random.default_rng(2), last, **SETTINGS | few)
+    assert again.history[0] <= first.objective < run(where, 2, **few).history[0]

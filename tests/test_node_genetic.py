@@ -4,6 +4,7 @@ its operators, degenerate cases.
 
 import itertools
 import math
+from functools import partial
 from pathlib import Path as File
 
 import numpy as np
@@ -12,10 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
+from studies import planned, study
 
 from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
+from bezierplan.geometry.shortest_paths import centre_path
 from bezierplan.planners import node_genetic
 from bezierplan.planners.parts.node_mutation import mutate
 from bezierplan.planners.parts.settings import filled
@@ -41,48 +44,14 @@ OPTIMA = {
     "env2_initial": 35.548689,
     "env2_modified": 32.194010,
 }
-SETTINGS = {
-    "mutation": "proposed",
-    "population": 20,
-    "generations": 30,
-    "stall": 20,
-    "initial": "feasible",
-    "most_nodes": 12,
-    "selection": "linear_rank",
-    "crossover_probability": 1.0,
-    "cut": "same",
-    "mutation_probability": 0.3,
-    "mutation_for": "path",
-    "without_obstacle": "any_node",
-    "obstacle_node": "edge",
-    "neighbourhood": "eight",
-    "keep_better": False,
-    "corners": "open",
-    "random_node": "free",
-    "penalty": 15.0,
-    "elitism": 0,
-    "result": "last_generation",
-    "optimal_within": 1e-6,
-    "friction": 1.0,
-}
+SETTINGS = study("meledje").resolved("proposed")
+plan = partial(planned, "meledje", "proposed", population=20, generations=30)
 OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
-RULES = filled(
-    node_genetic.Settings,
-    SETTINGS
-    | {
-        "mutation": "random",
-        "population": 2,
-        "generations": 0,
-        "stall": 1,
-        "most_nodes": 1,
-        "mutation_probability": 1.0,
-    },
-)
 BLOCK = from_lines(["......", "..##..", "..##..", "......"], 1.0, "cell")
 
 
-def grid_of(name, cell=1.0):
-    return files.load({"kind": "grid", "file": f"{name}.txt", "cell": cell, "unit": "cell"}, MAPS)
+def grid_of(name):
+    return files.load({"kind": "grid", "file": f"{name}.txt", "cell": 1.0, "unit": "cell"}, MAPS)
 
 
 def problem(grid, start=0, target=None):
@@ -92,10 +61,6 @@ def problem(grid, start=0, target=None):
         grid.centre(start),
         grid.centre(grid.occupied.size - 1 if target is None else target),
     )
-
-
-def plan(where, seed=0, **changes):
-    return node_genetic.plan(where, np.random.default_rng(seed), **(SETTINGS | changes))
 
 
 ENVIRONMENTS = {name: problem(grid_of(name)) for name in OPTIMA}
@@ -206,6 +171,7 @@ def test_optimum_of_the_four_maps(name):
     ) == pytest.approx(energy)
     assert all(met(a, b, grid) == 0 for a, b in itertools.pairwise(path.tolist()))
     assert plan(ENVIRONMENTS[name], generations=0).extra["optimum"] == energy
+    assert centre_path(ENVIRONMENTS[name]).length == pytest.approx(energy)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -249,15 +215,6 @@ def test_first_populations_do_not_depend_on_the_operator():
     assert len(first) == 1
 
 
-def test_lengths_and_penalties_are_in_units():
-    small, large = (
-        plan(problem(grid_of("env1_initial", cell)), 5, penalty=15.0 * cell) for cell in (1.0, 10.0)
-    )
-    assert large.objective == pytest.approx(10 * small.objective)
-    assert large.path.points == pytest.approx(10 * small.path.points)
-    assert large.extra["optimum"] == pytest.approx(10 * small.extra["optimum"])
-
-
 def test_evaluations_are_the_population_of_each_generation_and_the_neighbours_tried():
     where = ENVIRONMENTS["env1_initial"]
     assert plan(where, mutation="random", generations=7, stall=100).evaluations == 20 * 8
@@ -289,7 +246,7 @@ def test_the_best_path_so_far_is_kept_if_wanted():
 def first_paths(grid, initial="feasible", count=300, most_nodes=12, seed=0):
     """Random first paths, as lists of cells."""
     ground = ground_of(grid, 1.0)
-    rules = RULES._replace(initial=("feasible", "rejection", "unrestricted").index(initial))
+    rules = filled(node_genetic.Settings, SETTINGS | {"initial": initial})
     free = np.setdiff1d(np.flatnonzero(~grid.occupied), [0, grid.occupied.size - 1])
     rng, paths = np.random.default_rng(seed), []
     for _ in range(count):
@@ -529,11 +486,6 @@ def test_reference_21_steps_towards_the_target_along_free_edges(neighbourhood):
     assert moved > 3
 
 
-def test_reference_21_leaves_a_path_without_such_a_neighbour():
-    walls = from_lines(["..#.", "####", ".#.."], 1.0, "cell")
-    assert mutated([0, 0, 11], walls, "ref21") == ([0, 0, 11], 0)
-
-
 def test_repaired_random_mutation_stays_feasible():
     path = [0, 1, 4, 23]
     after = [mutated(path, BLOCK, "random_repair", seed)[0] for seed in range(50)]
@@ -614,42 +566,9 @@ def test_a_target_in_sight_needs_no_search():
     assert len(found.history) == found.evaluations == 1
 
 
-def test_start_is_target():
-    found = plan(problem(BLOCK, 3, 3))
-    assert found.objective == 0
-    assert found.extra["optimal"]
-
-
-@pytest.mark.parametrize("lines", [["..#.", "####", "...."], [".#.", "###", ".#."]])
-def test_no_way(lines):
-    found = plan(problem(from_lines(lines, 1.0, "cell")))
-    assert found.path is None
-    assert found.stop == "no path"
-    assert found.extra["infeasible"]
-    assert not found.claimed_feasible
-
-
 def test_a_target_out_of_reach_of_so_few_nodes():
     where = problem(from_lines(["...", ".#.", ".#.", ".#."], 1.0, "cell"), 0, 2)
     found = plan(where, most_nodes=1)
     assert found.path is None
     assert found.stop == "no first population"
     assert plan(where, most_nodes=2).claimed_feasible
-
-
-def test_starts_between_centres_are_refused():
-    where = Problem("test", BLOCK, (0.7, 0.5), (5.5, 3.5))
-    for refuse in (node_genetic.serves, plan):
-        with pytest.raises(
-            ValueError, match=r"start: \(0.7, 0.5\).*centre of a cell.*\(0.5, 0.5\)"
-        ):
-            refuse(where)
-
-
-@pytest.mark.parametrize(
-    ("setting", "value", "wanted"),
-    [("population", 61, "even number")],
-)
-def test_settings_that_do_not_fit(setting, value, wanted):
-    with pytest.raises(ValueError, match=f"{setting}: .*{wanted}"):
-        node_genetic.check(SETTINGS | {setting: value})

@@ -8,16 +8,14 @@ import math
 import numpy as np
 import pytest
 from fields import assert_path_fits, drawn
+from studies import planned
 
 from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.planners import prm
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
-
-SETTINGS = {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0, "attempts": 1}
 
 
 def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
@@ -34,7 +32,7 @@ PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
 
 
 def plan(where=PUBLIC, seed=0, **changes):
-    return prm.plan(where, np.random.default_rng(seed), **(SETTINGS | changes))
+    return planned("tharwat2018", "prm", where, seed, **changes)
 
 
 def shortest(points, roads):
@@ -112,11 +110,6 @@ def test_more_nodes_keep_those_of_fewer():
         assert lengths[2] <= lengths[1] <= lengths[0]
 
 
-def test_as_many_neighbours_as_nodes_are_all():
-    assert plan(links="nearest", neighbours=51).objective == plan().objective
-    assert plan(links="nearest", neighbours=51).extra == plan().extra
-
-
 @pytest.mark.parametrize(
     ("end", "seen"),
     [
@@ -157,26 +150,9 @@ def test_roadmaps_are_drawn_until_one_connects_start_and_target():
     assert plan(problem(enclosed), attempts=3).evaluations == 3
 
 
-def test_failure_is_a_plan_without_a_path():
-    ring = [[2 * math.cos(a), 2 * math.sin(a), 1] for a in np.linspace(0, 2 * math.pi, 9)]
-    found = plan(problem(ring))
-    assert found.path is None
-    assert found.objective == math.inf
-    assert not found.claimed_feasible
-
-
 def test_a_field_without_free_places_has_no_nodes_and_ends(monkeypatch):
     monkeypatch.setattr(prm, "_MOST_DRAWS", 10)
     assert plan(problem([[0, 0, 20]])).path is None
-
-
-def test_an_open_field_gives_the_straight_line():
-    assert plan(problem([])).objective == pytest.approx(math.sqrt(52))
-    assert len(plan(problem([])).path.points) == 2
-
-
-def test_start_equal_to_target_is_a_path_of_no_length():
-    assert plan(problem([[2, 2, 1]], target=(0.0, 0.0))).objective == 0
 
 
 @pytest.mark.parametrize("number", range(12))
@@ -201,18 +177,6 @@ def test_nodes_on_a_grid_are_uniform_in_free_cells():
     )
     counts = np.histogram2d(row, column, bins=[0, 50.5, 101])[0].ravel()
     assert counts == pytest.approx(5000 * free / free.sum(), abs=4 * math.sqrt(1250))
-
-
-def test_no_nodes_leave_the_straight_line_of_an_empty_field():
-    where = drawn(0, obstacles=0)
-    assert plan(where, nodes=0, links="nearest").objective == pytest.approx(math.hypot(100, 100))
-
-
-def test_a_sealed_target_on_a_grid():
-    sealed = Problem(
-        "test", from_lines(["...#.", "...##", "....."], 1.0, "cell"), (0.5, 0.5), (4.5, 2.5)
-    )
-    assert plan(sealed).path is None
 
 
 def test_a_grid_has_no_distance_to_keep():
