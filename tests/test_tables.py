@@ -510,7 +510,7 @@ def test_a_transcribed_table_is_printed_as_it_stands(tmp_path):
     file = tmp_path / "table1.csv"
     file.write_text("part,value\nmemory,4.0 GB\nNA,\n")
     spec = described({"kind": "transcribed", "published": "table1.csv"})
-    table = listing.table(spec, {"table1": str(file)}, {}, {})
+    table = listing.table(spec, {"table1": str(file)}, {})
     assert table.to_csv(index=False) == file.read_text()
 
 
@@ -521,57 +521,8 @@ def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
         described({"kind": "function", "function": "twice"}),
         {"table2": str(file)},
         {"twice": lambda tables: 2 * tables["table2"][["value"]]},
-        {},
     )
     assert table["value"].tolist() == [5.0]
-
-
-def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
-    columns = [
-        "metric",
-        "statistic",
-        "n_published",
-        "value_published",
-        "n_ours",
-        "value_ours",
-        "low95_predicted",
-        "high95_predicted",
-    ]
-    first = pd.DataFrame(
-        [("plain", "equal", "length", "mean", 10, 2.5, 10, 2.75, 2.12345, 3.5)],
-        columns=["method", "workspace", *columns],
-    )
-    second = pd.DataFrame(
-        [("plain", 3, "length", "mean", 10, 4.5, 10, 4.0, 3.0, 5.0)],
-        columns=["method", "obstacles", *columns],
-    )
-    rows = pd.concat(
-        [
-            first,
-            first.assign(workspace="other"),
-            first.assign(value_published=None),
-            first.assign(metric="rank"),
-        ]
-    )
-    for name, table in (("table3", rows), ("table6", second)):
-        table.assign(
-            value_ours_scaled=2.5, quantile_published=0.25, in_range=True, verdict="agrees", why=""
-        ).to_csv(tmp_path / f"{name}.comparison.csv", index=False)
-    spec = described(
-        {
-            "kind": "comparison",
-            "of": ["table3", "table6"],
-            "metrics": ["length"],
-            "where": {"workspace": "equal"},
-        }
-    )
-    files = {name: str(tmp_path / f"{name}.comparison.csv") for name in spec.of}
-    shown = listing.table(spec, files, {}, {"plain": "plain curves", "equal": "equal circles"})
-    assert shown["table"].to_list() == ["table3", "table6"]
-    assert shown.columns[:4].to_list() == ["table", "method", "workspace", "obstacles"]
-    assert shown["method"].to_list() == ["plain curves"] * 2
-    assert shown["95 % prediction interval, from"].to_list() == [2.123, 3.0]
-    assert shown["published"].to_list() == [2.5, 4.5]
 
 
 def test_a_printed_length_is_compared_with_the_metric_that_the_table_reads_it_as(tmp_path):

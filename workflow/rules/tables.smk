@@ -68,14 +68,10 @@ use rule table as unprinted_table with:
         study=studies_with(UNPRINTED),
 
 
-# What a paper prints, what follows from it, and several comparisons together.
+# What a paper prints, and what follows from it.
 rule listing:
     input:
         published=of_study(lambda study, job: study.published_of(job.table)),
-        comparisons=lambda wildcards: [
-            f"{RESULTS}/{tree(name)}/{name}.comparison.csv"
-            for name in getattr(STUDIES[wildcards.study].tables[wildcards.table], "of", [])
-        ],
     output:
         report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",

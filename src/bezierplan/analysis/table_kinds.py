@@ -248,19 +248,6 @@ class FunctionTable(Table):
     arguments: Arguments = Field({}, description=ARGUMENTS)
 
 
-class Comparison(Table):
-    """The published numbers of other tables next to ours, with prediction intervals for experiments
-    of the paper's size.
-    """
-
-    kind: Literal["comparison"] = Field(description="comparison")
-    of: listed(Annotated[Name, Names("compared")]) = Field(
-        description="a list of tables with published numbers"
-    )
-    metrics: listed(Metric) = Field(description="a list of metrics")
-    where: Where = Field({}, description="column of the comparison → value or list of values")
-
-
 TABLES = {
     model.model_fields["kind"].annotation.__args__[0]: model for model in Table.__subclasses__()
 }

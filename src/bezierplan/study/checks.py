@@ -14,7 +14,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.table_kinds import Comparison, Pivot
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import columns, problems, worlds
@@ -325,7 +325,7 @@ def _check_names(
     for where, path, what, name in names:
         if what == "published":
             inside(study.folder, f"published/{name}", f"{where}: {name}")
-        elif what == "metric" and (experiments or isinstance(model, Comparison)):
+        elif what == "metric" and experiments:
             check_known(name, metrics.METRICS, where)
             design.check_metric(experiments, name, where)
         elif experiments:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.table_kinds import Comparison, Pivot, Table
+from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.machine.modules import code_of
 from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.running.inputs import PAPER, tree
@@ -178,11 +178,9 @@ class Study:
         return {name: table for name, table in self.compared().items() if table.published}
 
     def published_of(self, table: str) -> list[str]:
-        """Files of published numbers that a table without runs shows: its own, all for a function,
-        none for comparisons.
+        """Files of published numbers that a table without runs shows: its own, or all for a
+        function.
         """
-        if isinstance(self.tables[table], Comparison):
-            return []
         file = self.published_file(table)
         return [file] if file else self.published_files()
 

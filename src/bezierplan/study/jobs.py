@@ -469,11 +469,10 @@ class TableOfRuns(Analysis):
 
 @dataclass(frozen=True)
 class TableWithoutRuns(Analysis):
-    """What a paper prints, what follows from it, or several comparisons."""
+    """What a paper prints, or what follows from it."""
 
     spec: Table
     """Without its title."""
-    labels: dict[str, str]
     published: str
     """Digest of files of published numbers."""
 
@@ -484,7 +483,7 @@ class TableWithoutRuns(Analysis):
         spec = content.tables[table].but(title=table)
         code = content.code_for("functions") if spec.kind == "function" else []
         published = content_digest(*content.published_of(table))
-        return cls(spec, labels_of(content, table), published, code=code)
+        return cls(spec, published, code=code)
 
     def run(self, input_files, output_files, threads):
         """Make the table."""
@@ -492,7 +491,7 @@ class TableWithoutRuns(Analysis):
         from bezierplan.running import inputs
 
         published = inputs.by_table(input_files.published)
-        table = listing.table(self.spec, published, self.load(), self.labels)
+        table = listing.table(self.spec, published, self.load())
         table.to_csv(output_files[0], index=False, float_format="%.10g", lineterminator="\n")
 
 
