@@ -8,8 +8,7 @@ import pytest
 
 from bezierplan.geometry import checker
 from bezierplan.geometry.bins import Bins
-from bezierplan.geometry.checker.certificates import depth_at, is_blocked, is_free
-from bezierplan.geometry.checker.hulls import TOLERANCE
+from bezierplan.geometry.checker.certificates import is_free
 from bezierplan.geometry.region import PolygonRegion, Region, region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -47,15 +46,6 @@ def beside_edges(blocked: PolygonRegion, rng: np.random.Generator, count: int) -
     along = rng.choice([0.0, 1.0, *rng.random(4)], count)[:, None]
     away = (rng.choice(BESIDE, count) * rng.choice([-1, 1], count))[:, None]
     return edges[:, :2] + along * (edges[:, 2:] - edges[:, :2]) + away * normals
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_a_point_is_blocked_as_by_all_edges(seed):
-    blocked, rng = field(seed, [1, 2, 5, 20][seed % 4]), np.random.default_rng(seed)
-    places = np.vstack([beside_edges(blocked, rng, 1500), rng.uniform(-1, SIDE + 1, (500, 2))])
-    asked = [is_blocked(x, y, blocked) for x, y in places]
-    assert asked == [depth_at(x, y, blocked) > TOLERANCE for x, y in places]
-    assert 0 < sum(asked) < len(asked)
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -99,37 +99,6 @@ def test_shortest_paths_of_the_benchmark_maps(row):
     assert_is_path(bound, problem)
 
 
-@pytest.mark.parametrize("row", reference("shortest_path"), ids=lambda row: row["map"])
-def test_shortest_paths_of_the_benchmark_maps_by_another_method(row):
-    """All pairs of corners, judged by the pattern of the segment against the blocked region as a
-    whole.
-    """
-    problem = imr_problem(row["map"])
-    left, right, bottom, top = problem.workspace.bounds
-    obstacles = shapely.union_all(
-        [shapely.Polygon(rings[0], rings[1:]) for rings in problem.workspace.obstacles]
-    )
-    blocked = shapely.box(left - 1, bottom - 1, right + 1, top + 1) - (
-        shapely.box(left, bottom, right, top) - obstacles
-    )
-    corners = np.unique(shapely.get_coordinates(obstacles), axis=0)
-    inner = corners[((corners > (left, bottom)) & (corners < (right, top))).all(axis=1)]
-    nodes = np.concatenate([[problem.start, problem.target], inner])
-    pairs = np.array(list(itertools.combinations(range(len(nodes)), 2)))
-    shapely.prepare(blocked)
-    lines = shapely.linestrings(nodes[pairs])
-    maybe = shapely.crosses(blocked, lines) | shapely.within(lines, blocked)
-    free = pairs[~maybe]
-    free = free[~shapely.relate_pattern(blocked, shapely.linestrings(nodes[free]), "T********")]
-    lengths = np.full((len(nodes), len(nodes)), np.inf)
-    lengths[free[:, 0], free[:, 1]] = np.hypot(*(nodes[free[:, 1]] - nodes[free[:, 0]]).T)
-    lengths = np.minimum(lengths, lengths.T)
-    distance = lengths[0].copy()
-    for _ in nodes:
-        distance = np.minimum(distance, (distance[:, None] + lengths).min(axis=0))
-    assert shortest_path(problem).length == pytest.approx(distance[1], rel=1e-12)
-
-
 def occupied_by(polygons, side):
     """Cells that an obstacle overlaps with positive area. The cell is shrunk, not the obstacle."""
     _, width, _, height = polygons.bounds

@@ -5,7 +5,7 @@ spacing, and the traps of grid lines.
 import numpy as np
 import pytest
 
-from bezierplan.geometry import cell_length, curves, shortest_paths
+from bezierplan.geometry import cell_length, curves
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
@@ -113,22 +113,6 @@ def test_monotone_curves_between_corners_measure_between_one_and_a_half_and_two_
         path = Path("bezier", np.vstack([(0, 0), np.column_stack([x, y]), (100, 100)]))
         assert 150 <= cell_length.length4(path, field(100)) <= 200
         assert 150 <= cell_length.length8(path, field(100)) <= cell_length.length4(path, field(100))
-
-
-def test_no_free_path_counts_less_than_the_shortest_path_of_cells():
-    rng = np.random.default_rng(2)
-    found = 0
-    for _ in range(300):
-        occupied = rng.random((12, 12)) < 0.1
-        occupied[0, 0] = occupied[-1, -1] = False
-        grid = Grid(occupied, 1.0, "cell", (-0.5, -0.5))
-        path = Path("bezier", np.vstack([(0, 0), rng.uniform(0, 11, (2, 2)), (11, 11)]))
-        columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
-        if cell_length.occupied_cells(columns, rows, occupied) == 0:
-            found += 1
-            least = shortest_paths.lattice_path(occupied, (0, 0), (11, 11), 1.5, "free").length
-            assert cell_length.length4(path, grid) >= cell_length.length8(path, grid) >= least
-    assert found > 20
 
 
 def test_lengths_are_in_units():

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fields import BENCHMARK_MAPS
+from test_exact_properties import elevated
 
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.curves import bernstein
 from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 
@@ -241,36 +240,6 @@ def test_an_obstacle_between_two_samples_is_found(kind):
     assert not check(pieces, thin).feasible
 
 
-@pytest.mark.parametrize(
-    "file", sorted(BENCHMARK_MAPS.glob("*.geojson")), ids=lambda file: file.stem
-)
-def test_a_stored_shortest_path_is_free(file):
-    text = file.read_text()
-    path = re.search(r'"shortest_path": (\[.*?\]\s*\])', text, re.DOTALL)
-    found = check(polyline(eval(path[1])), region(polygons_from_geojson(text, "m")))
-    assert found.feasible
-    assert found.intervals <= 64 + 40 * len(eval(path[1]))
-
-
-@pytest.mark.parametrize("contacts", [1, 3, 10])
-@pytest.mark.parametrize("degree", [2, 5, 11])
-def test_intervals_at_tangents(contacts, degree):
-    rng = np.random.default_rng(degree)
-    piece = rng.uniform(-10, 10, (degree + 1, 2))
-    fine = bernstein(degree, np.linspace(0, 1, 200_001)) @ piece
-    slope = degree * bernstein(degree - 1, np.linspace(0, 1, 200_001)) @ np.diff(piece, axis=0)
-    discs = []
-    for t in np.linspace(0, 200_000, contacts + 2).astype(int)[1:-1]:
-        normal = np.array([-slope[t, 1], slope[t, 0]]) / np.hypot(*slope[t])
-        centre = fine[t] + 1e-2 * normal
-        discs.append((*centre, np.hypot(*(fine - centre).T).min()))
-    blocked = circles(*discs, bounds=(-100.0, 100.0, -100.0, 100.0))
-    shrunk = blocked._replace(radii=blocked.radii - 1e-12)
-    found = check(piece[None], shrunk)
-    assert found.feasible
-    assert found.intervals <= 64 + 40 * contacts + 1
-
-
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.1e5])
 def test_unfit_coordinates_are_refused(value):
     with pytest.raises(ValueError, match="not finite or beyond 100000"):
@@ -286,14 +255,6 @@ def test_large_degrees_have_a_smaller_range():
         check(far, UNIT_DISC)
 
 
-def elevated(piece, degree):
-    """The same curve (n, 2) with a higher degree."""
-    while len(piece) <= degree:
-        share = np.arange(1, len(piece))[:, None] / len(piece)
-        piece = np.vstack([piece[:1], share * piece[:-1] + (1 - share) * piece[1:], piece[-1:]])
-    return piece
-
-
 @pytest.mark.parametrize(
     "blocked",
     [
@@ -307,7 +268,10 @@ def test_curves_of_degree_60_get_the_verdict_of_the_same_curve_of_a_low_degree(b
     verdicts = []
     for _ in range(60):
         piece = rng.uniform(0.5, 29.5, (rng.integers(3, 6), 2))
-        low, high = check(piece[None], blocked), check(elevated(piece, 60)[None], blocked)
+        low, high = (
+            check(piece[None], blocked),
+            check(elevated(piece, 61 - len(piece))[None], blocked),
+        )
         verdicts.append(low.feasible)
         assert low.feasible == high.feasible
         if low.feasible:
@@ -327,13 +291,6 @@ def test_halving_a_curve_of_degree_60_stays_far_below_the_tolerance():
     piece = np.column_stack([np.linspace(0, 2000, 61), height])
     assert check(piece[None], circles(bounds=(0.0, 2000.0, 0.0, 2000.0))).feasible
     assert not check(piece[None] - [0.0, 1e-8], circles(bounds=(0.0, 2000.0, 0.0, 2000.0))).feasible
-
-
-def test_unfit_shapes_are_refused():
-    with pytest.raises(ValueError, match="shape"):
-        check(np.zeros((3, 2)), UNIT_DISC)
-    with pytest.raises(ValueError, match="degree"):
-        check(np.zeros((1, 62, 2)), UNIT_DISC)
 
 
 def test_the_error_of_a_depth_is_proven():

@@ -65,21 +65,6 @@ def test_ends_are_exact(path):
     assert np.array_equal(sampled(path)[[0, -1]], path.points[list(curves.ends(path.curve))])
 
 
-@given(paths(curves.B_SPLINES))
-@settings(max_examples=50)
-def test_weights_of_a_b_spline_are_a_partition_of_one(path):
-    basis = curves.sample_matrix(path.curve, len(path.points), 201)
-    assert basis.min() >= 0
-    assert np.allclose(basis.sum(axis=1), 1)
-
-
-@pytest.mark.parametrize(
-    ("curve", "points"), [("spline", slice(None)), ("ferguson", slice(None, None, 2))]
-)
-def test_weights_of_the_points_of_an_interpolating_curve_add_to_one(curve, points):
-    assert np.allclose(curves.sample_matrix(curve, 8, 201)[:, points].sum(axis=1), 1)
-
-
 @given(paths())
 @settings(max_examples=50)
 def test_length_lies_between_straight_line_and_control_polygons(path):
@@ -137,21 +122,6 @@ def test_arc_length_agrees_with_quadrature_in_high_degree():
         quad(speed, a, a + 0.05, epsabs=1e-13, epsrel=1e-13)[0] for a in np.arange(20) / 20
     )
     assert curves.length(Path("bezier", points)) == pytest.approx(expected, rel=1e-10)
-
-
-def test_quadratic_pieces_join_at_midpoints_with_a_common_tangent():
-    points = np.array([[0, 0], [2, 4], [6, 4], [8, 0], [10, 2.0]])
-    pieces = curves.bezier_pieces(Path("piecewise_quadratic", points))
-    assert np.array_equal(pieces[:-1, 2], (points[1:3] + points[2:4]) / 2)
-    assert np.array_equal(pieces[:, 1], points[1:-1])
-    before, after = pieces[:-1, 2] - pieces[:-1, 1], pieces[1:, 1] - pieces[1:, 0]
-    assert np.allclose(before[:, 0] * after[:, 1], before[:, 1] * after[:, 0])
-
-
-def test_curvature_of_a_parabola_at_its_apex():
-    # y = 2 x (1 - x) has the curvature 4 at its apex.
-    kappa, _ = curves.curvature(Path("bezier", np.array([[0, 0], [0.5, 1], [1, 0]])), 101)
-    assert abs(kappa[50]) == pytest.approx(4)
 
 
 @pytest.mark.parametrize("side", [1, -1])

@@ -8,7 +8,6 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path as File
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
@@ -632,33 +631,11 @@ def test_a_drawing_shows_the_marks_of_its_function_in_their_order():
 # Functions
 
 
-def test_a_function_is_called_once_for_panels_that_draw_the_same_table():
-    calls = []
-
-    def table(*workspaces, first=0):
-        calls.append((len(workspaces), first))
-        return marks(*workspaces)
-
-    one = {"kind": "drawing", "data": "table"}
-    more = ({"title": "again"}, {"workspace": "circles"}, {"arguments": {"first": 1}})
-    own = panels_of([one, *(one | keys for keys in more)])
-    sheet.data(own, Sources(workspaces=other_workspaces(), functions={"table": table}))
-    assert calls == [(0, 0), (1, 0), (0, 1)]
-
-
 def test_functions_get_the_published_tables_that_they_ask_for():
     published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
     panel = {"kind": "lines", "data": "own", "published": True, "x": "k", "metric": "value"}
     found = Sources(functions={"own": lambda tables: tables["table1"]}, published=published)
     assert sheet.data(panels_of([panel]), found)["value"].tolist() == [3, 4]
-
-
-def test_a_panel_of_a_job_has_the_defaults_of_its_kind():
-    panel = kinds_of_panel.panel_of(
-        {"kind": "boxes", "experiment": "routes", "metric": "objective"}
-    )
-    assert (panel.by, panel.context, panel.limit) == ("method", False, None)
-    assert kinds_of_panel.panel_of(panel.plain()) == panel
 
 
 # What is drawn, number by number: small tables, every column unlike the others
@@ -865,16 +842,6 @@ def test_axes_that_all_panels_share_are_named_once_and_views_cut_what_is_drawn()
     assert [bool(axes.get_xlabel()) for axes in panels] == [False] * 5 + [True] * 5
     assert (*panels[0].get_xlim(), *panels[0].get_ylim()) == (-9, 9, -4, 5)
     assert all(line.get_clip_on() for line in panels[0].lines)
-
-
-def test_axes_name_their_values_in_full():
-    """No offset such as +1.414e2 above the axis, on which the title stands."""
-    with mpl.rc_context(style.SETTINGS):
-        figure = Figure()
-        figure.add_subplot().plot([10, 100], [141.4213, 141.4685])
-        FigureCanvasAgg(figure).draw()
-    (axes,) = figure.axes
-    assert axes.yaxis.get_offset_text().get_text() == ""
 
 
 def save(folder: File) -> None:

@@ -59,9 +59,6 @@ EXPECTED = "geometry: expected a Polygon, a MultiPolygon"
 POLYGON_FAULTS = {
     "not JSON": ("{", "not GeoJSON"),
     "a list": ("[]", "not GeoJSON: expected an object"),
-    "features no list": ('{"features": 1}', "not GeoJSON: expected an object"),
-    "nested too deeply": ('{"features": ' + "[" * 100_000, "not GeoJSON .*recursion"),
-    "feature no object": (json.dumps({"features": [1]}), "feature 0: expected a feature with"),
     "role misspelt": (
         polygon([SQUARE], "obstacel"),
         "feature 1: properties: role: 'obstacel': unknown; did you mean obstacle?",
@@ -78,17 +75,6 @@ POLYGON_FAULTS = {
     ),
     "hole outside": (polygon([SQUARE, moved(3, 3)]), "Hole lies outside shell"),
     "too few positions": (polygon([[[1, 1], [2, 2]]]), EXPECTED),
-    "in space at times": (polygon([[[4, 4], [6, 4, 1], [6, 6], [4, 4]]]), EXPECTED),
-    "text": (polygon([[["a", "b"] for _ in SQUARE]]), EXPECTED),
-    "a line": (
-        feature({}, {"type": "GeometryCollection", "geometries": [{"type": "LineString"}]}),
-        r"feature 1 \(obstacle\): geometry: expected a Polygon, a MultiPolygon",
-    ),
-    "a bbox of words": (json.dumps({"features": [], "bbox": ["low"] * 4}), "no border; .*bbox of"),
-    "a bbox the wrong way": (
-        json.dumps({"features": [], "bbox": [5, 0, 1, 1]}),
-        "bounds: .*; expected .x low",
-    ),
     "too large": (
         geojson(border=[[0, 0], [2e5, 0], [2e5, 10], [0, 10], [0, 0]]),
         "200000 is not a coordinate; expected finite numbers of at most 100000",
@@ -181,15 +167,6 @@ def test_rows_of_a_table_without_a_geometry_are_skipped_with_a_word(caplog):
         SQUARE[:-1]
     ]
     assert caplog.messages == ["feature 0 (obstacle): without a geometry, and skipped"]
-
-
-def test_a_margin_around_obstacles_takes_the_place_of_a_border():
-    file = json.dumps({"features": [{"geometry": SHAPE}]})
-    assert polygons_from_geojson(file, "m", margin=1.5).bounds == (2.5, 7.5, 2.5, 7.5)
-    with pytest.raises(
-        ValueError, match=r"margin: 1: the file has a border of its own; expected no margin"
-    ):
-        polygons_from_geojson(geojson([SQUARE]), "m", margin=1.0)
 
 
 def test_what_lies_outside_a_border_of_any_shape_is_blocked():
