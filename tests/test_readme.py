@@ -29,8 +29,6 @@ COMMANDS = [
 DRY = {
     "make reproduce": "make -n reproduce",
     "make test": "make -n test",
-    # test_verify asks the rest: here are the results of some commands alone.
-    "python -m bezierplan verify results/full": "python -m bezierplan verify --help",
     "snakemake song2016": "snakemake -n song2016",
     "snakemake song2016_figure4": "snakemake -n song2016_figure4",
     "snakemake song2016_table1": "snakemake -n song2016_table1",

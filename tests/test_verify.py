@@ -20,6 +20,7 @@ from bezierplan.places import TREE
 from bezierplan.running import execution, problems, rides, rows, worlds
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.judge import recheck
+from bezierplan.study import proof
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -132,7 +133,7 @@ def unlisted(folder):
 
 
 def test_untouched_results_are_sound_and_all_runs_can_be_made_again(results, capsys):
-    status, lines, _ = verified(capsys, results, "--studies", "bend", "--all")
+    status, lines, _ = verified(capsys, results, "--all")
     assert (status, lines[-1]) == (0, "sound")
     assert lines[0] == "12 runs in 4 files: 7 different paths judged again, 1 bounds computed again"
     assert lines[1] == "12 runs made again"
@@ -152,30 +153,46 @@ def test_each_edit_of_one_byte_is_named(results, capsys):
         place = draw.randrange(len(content))
         other = draw.choice([byte for byte in range(256) if byte != content[place]])
         file.write_bytes(content[:place] + bytes([other]) + content[place + 1 :])
-        status, lines, _ = verified(capsys, results, "--studies", "bend")
+        status, lines, _ = verified(capsys, results)
         assert status == 1
         assert lines[0].startswith(f"{file}: all bytes: SHA-256: stored "), (file, place)
         file.write_bytes(content)
+
+
+def test_a_study_of_ones_own_is_found_here_or_where_it_is_said_to_lie(results, tmp_path, capsys):
+    Path("bend").rename(tmp_path / "away")
+    status, _, told = verified(capsys, results)
+    assert (status, told) == (
+        2,
+        [
+            f"{results / 'bend'}: no study bend in config/config.yaml or here; say where it lies: "
+            "--studies FOLDER/bend"
+        ],
+    )
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "away").rename(tmp_path / "elsewhere/bend")
+    places = proof.places_of(results, {"studies": ["song2016"]}, ["elsewhere/bend"])
+    assert places == {"bend": "elsewhere/bend"}
 
 
 @pytest.mark.parametrize("name", ["verified.json", "index.html"])
 def test_an_edit_of_the_page_or_of_the_list_is_named(results, capsys, name):
     file = results / name
     file.write_text(file.read_text().replace("numba", "number", 1))
-    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    status, lines, _ = verified(capsys, results)
     assert status == 1
     assert lines[0].startswith(f"{results / 'index.html'}: all bytes: SHA-256: stored ")
 
 
 def test_a_list_that_is_none_and_a_missing_file_are_one_line(results, capsys):
     (results / RUNS).unlink()
-    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    status, lines, _ = verified(capsys, results)
     assert (status, lines[-1]) == (1, "1 files are missing")
     (results / "verified.json").rename(results / "kept.json")
-    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    status, lines, _ = verified(capsys, results)
     assert (status, lines[-1]) == (1, "1 files are missing")
     (results / "verified.json").write_text("{")
-    status, _, told = verified(capsys, results, "--studies", "bend")
+    status, _, told = verified(capsys, results)
     assert status == 2
     assert told[-1].startswith(f"{results / 'verified.json'}: not a list of digests")
 
@@ -184,7 +201,7 @@ def test_a_claim_that_was_edited_together_with_the_list_is_named(results, capsys
     file = results / "bend/claims.csv"
     file.write_text(file.read_text().replace("shorter", "longer"))
     listed(results, "bend/claims.csv")
-    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    status, lines, _ = verified(capsys, results)
     assert status == 1
     assert any(line.startswith(f"{file}: all bytes: ") for line in lines)
 
@@ -200,7 +217,7 @@ FORGED = {
 def test_rows_that_were_dropped_doubled_or_copied_are_named(results, capsys, case):
     rows.write(FORGED[case](rows.read(str(results / RUNS))), str(results / RUNS))
     unlisted(results)
-    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    status, lines, _ = verified(capsys, results)
     assert status == 1
     assert lines[0].startswith(f"{results / RUNS}: ")
     assert ": id: stored " in lines[0]
@@ -209,7 +226,7 @@ def test_rows_that_were_dropped_doubled_or_copied_are_named(results, capsys, cas
 def test_only_a_run_that_is_made_again_shows_a_history_that_was_edited(results, capsys):
     edited(results / RUNS, "history", lambda values: [[each[0] / 2] for each in values])
     unlisted(results)
-    status, lines, _ = verified(capsys, results, "--studies", "bend", "--all")
+    status, lines, _ = verified(capsys, results, "--all")
     assert status == 1
     assert lines[0].startswith(f"{results / RUNS}: bend/bends/across/bend/0: history: stored [")
 
@@ -221,7 +238,7 @@ def test_what_another_program_wrote_is_one_line_also_in_the_workflow(results, ca
         table = table.set_column(names.index(name), name, table[name].cast(pa.large_string()))
     parquet.write_table(table, results / RUNS)
     unlisted(results)
-    status, lines, _ = verified(capsys, results, "--studies", "bend")
+    status, lines, _ = verified(capsys, results)
     assert status == 1
     assert lines[0].startswith(
         f"{results / RUNS}: all rows: digest: stored none: another program wrote it, recomputed "

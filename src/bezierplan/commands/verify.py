@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan.analysis import verification
-from bezierplan.commands import config_of, cores, studies_of
+from bezierplan.commands import config_of, cores, studies_of, study_named
 from bezierplan.places import TREE
 from bezierplan.running.inputs import tree
 
@@ -36,7 +36,7 @@ def main(
     folder : Path
         the folder of a scale, such as results/full
     studies : list of str
-        a study in place of those of config/config.yaml: a name or a folder
+        where a study lies that is neither in config/config.yaml nor in the working folder
     cores : int
         processes (default: all cores)
     all_ : bool
@@ -67,7 +67,9 @@ def from_runs(
     def progress(line: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
-    tasks = proof.tasks(studies_of(names), folder)
+    config = config_of()
+    places = proof.places_of(folder, config, map(study_named, names))
+    tasks = proof.tasks(studies_of([*places.values()]) if places else {}, folder)
     faults = proof.unlisted(folder)
     missing = [fault for fault in faults if not Path(fault.file).is_file()]
     if missing:
@@ -89,7 +91,7 @@ def from_runs(
         progress(f"{runs} runs made again, {len(faults)} faults")
         lines.append(f"{runs} runs made again")
     if not faults:
-        files, faults = proof.differing(folder, config_of(names), processes)
+        files, faults = proof.differing(folder, config, places, processes)
         lines.append(f"{files} files made again")
     versions = (f"{name} {version}" for name, version in recheck.versions().items())
     lines.append(f"digest {verdict.digest}; {', '.join(versions)}")

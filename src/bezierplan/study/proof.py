@@ -7,13 +7,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from bezierplan.places import TREE
 from bezierplan.running import rows
 from bezierplan.running.judge.recheck import Fault, Task, sha256
+from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
 from bezierplan.study import alternatives, jobs
 from bezierplan.study.experiments import SCALES
@@ -33,6 +34,22 @@ _RULES = (
     *("problems", "table", "unprinted_table", "listing", "latex", "figure", "claims", "audit"),
     *("sensitivity", "baseline_comparison", "summary", "verdict", "page"),
 )
+
+
+def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
+    """Where the studies lie whose results a scale's folder holds, by name: as a configuration or
+    further words say, or in the working folder. Raises Fault for one that is in none of these.
+    """
+    known = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
+    found = {problems.parent.name for problems in folder.glob("*/problems")}
+    for key in sorted(found - known.keys()):
+        if not Path(key, "experiments.yaml").is_file():
+            raise checked.Fault(
+                f"{folder / key}: no study {key} in config/config.yaml or here; say where it lies: "
+                f"--studies FOLDER/{key}"
+            )
+        known[key] = f"./{key}"
+    return {key: word for key, word in known.items() if key in found}
 
 
 def tasks(studies: Studies, folder: Path) -> list[Task]:
@@ -58,7 +75,6 @@ def _runs(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
     for place in sorted(folder.glob("*/runs/*/*")):
         key, _, experiment, method = place.relative_to(folder).parts
         check_known(scale, SCALES, f"{folder}: scale")
-        check_known(key, studies, f"{place}: --studies: study")
         check_known(experiment, studies[key].experiments, f"{place}: experiment")
         check_known(method, studies[key].methods_of(experiment), f"{place}: method")
         chunks = jobs.Judgement.of(studies, scale, key, experiment, method).chunks
@@ -75,18 +91,22 @@ def _alternatives(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
             yield Task(_problems(folder, key, chunk.experiment), {str(file): chunk})
 
 
+def _listed(folder: Path) -> dict[str, str]:
+    """The list of digests; empty without one. Raises ValueError for a list that is none."""
+    file = folder / LIST
+    try:
+        return dict(json.loads(file.read_text())["sha256"]) if file.is_file() else {}
+    except (KeyError, TypeError, ValueError):
+        raise rows.misplaced(str(file), "not a list of digests") from None
+
+
 def unlisted(folder: Path) -> list[Fault]:
     """Files that are not what the list of digests says; none without a list, which only a page
     needs. Raises ValueError for a list that is none.
     """
-    file = folder / LIST
-    if not file.is_file():
-        page = (folder / "index.html").is_file()
-        return [Fault(str(file), "all bytes", "SHA-256", "no file", "a list")] if page else []
-    try:
-        listed = dict(json.loads(file.read_text())["sha256"])
-    except (KeyError, TypeError, ValueError):
-        raise rows.misplaced(str(file), "not a list of digests") from None
+    listed = _listed(folder)
+    if not listed and (folder / "index.html").is_file():
+        return [Fault(str(folder / LIST), "all bytes", "SHA-256", "no file", "a list")]
     found = {name: sha256(folder / name) or "no file" for name in listed}
     return [
         Fault(str(folder / name), "all bytes", "SHA-256", listed[name], found[name])
@@ -95,9 +115,11 @@ def unlisted(folder: Path) -> list[Fault]:
     ]
 
 
-def differing(folder: Path, config: dict[str, Any], processes: int) -> tuple[int, list[Fault]]:
+def differing(
+    folder: Path, config: dict[str, Any], places: dict[str, str], processes: int
+) -> tuple[int, list[Fault]]:
     """How many files follow from studies, runs and bounds, and which of them are others if they are
-    made again. Raises ValueError if that fails.
+    made again. places: of the studies. Raises ValueError if that fails.
     """
     with tempfile.TemporaryDirectory() as away:
         again = Path(away, "results", folder.resolve().name)
@@ -109,25 +131,14 @@ def differing(folder: Path, config: dict[str, Any], processes: int) -> tuple[int
             if ".bounds." not in file.name
         ]
         before = {file: sha256(file) for file in files}
-        workflow = Path(away, "Snakefile")
-        workflow.write_text(
-            f"module again:\n    snakefile: {str(TREE / 'workflow' / 'Snakefile')!r}\n"
-            f"    config: {config!r}\n    prefix: {away!r}\n\nuse rule * from again\n"
-        )
-        done = subprocess.run(
-            [
-                *(sys.executable, "-m", "snakemake", "--snakefile", workflow, "--forceall"),
-                *("--cores", str(processes), "--nolock", "--drop-metadata"),
-                *("--workflow-profile", "none", "--allowed-rules", *_RULES, "--"),
-                *(file for file in files if file.suffix in _ENDINGS),
-            ],
-            capture_output=True,
-            text=True,
-        )
-        if done.returncode:
-            told = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-            line = next((each for each in told if "full account:" in each), told[-1])
-            raise ValueError(f"{folder}: what follows from its runs cannot be made again: {line}")
+        # What lies above all studies is of those that the list names.
+        listed = {name.split("/")[0] for name in _listed(folder)}
+        shown = [key for key in places if key in listed] or [*places]
+        whole = [*shown, *(file.name for file in files if file.parent == again)]
+        for group in [whole, *([key] for key in places if key not in shown)]:
+            own = [file for file in files if file.relative_to(again).parts[0] in group]
+            studies = [places[key] for key in places if key in group]
+            _make(own, config, studies, away, processes)
         return len(files), [
             Fault(
                 str(folder / file.relative_to(again)), "all bytes", "SHA-256", stored, sha256(file)
@@ -135,3 +146,31 @@ def differing(folder: Path, config: dict[str, Any], processes: int) -> tuple[int
             for file, stored in before.items()
             if stored != sha256(file)
         ]
+
+
+def _make(
+    files: list[Path], config: dict[str, Any], studies: list[str], away: str, processes: int
+) -> None:
+    """Make files below a folder again, which follow from some studies. Raises ValueError."""
+    names = {Path(study).resolve().name for study in studies}
+    settings = {name: each for name, each in config.get("settings", {}).items() if name in names}
+    workflow = Path(away, "Snakefile")
+    workflow.write_text(
+        f"module again:\n    snakefile: {str(TREE / 'workflow' / 'Snakefile')!r}\n"
+        f"    config: {config | {'studies': studies, 'settings': settings}!r}\n"
+        f"    prefix: {away!r}\n\nuse rule * from again\n"
+    )
+    done = subprocess.run(
+        [
+            *(sys.executable, "-m", "snakemake", "--snakefile", workflow, "--forceall"),
+            *("--cores", str(processes), "--nolock", "--drop-metadata"),
+            *("--workflow-profile", "none", "--allowed-rules", *_RULES, "--"),
+            *(file for file in files if file.suffix in _ENDINGS),
+        ],
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode:
+        told = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        line = next((each for each in told if "full account:" in each), told[-1])
+        raise ValueError(f"what follows from runs cannot be made again: {line}")
