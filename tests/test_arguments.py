@@ -1,6 +1,7 @@
 """What Python programs may give to the functions of the interface, and what they are told."""
 
 import functools
+import json
 
 import numpy as np
 import pytest
@@ -136,3 +137,57 @@ def test_wrong_numbers_of_a_file_are_told_by_name(arguments, tmp_path):
     name = [*arguments][-1]
     with pytest.raises(ValueError, match=f"^{name}: .*; expected a number above 0"):
         bp.plan(PROBLEM).to_csv(tmp_path / "path.csv", **arguments)
+
+
+BORDER = (-5.0, 5.0, -5.0, 5.0)
+SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+
+
+def circles(centres, radii, bounds=BORDER):
+    return bp.Circles(bounds, np.array(centres), np.array(radii), "m")
+
+
+def polygon(*rings):
+    return bp.Polygons(BORDER, (rings,), "m")
+
+
+@pytest.mark.parametrize(
+    ("room", "fault"),
+    [
+        (circles([(0.0, 0.0)], [np.nan]), "circles: nan is not a coordinate"),
+        (circles([(0.0, 0.0)], [-1.0]), "radii: least -1"),
+        (circles([(0.0, 0.0)], [1.0, 2.0]), "centres: an array"),
+        (circles([(0.0, 0.0)], [1.0], (5.0, -5.0, -5.0, 5.0)), "bounds: .* low below high"),
+        (polygon(SQUARE[:2]), "obstacles: 0: A linearring"),
+        (polygon(SQUARE[[0, 2, 1, 3]]), "obstacles: 0: Self-intersection"),
+        (polygon(SQUARE, 3 * SQUARE), "obstacles: 0: Hole lies outside"),
+        (polygon(SQUARE * [1, np.inf]), "obstacles: 0: -?inf is not a coordinate"),
+        (bp.Grid(np.zeros((4, 4), bool), -1.0, "m"), "cell: -1"),
+        (bp.Grid(np.zeros(4, bool), 1.0, "m"), "occupied: an array"),
+    ],
+)
+@pytest.mark.parametrize("function", [bp.plan, bp.shortest_path])
+def test_a_map_that_a_program_makes_is_checked_at_one_door(room, fault, function):
+    with pytest.raises(ValueError, match=f"^{fault}"):
+        function(bp.Problem("room", room, (-2.0, 0.0), (2.0, 0.0)))
+
+
+def test_a_list_of_problems_is_planned_in_one_call(tmp_path):
+    file = tmp_path / "problems.csv"
+    file.write_text("name,start_x,start_y,target_x,target_y\na,2,10,18,10\nb,2,11,18,10\n")
+    rows = bp.plan_all(bp.read_map(bp.example_map("gaps")), file, robot_radius=0.3)
+    assert rows["name"].to_list() == ["a", "b"]
+    assert rows["feasible"].all()
+    assert rows["clearance"].to_numpy() == pytest.approx(0.3, abs=1e-4)
+
+
+def test_an_answer_is_json_and_a_picture_in_a_notebook(tmp_path):
+    answer = bp.plan(PROBLEM)
+    answer.to_json(tmp_path / "path.json")
+    values = json.loads((tmp_path / "path.json").read_text())
+    assert values["path"]["points"][0] == [0.5, 0.5]
+    assert values["feasible"] is True
+    assert values["collision"] is None
+    html = answer._repr_html_()
+    assert html.startswith("<svg")
+    assert "% above the shortest path" in html

@@ -5,8 +5,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import headline, summary
-from bezierplan.commands import outcome
+from bezierplan.analysis import headline, outcome, summary
+from bezierplan.commands import outcome as command
+from bezierplan.commands import studies_of
 from bezierplan.schema.checked import Fault
 
 ROOT = Path(__file__).parents[1]
@@ -14,7 +15,8 @@ ROOT = Path(__file__).parents[1]
 
 def test_readme_shows_the_outcome_that_is_kept():
     readme = (ROOT / outcome.README).read_text(encoding="utf-8")
-    assert summary.with_block(readme, outcome.BLOCK, outcome.table(ROOT / outcome.KEPT)) == readme
+    shown = outcome.table(ROOT / outcome.KEPT, *command.named(studies_of()))
+    assert summary.with_block(readme, outcome.BLOCK, shown) == readme
 
 
 def comparison(values, ours, methods=("plain", "other")):
@@ -132,9 +134,9 @@ def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
 def test_missing_results_are_told_in_one_line(tmp_path, monkeypatch):
     monkeypatch.setattr(outcome, "RESULTS", tmp_path / "extended")
     with pytest.raises(
-        Fault, match=r"extended/claims.csv: not there yet; `make outcome` makes it$"
+        Fault, match=r"extended/numbers.csv: not there yet; `make outcome` makes it$"
     ):
-        outcome.main()
+        command.main()
 
 
 def test_text_without_the_part_is_told():

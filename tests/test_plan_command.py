@@ -129,7 +129,7 @@ def test_every_command_explains_each_of_its_arguments(command, capsys):
 
 
 def test_examples_of_the_help_run(capsys, tmp_path):
-    commands = re.findall(r"^ +(plan (?:.*\\\n)+.*)$", plan.main.__doc__, flags=re.MULTILINE)
+    commands = re.findall(r"^ +(plan (?:.*\\\n)*.*)$", plan.main.__doc__, flags=re.MULTILINE)
     assert len(commands) == 3
     for command in commands:
         words = shlex.split(command.replace("\\\n", " "))
@@ -171,7 +171,7 @@ def test_a_path_that_collides_ends_with_status_1(capsys, tmp_path):
     out = tmp_path / "path.csv"
     lines = planned(capsys, GAPS, *ENDS, "--method", "straight_line", "--out", out, status=1)
     assert re.match(r"no: enters an obstacle at 4\.75,10, ", lines["feasible"])
-    assert lines["length"].endswith(" % below the shortest path")
+    assert lines["length"] == "16 m"  # which says nothing beside that of a free path
     assert lines["failure"] == "straight_line: its path is not feasible"
     assert out.is_file()
 

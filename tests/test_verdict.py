@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from bezierplan.analysis import summary, verdict, wholes
-from bezierplan.commands import outcome, studies_of
+from bezierplan.analysis import outcome, summary, verdict, wholes
+from bezierplan.commands import studies_of
 from bezierplan.places import TREE
 
 KEPT = TREE / outcome.KEPT

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cache
 from pathlib import Path as File
 from types import ModuleType
@@ -17,21 +17,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import bezierplan
-from bezierplan.geometry import checker, curves, path_files, samples, shortest_paths
-from bezierplan.geometry.region import region
+from bezierplan.analysis import answers
+from bezierplan.geometry import path_files, samples, shortest_paths
 from bezierplan.places import STUDIES
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import planning, problems
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
-from bezierplan.running.judge import answer as answers
-from bezierplan.schema.checked import closest
+from bezierplan.running.judge.answer import path_of
+from bezierplan.schema.checked import check_known, closest
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
-from bezierplan.workspaces.grown import grown_of, original
+from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.polygons import Polygons as Polygons
 from bezierplan.workspaces.problem import Path, Problem, Workspace
+from bezierplan.workspaces.sound import check_map
 
 # What plots and studies need takes long to import, so functions import it.
 if TYPE_CHECKING:
@@ -175,6 +176,20 @@ class Judged:
         """Write the path as a `nav_msgs/Path` message in YAML, as `ros2 topic pub` reads it."""
         path_files.write_ros(File(file), self._spaced(step), frame)
 
+    def to_json(self, file: str | File) -> None:
+        """Write the verdict with curve, control points and shortest path; null is what JSON has no
+        number for.
+        """
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        del values["problem"]
+        path_files.write_json(File(file), values | {"gap": self.gap})
+
+    def _repr_html_(self) -> str:
+        """The picture and what the command line prints, for notebooks."""
+        from bezierplan.figures import drawn_path
+
+        return drawn_path.html(self.plot, answers.lines(self))
+
     def _spaced(self, step: float | None) -> samples.Samples:
         """Samples for a file. A path of no length has two, whatever their distance."""
         return self.sample(step=(self.length / 1000 or 1.0) if step is None else step)
@@ -288,6 +303,13 @@ def read_map(
     )
 
 
+def example_map(name: str) -> File:
+    """The file of a map of the studies, such as ``"gaps"`` or ``"figure2"``. Raises ValueError."""
+    files = {file.stem: file for file in STUDIES.glob("*/workspaces/*.*") if file.stem != "README"}
+    check_known(name, files, "map")
+    return files[name]
+
+
 def shortest_path(problem: Problem) -> Shortest:
     """The exact shortest path of a point from start to target.
 
@@ -356,49 +378,8 @@ def check(problem: Problem, path: Path) -> Judged:
         raise TypeError(f"path: is a {type(path).__name__}; expected a Path")
     if not _are_numbers(path.points, len(path.points), 2):
         raise ValueError("path: points: expected an array of numbers, (n, 2)")
-    plain = answers.path_of(Path(path.curve, np.array(path.points, dtype=float)))
-    return Judged(**verdict(*_bound(problem), plain) | {"path": path})
-
-
-def verdict(
-    problem: Problem,
-    shortest: shortest_paths.Bound,
-    path: Path | None,
-) -> dict[str, Any]:
-    """The fields of `Judged` for a path, or for none.
-
-    shortest: the exact shortest path.
-    """
-    from bezierplan.analysis.measures import CURVATURE_SAMPLES
-
-    grown = grown_of(problem.workspace)
-    fields: dict[str, Any] = {
-        "problem": problem,
-        "robot_radius": grown.radius if grown else 0.0,
-        "shortest": shortest.length,
-        "shortest_points": shortest.points,
-    }
-    if path is None:
-        return fields
-    pieces = curves.bezier_pieces(path)
-    verdict = checker.check(pieces, region(problem.workspace))
-    at_home = checker.check(pieces, region(grown.original)) if grown else verdict
-    length, jump = curves.length(path), curves.curvature_jump(path)
-    if verdict.feasible:
-        assert at_home.clearance >= fields["robot_radius"] - robot.TOLERANCE
-    kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
-    if not verdict.feasible:
-        fields["collision"] = tuple(curves.point_at(path, verdict.collision_at).tolist())
-    return fields | {
-        "path": path,
-        "length": length,
-        "feasible": verdict.feasible,
-        "depth": verdict.depth,
-        "clearance": at_home.clearance,
-        "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
-        "curvature_jump": jump,
-        "corners": not math.isfinite(jump),
-    }
+    plain = path_of(Path(path.curve, np.array(path.points, dtype=float)))
+    return Judged(**answers.verdict(*_bound(problem), plain) | {"path": path})
 
 
 def plan(
@@ -485,7 +466,7 @@ def plan(
         answer, cpu_s = planning.planned(
             label, module.plan, parts, settings, seed, planner if is_file(planner) else ""
         )
-        judged = verdict(placed, shortest, answer.path)
+        judged = answers.verdict(placed, shortest, answer.path)
     except PlannerFailure as failure:
         raise ValueError(str(failure)) from failure
     except ValueError as fault:
@@ -513,17 +494,49 @@ def plan(
     )
 
 
+def plan_all(
+    workspace: Workspace, file: str | File, method: Method | None = None, **options: Any
+) -> pd.DataFrame:
+    """Plan and judge a path for each problem of a list.
+
+    Parameters
+    ----------
+    workspace : Grid, Circles or Polygons
+    file : str or Path
+        A .csv file with the columns start_x, start_y, target_x, target_y, in the map's unit.
+    method : str, module or callable, optional
+        As in `plan`.
+    **options
+        As in `plan`.
+
+    Returns
+    -------
+    DataFrame
+        The file's rows with feasible, length, shortest, gap, clearance, curvature and cpu_s.
+
+    Raises
+    ------
+    ValueError
+        As `plan` does.
+    """
+    import pandas as pd
+
+    rows = pd.read_csv(file)
+    ends = rows[["start_x", "start_y", "target_x", "target_y"]].to_numpy(float)
+    made = [plan(Problem("", workspace, (a, b), (c, d)), method, **options) for a, b, c, d in ends]
+    names = ("feasible", "length", "shortest", "gap", "clearance", "curvature", "cpu_s")
+    return rows.assign(**{name: [getattr(each, name) for each in made] for name in names})
+
+
 def _check_problem(problem: Problem) -> None:
     """Raise TypeError for what is no problem, and ValueError for places that are none."""
     if not isinstance(problem, Problem) or not isinstance(problem.workspace, Workspace):
         raise TypeError(f"problem: {problem!r:.80}; expected a Problem on a map")
-    _check_place(problem.start, "start")
-    _check_place(problem.target, "target")
-
-
-def _check_place(place: Any, name: str) -> None:
-    if not _are_numbers(place, 2):
-        raise ValueError(f"{name}: {place!r}; expected x and y, two numbers")
+    check_map(problem.workspace)
+    for name in ("start", "target"):
+        place = getattr(problem, name)
+        if not _are_numbers(place, 2):
+            raise ValueError(f"{name}: {place!r}; expected x and y, two numbers")
 
 
 def _are_numbers(values: Any, *shape: int) -> bool:
@@ -638,18 +651,8 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
         If there are no such results, or they are damaged.
     """
     from bezierplan.analysis import results as stored
-    from bezierplan.running.chunk import chunk_files
-    from bezierplan.running.inputs import Files
 
-    runs: dict[str, list[str]] = {}
-    if experiment in [each.name for each in File(folder).glob("runs/*")]:
-        for chunk in chunk_files(File(folder) / "runs" / experiment, "*/*.parquet"):
-            runs.setdefault(chunk.parent.name, []).append(str(chunk))
-    if not runs:
-        raise ValueError(f"experiment: {experiment}: no runs of it in {folder}/runs")
-    problems = f"{folder}/problems/{experiment}"
-    files = Files(runs, f"{problems}.parquet", f"{problems}.bounds.parquet")
-    return stored.read(files, 10**9, experiment).runs
+    return stored.of_folder(File(folder), experiment).runs
 
 
 def replay(run: str) -> Answer:
@@ -684,7 +687,7 @@ def answer_of(reproduced: Any, run: str) -> Answer:
 
     row, parts = reproduced.runs.iloc[0], run.split("/")
     return Answer(
-        **verdict(*_bound(reproduced.problems[row["problem"]]), path_of(row)),
+        **answers.verdict(*_bound(reproduced.problems[row["problem"]]), path_of(row)),
         turning_radius=float(row.get("least_radius", math.nan)),
         method=f"{parts[0]}/{parts[3]}",
         settings={name: row[name] for name in planner_settings(planner_module(row["planner"]))},

@@ -1,6 +1,7 @@
 """The results of one experiment, read back for tables and figures."""
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path as FilePath
 from pathlib import PurePath
 from typing import Any, NamedTuple
 
@@ -10,7 +11,7 @@ import pandas as pd
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
 from bezierplan.running import worlds
-from bezierplan.running.chunk import Chunk
+from bezierplan.running.chunk import Chunk, chunk_files
 from bezierplan.running.columns import TABLES
 from bezierplan.running.inputs import Files
 from bezierplan.running.judge import answer
@@ -53,6 +54,21 @@ def read(files: Files, repeats: int, experiment: str) -> Results:
             raise row_files.misplaced(file, "not of the problems that the runs are of")
     results = joined(table, problem_files.read(files.problems), bounded)
     return results._replace(worlds=worlds.read(files.problems))
+
+
+def of_folder(folder: FilePath, experiment: str) -> Results:
+    """The results of an experiment of a study, in the study's folder at a scale. Raises ValueError
+    as `read` does, and if there are none.
+    """
+    runs: dict[str, list[str]] = {}
+    for chunk in chunk_files(folder, "runs/*/*/*.parquet"):
+        if chunk.parent.parent.name == experiment:
+            runs.setdefault(chunk.parent.name, []).append(str(chunk))
+    if not runs:
+        raise ValueError(f"experiment: {experiment}: no runs of it in {folder}/runs")
+    problems = f"{folder}/problems/{experiment}"
+    files = Files(runs, f"{problems}.parquet", f"{problems}.bounds.parquet")
+    return read(files, 10**9, experiment)
 
 
 def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.DataFrame]:

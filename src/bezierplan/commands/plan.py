@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from bezierplan import api
+from bezierplan.analysis import answers
 from bezierplan.commands import arguments
 from bezierplan.commands.arguments import Place
-from bezierplan.geometry import checker
 from bezierplan.running import planning
 from bezierplan.schema.checked import Fault
 
@@ -19,7 +19,9 @@ WRITERS = {
     ".csv": api.Judged.to_csv,
     ".geojson": api.Judged.to_geojson,
     ".yaml": api.Judged.to_ros,
+    ".json": api.Judged.to_json,
 }
+POINTS = (".csv", ".geojson", ".yaml")
 # The most CPU seconds of a planner that is called again, since the first call loads its kernels.
 _LONG = 2.0
 
@@ -45,40 +47,40 @@ def main(
     map : Path
         GeoJSON polygons, in a unit of length (.geojson): what has no properties.role is an
         obstacle, the border is the polygon with the role border, or the file's bbox; an occupancy
-        map of ROS (.yaml); an image alone; a MovingAI grid (.map); cells of . (free) and #
-        (occupied), the top row first (.txt)
+        map of ROS (.yaml); an image alone; cells of . (free) and # (occupied), the top row first
+        (.txt); or the name of a map of the studies, such as gaps
     start : tuple of float
         where the path begins, in the map's unit
     target : tuple of float
         where it ends
     out : Path, optional
         a file of the path: a picture (.svg, .png), distance, x, y, heading and curvature (.csv), a
-        line (.geojson), or a nav_msgs/Path message of ROS (.yaml)
+        line (.geojson), a nav_msgs/Path message of ROS (.yaml), or the verdict with the control
+        points (.json)
     step : float, optional
         largest distance between points in that file (default: the length / 1000)
 
     Examples
     --------
     The exact shortest path through a maze, its corners rounded to a radius of 0.3 m, as a picture:
-      plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
-        --settings '{turning_radius: 0.3}' --out path.svg
+      plan gaps --start 2,10 --target 18,10 --settings '{turning_radius: 0.3}' --out path.svg
 
     The same problem by the genetic algorithm of elhoseny2017, on cells of 0.5 m, as points:
-      plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
-        --method elhoseny2017/mga_c --cell 0.5 --out path.csv
+      plan gaps --start 2,10 --target 18,10 --method elhoseny2017/mga_c --cell 0.5 --out path.csv
 
     The path of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points
     0.1 m apart:
-      plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
-        --robot-radius 0.4 --settings '{turning_radius: 0.5}' --strict --step 0.1 --out robot.csv
+      plan gaps --start 2,10 --target 18,10 --robot-radius 0.4 --strict --step 0.1 \\
+        --settings '{turning_radius: 0.5}' --out robot.csv
     """
     if out:
         _check_out(out, map)
     if step is not None and not step > 0:
         raise Fault(f"step: {step:g}; expected a number above 0")
-    points = [end for end, write in WRITERS.items() if write is not api.Judged.to_picture]
-    if step is not None and (not out or out.suffix not in points):
-        raise Fault(f"step: {step:g}: only for --out with a file that ends in {', '.join(points)}")
+    if step is not None and (not out or out.suffix not in POINTS):
+        raise Fault(f"step: {step:g}: only for --out with a file that ends in {', '.join(POINTS)}")
+    if not map.suffix and not map.exists():
+        map = api.example_map(str(map))
     names = {parameter.name for parameter, *_ in arguments.parameters(api.read_map)}
     room = api.read_map(map, **{name: options.pop(name) for name in names & options.keys()})
     problem = api.Problem("", room, start, target)
@@ -91,7 +93,7 @@ def main(
         _fail(f"--{fault}")
     if out and answer.path:
         WRITERS[out.suffix](answer, out, **({} if step is None else {"step": step}))
-    for name, text in described(answer).items():
+    for name, text in answers.lines(answer).items():
         print(f"{name:16}{text}")
     if not math.isfinite(answer.shortest):
         _fail(f"--target: {target[0]:g},{target[1]:g}: no free way leads there from the start")
@@ -117,44 +119,3 @@ def _check_out(out: Path, map: Path) -> None:
         raise Fault(f"out: {out}: no folder {out.parent}; expected one that exists")
     if out.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix(""):
         raise Fault(f"out: {out}: is there, with the map's name; expected another file")
-
-
-def described(answer: api.Answer) -> dict[str, str]:
-    """What to print of an answer, by name."""
-    unit, settings = answer.problem.workspace.unit, answer.settings
-    lines = {
-        "planner": answer.method,
-        "settings": ", ".join(f"{name} {value}" for name, value in settings.items()) or "none",
-    }
-    if answer.robot_radius:
-        lines["robot radius"] = f"{answer.robot_radius:g} {unit}"
-    lines["shortest path"] = f"{answer.shortest:.6g} {unit}"
-    if answer.path is None:
-        return lines | {"path": f"none ({answer.stop})", "CPU time": f"{answer.cpu_s:.3g} s"}
-    gap = _digits(100 * abs(answer.gap), 3)
-    side = "below" if answer.gap < 0 and gap != "0" else "above"
-    lines["length"] = f"{answer.length:.6g} {unit}, {gap} % {side} the shortest path"
-    corners = ", and corners" if answer.corners else ""
-    lines["curvature"] = f"at most {_digits(answer.curvature, 6)} / {unit} at samples{corners}"
-    if not math.isnan(answer.turning_radius):
-        wish, radius = settings["turning_radius"], answer.turning_radius
-        lines["turning radius"] = f"{wish:.6g} {unit} asked" + (
-            " and kept"
-            if planning.keeps_radius(wish, radius)
-            else f", {radius:.6g} {unit} kept: no room for more"
-        )
-    lines["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
-    lines["feasible"] = "yes"
-    if not answer.feasible:
-        x, y = answer.collision
-        what = "comes too close to" if answer.clearance > 0 else "enters"
-        deep = f"at most {answer.depth:.6g} {unit} deep"
-        lines["feasible"] = f"no: {what} an obstacle at {x:.6g},{y:.6g}, {deep}"
-    if not math.isnan(answer.cpu_s):
-        lines["CPU time"] = f"{answer.cpu_s:.3g} s"
-    return lines
-
-
-def _digits(value: float, digits: int) -> str:
-    """A number with some digits; 0 within the checker's tolerance, where it says nothing."""
-    return f"{value:.{digits}g}" if abs(value) > checker.TOLERANCE else "0"

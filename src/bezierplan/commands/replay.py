@@ -7,8 +7,8 @@ from typing import Any
 import pandas as pd
 
 from bezierplan import api
-from bezierplan.analysis import results
-from bezierplan.commands import plan, studies_of
+from bezierplan.analysis import answers, results
+from bezierplan.commands import studies_of
 from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation
 from bezierplan.running import rides
@@ -45,7 +45,7 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
         animate(reproduced, picture)
     else:
         answer = api.answer_of(reproduced, run)
-        lines = plan.described(answer)
+        lines = answers.lines(answer)
         answer.to_picture(picture)
     for name, text in {**lines, "picture": picture}.items():
         print(f"{name:16}{text}")

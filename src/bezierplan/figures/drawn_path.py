@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,9 +38,17 @@ def draw(
     paths.draw_parts(axes, paths.table(drawn), clip=True)
 
 
-def save(file: File, drawn: Callable[[Axes], object]) -> None:
+def html(drawn: Callable[[Axes], object], lines: dict[str, str]) -> str:
+    """What a function draws on axes, and lines by name, as HTML."""
+    picture = io.StringIO()
+    save(picture, drawn)
+    rows = "".join(f"<tr><th>{name}<td>{escape(text)}" for name, text in lines.items())
+    return picture.getvalue()[picture.getvalue().index("<svg") :] + f"<table>{rows}</table>"
+
+
+def save(file: File | io.StringIO, drawn: Callable[[Axes], object]) -> None:
     """What a function draws on axes as a picture with a legend, of the kind that the file's suffix
-    names.
+    names; into text as SVG.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
@@ -48,4 +58,4 @@ def save(file: File, drawn: Callable[[Axes], object]) -> None:
         axes = figure.add_subplot()
         drawn(axes)
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
-        figure.savefig(file, dpi=300)
+        figure.savefig(file, dpi=300, format="svg" if isinstance(file, io.StringIO) else None)

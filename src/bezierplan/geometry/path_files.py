@@ -26,16 +26,26 @@ def write_csv(file: Path, samples: Samples) -> None:
 
 
 def write_geojson(file: Path, samples: Samples, properties: Mapping[str, Any]) -> None:
-    """A feature of kind LineString; nan and infinity, which JSON does not know, become null."""
-    known = {
-        name: value if not isinstance(value, float) or math.isfinite(value) else None
-        for name, value in properties.items()
-    }
+    """A feature of kind LineString."""
     line = {"type": "LineString", "coordinates": np.column_stack([samples.x, samples.y]).tolist()}
-    file.write_text(
-        json.dumps({"type": "Feature", "properties": known, "geometry": line}) + "\n",
-        encoding="utf-8",
-    )
+    write_json(file, {"type": "Feature", "properties": properties, "geometry": line})
+
+
+def write_json(file: Path, values: Mapping[str, Any]) -> None:
+    """Values as JSON; nan and infinity, which it does not know, become null."""
+    file.write_text(json.dumps(_plain(values)) + "\n", encoding="utf-8")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {name: _plain(each) for name, each in value.items()}
+    if hasattr(value, "_asdict"):
+        return _plain(value._asdict())
+    if hasattr(value, "tolist"):  # of numpy
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def write_ros(file: Path, samples: Samples, frame: str) -> None:

@@ -11,6 +11,7 @@ import contextlib
 import fcntl
 import gc
 import inspect
+import logging
 import math
 import time
 from collections.abc import Iterator
@@ -163,9 +164,16 @@ class Kernel(CPUDispatcher):
                     return super().compile(sig)
             if sig in self.overloads or self._cache.keeps(sig, self.targetctx.codegen()):
                 return super().compile(sig)
+            _tell()
             folder = Path(self._cache.cache_path)
             with _alone(folder, self.held), _rare_garbage_collection():
                 return super().compile(sig)
+
+
+@cache
+def _tell() -> None:
+    """Say once why the first calls after an installation take so long."""
+    logging.getLogger(__name__).warning("compiling kernels, once: this takes some seconds")
 
 
 @contextmanager

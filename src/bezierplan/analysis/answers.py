@@ -1,0 +1,94 @@
+"""What exact geometry says of one path, and what to print of it."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from bezierplan.analysis.measures import CURVATURE_SAMPLES
+from bezierplan.geometry import checker, curves, shortest_paths
+from bezierplan.geometry.region import region
+from bezierplan.running import planning
+from bezierplan.workspaces import robot
+from bezierplan.workspaces.grown import grown_of
+from bezierplan.workspaces.problem import Path, Problem
+
+
+def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None) -> dict[str, Any]:
+    """The fields of `api.Judged` for a path, or for none. shortest: the exact shortest path."""
+    grown = grown_of(problem.workspace)
+    fields: dict[str, Any] = {
+        "problem": problem,
+        "robot_radius": grown.radius if grown else 0.0,
+        "shortest": shortest.length,
+        "shortest_points": shortest.points,
+    }
+    if path is None:
+        return fields
+    pieces = curves.bezier_pieces(path)
+    verdict = checker.check(pieces, region(problem.workspace))
+    at_home = checker.check(pieces, region(grown.original)) if grown else verdict
+    jump = curves.curvature_jump(path)
+    if verdict.feasible:
+        assert at_home.clearance >= fields["robot_radius"] - robot.TOLERANCE
+    else:
+        fields["collision"] = tuple(curves.point_at(path, verdict.collision_at).tolist())
+    kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
+    return fields | {
+        "path": path,
+        "length": curves.length(path),
+        "feasible": verdict.feasible,
+        "depth": verdict.depth,
+        "clearance": at_home.clearance,
+        "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
+        "curvature_jump": jump,
+        "corners": not math.isfinite(jump),
+    }
+
+
+def lines(answer: Any) -> dict[str, str]:
+    """What to print of an `api.Answer`, by name."""
+    unit, settings = answer.problem.workspace.unit, answer.settings
+    words = {
+        "planner": answer.method,
+        "settings": ", ".join(f"{name} {value}" for name, value in settings.items()) or "none",
+    }
+    if answer.robot_radius:
+        words["robot radius"] = f"{answer.robot_radius:g} {unit}"
+    words["shortest path"] = f"{answer.shortest:.6g} {unit}"
+    if answer.path is None:
+        words["path"] = f"none ({answer.stop})"
+    else:
+        words |= _of_path(answer, unit)
+    if not math.isnan(answer.cpu_s):
+        words["CPU time"] = f"{answer.cpu_s:.3g} s"
+    return words
+
+
+def _of_path(answer: Any, unit: str) -> dict[str, str]:
+    corners = ", and corners" if answer.corners else ""
+    words = {
+        "length": f"{answer.length:.6g} {unit}",
+        "curvature": f"at most {_digits(answer.curvature, 6)} / {unit} at samples{corners}",
+    }
+    if not math.isnan(answer.turning_radius):
+        wish, radius = answer.settings["turning_radius"], answer.turning_radius
+        kept = planning.keeps_radius(wish, radius)
+        words["turning radius"] = f"{wish:.6g} {unit} asked" + (
+            " and kept" if kept else f", {radius:.6g} {unit} kept: no room for more"
+        )
+    words["clearance"] = f"{_digits(answer.clearance, 6)} {unit}"
+    if answer.feasible:
+        words["length"] += f", {_digits(100 * max(answer.gap, 0.0), 3)} % above the shortest path"
+        words["feasible"] = "yes"
+    else:
+        x, y = answer.collision
+        what = "comes too close to" if answer.clearance > 0 else "enters"
+        deep = f"at most {answer.depth:.6g} {unit} deep"
+        words["feasible"] = f"no: {what} an obstacle at {x:.6g},{y:.6g}, {deep}"
+    return words
+
+
+def _digits(value: float, digits: int) -> str:
+    """A number with some digits; 0 within the tolerance of free paths, where it says nothing."""
+    return f"{value:.{digits}g}" if abs(value) > robot.TOLERANCE else "0"

@@ -1,0 +1,78 @@
+"""The outcome that the repository keeps in docs/outcome and in the README, from the results of two
+scales.
+
+Verdicts and numbers are those of scale extended: they are about the methods, not about the papers'
+samples. Next to each verdict stands the verdict at the paper's own number of runs, from scale full.
+"""
+
+import re
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+import pandas as pd
+
+from bezierplan.analysis import headline, summary
+
+RESULTS, FULL = Path("results/extended"), Path("results/full")
+KEPT, README = Path("docs/outcome"), Path("README.md")
+BLOCK = "outcome"
+# Between two sentences: the README has the first of a paper.
+_SENTENCE = re.compile(r"(?<=[.])\s+(?=[A-Z0-9])")
+# Of each study: what its printed numbers say alone; and its table of alternatives, if there is one.
+AUDIT, SENSITIVITY = "audit.csv", "sensitivity.csv"
+BASELINE_COMPARISON = "baseline_comparison.csv"
+TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
+SCALES = {
+    "full": "the papers' own numbers of runs.",
+    "extended": "a verdict is about a method, not about the few runs that a paper could afford.",
+}
+
+
+def write(titles: Mapping[str, str], verdicts: Mapping[str, str], settings: pd.DataFrame) -> None:
+    """Write the tables of docs/outcome and the README's part. Raises FileNotFoundError if results
+    are missing.
+
+    titles: of studies, by name. verdicts: the files of their sentences. settings: of their methods.
+    """
+    KEPT.mkdir(parents=True, exist_ok=True)
+    numbers, claims, measured = (pd.read_csv(RESULTS / name) for name in TABLES)
+    claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
+    for name in ("numbers.csv", BASELINE_COMPARISON):
+        shutil.copyfile(RESULTS / name, KEPT / name)
+    shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
+    for key in titles:
+        shutil.copyfile(RESULTS / key / AUDIT, KEPT / f"{key}_{AUDIT}")
+        kept, file = KEPT / f"{key}_{SENSITIVITY}", FULL / key / SENSITIVITY
+        kept.unlink(missing_ok=True)  # what was not made again is of another state
+        if file.is_file():
+            shutil.copyfile(file, kept)
+    claims.to_csv(KEPT / "claims.csv", index=False)
+    settings.to_csv(KEPT / "settings.csv", index=False)
+    follow = _following(KEPT, verdicts, numbers, claims, measured)
+    report = summary.report(numbers, claims, measured, titles, follow, RESULTS.name)
+    (KEPT / "summary.md").write_text(report, encoding="utf-8")
+    readme = README.read_text(encoding="utf-8")
+    readme = summary.with_block(readme, BLOCK, table(KEPT, titles, verdicts))
+    README.write_text(readme, encoding="utf-8")
+
+
+def _following(kept: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
+    """By study, what follows, from tables of numbers, claims and measures and a folder's audits."""
+    audits = [str(kept / f"{key}_{AUDIT}") for key in verdicts]
+    return summary.verdicts(*tables, verdicts, audits)
+
+
+def table(kept: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:
+    """The README's headline and sentences, from a folder's tables, and the scale, from its
+    summary.
+    """
+    tables = [pd.read_csv(kept / name) for name in TABLES]
+    follow = "\n".join(
+        f"- {titles[key].partition(':')[0]}: {_SENTENCE.split(text)[0]}"
+        for key, text in _following(kept, verdicts, *tables).items()
+    )
+    heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
+    scale = heading.removeprefix(summary.HEADING)
+    overview = headline.markdown(headline.headline(*tables, titles))
+    return f"{overview}\n\n{follow}\n\nScale `{scale}`: {SCALES[scale]}"
