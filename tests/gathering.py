@@ -195,7 +195,7 @@ def gathering(given: Studies) -> Iterator[Made]:
         yield from _gathering_one(given, key)
     folder = f"results/{SCALE}"
     compared, summary, shown = (
-        kind.of(given, SCALE) for kind in (jobs.BaselineComparison, jobs.Summary, page.Page)
+        make(given, SCALE) for make in (jobs.baseline_comparison, jobs.summary, page.page)
     )
     baseline = f"{folder}/baseline_comparison.csv"
     yield Made(compared, given_to(compared, ""), {"made": baseline})
@@ -207,16 +207,16 @@ def gathering(given: Studies) -> Iterator[Made]:
         "claims": [f"{folder}/{key}/claims.csv" for key in given],
         "baseline_comparison": baseline,
         "audits": [],
-        "verdicts": [],
+        "sources": [],
     }
     yield Made(summary, files, output)
     judgements = []
     for key, study in given.items():
         for method in study.methods_of("all"):
-            judgement = jobs.Judgement.of(given, SCALE, key, "all", method)
+            judgement = jobs.judgement(study, SCALE, "all", method)
             judgements.append(f"{folder}/{key}/runs/all/{method}/judgement.json")
             yield Made(judgement, given_to(judgement, key), {"made": judgements[-1]})
-    verified = page.Verified.of(given, SCALE)
+    verified = page.verified(given, SCALE)
     files = given_to(verified, "", judgements=judgements)
     yield Made(verified, files, {"made": f"{folder}/verified.json"})
     files = given_to(
@@ -231,9 +231,8 @@ def gathering(given: Studies) -> Iterator[Made]:
 def _gathering_one(given: Studies, key: str) -> Iterator[Made]:
     """Tables, figures, claims and audit of a study."""
     study, folder = given[key], f"results/{SCALE}/{key}"
-    published = study.published_files()
     for name in study.tables:
-        job = jobs.TableOfRuns.of(given, SCALE, key, name)
+        job = jobs.table_of_runs(study, SCALE, name)
         output = {
             part: f"{folder}/beyond/{name}.{ending}"
             for part, ending in (
@@ -243,16 +242,15 @@ def _gathering_one(given: Studies, key: str) -> Iterator[Made]:
                 ("marks", "marks.csv"),
             )
         }
-        yield Made(job, given_to(job, key, published=published), output)
+        yield Made(job, given_to(job, key, sources=job.sources), output)
     for name in study.figures:
-        job = jobs.Figure.of(given, SCALE, key, name)
+        job = jobs.figure(study, SCALE, name)
         output = {part: f"{folder}/beyond/{name}.{ending}" for part, ending in FIGURE_FILES.items()}
-        drawn = study.published_drawn(name)
-        yield Made(job, given_to(job, key, published=drawn), output)
-    claims, audit = jobs.Claims.of(given, SCALE, key), jobs.Audit.of(given, SCALE, key)
+        yield Made(job, given_to(job, key, sources=job.sources), output)
+    claims, audit = jobs.claims(study, SCALE), jobs.audit(study, SCALE)
     output = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"}
-    yield Made(claims, given_to(claims, key, published=published), output)
-    yield Made(audit, given_to(audit, key, published=published), {"made": f"{folder}/audit.csv"})
+    yield Made(claims, given_to(claims, key, sources=claims.sources), output)
+    yield Made(audit, given_to(audit, key, sources=audit.sources), {"made": f"{folder}/audit.csv"})
 
 
 def peaks(repeats: int, chunk: int) -> dict[str, float]:

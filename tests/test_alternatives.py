@@ -15,7 +15,7 @@ def test_every_alternative_has_a_run_that_it_changes(key, name):
     study = STUDIES[key]
     assert any(
         job.settings != jobs.job(study, job.experiment, job.method, "full", 0).settings
-        for _, job in jobs.Alternative.of(STUDIES, "full", key, name).chunks
+        for _, job in jobs.alternative(STUDIES[key], "full", name).chunks
     )
 
 
@@ -29,7 +29,7 @@ def test_an_alternative_judges_the_primary_variant_and_runs_only_what_it_judges(
     claim = next(claim for claim in alternatives.headline_claims(study, name) if claim.id == "C1")
     [check] = in_variant(claim.checks, *2 * variants(claim))
     assert check.where["workspace"] == "published_like"
-    judged = jobs.Alternative.of(STUDIES, "full", "elhoseny2017", name)
+    judged = jobs.alternative(STUDIES["elhoseny2017"], "full", name)
     assert judged.claims == alternatives.headline_claims(study, name)
 
 

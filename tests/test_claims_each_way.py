@@ -57,7 +57,7 @@ def published(key):
 
 @cache
 def artefacts(key):
-    return jobs.Claims.of({key: study(key)}, "full", key).artefacts
+    return jobs.claims(study(key), "full").artefacts
 
 
 @cache

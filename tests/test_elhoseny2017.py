@@ -7,7 +7,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
-from studies import studies, study
+from studies import study
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.claims.kinds import function
@@ -251,5 +251,5 @@ def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
     ],
 )
 def test_numbers_to_which_a_map_was_fitted_are_not_compared_with_its_bound(key, fitted):
-    layouts = jobs.Audit.of(studies(), "smoke", key).layouts
+    layouts = jobs.audit(study(key), "smoke").layouts
     assert {name for name, layout in layouts.items() if layout.fitted} == fitted

@@ -120,7 +120,7 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
     repeats = SONG.experiments[SONG.tables["table1"].experiment].repeats
     assert repeats["smoke"] != repeats["full"]
     for scale in ("smoke", "full"):
-        assert jobs.TableOfRuns.of(STUDIES, scale, "song2016", "table1").repeats == repeats[scale]
+        assert jobs.table_of_runs(SONG, scale, "table1").repeats == repeats[scale]
         assert f"{repeats[scale]} runs of each method" in jobs.caption(SONG, "table1", scale)
 
 

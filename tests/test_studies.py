@@ -362,7 +362,7 @@ def test_flow_chart_has_a_box_around_every_step():
 
 def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
-    layouts = jobs.Audit.of({"tharwat2018": study}, "full", "tharwat2018").layouts
+    layouts = jobs.audit(study, "full").layouts
     tables = published("tharwat2018")
     compared = {name: audit.read_published(study.published_file(name)) for name in layouts}
     rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, layouts))

@@ -211,13 +211,13 @@ EDITS = {
     ),
     "a docstring": ("src/bezierplan/planners/parts/genetic.py", '"""', '"""Once more. ', {}),
     "what a job does": (
-        "src/bezierplan/study/jobs.py",
+        "src/bezierplan/analysis/jobs.py",
         "        compared = comparison.compare(\n",
         "        0\n        compared = comparison.compare(\n",
         dict.fromkeys(("table table1", "latex table1", *SUMMARY), 1),
     ),
     "what another job does": (
-        "src/bezierplan/study/jobs.py",
+        "src/bezierplan/analysis/jobs.py",
         "        return again.with_chunks(",
         "        0\n        return again.with_chunks(",
         {},

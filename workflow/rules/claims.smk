@@ -4,11 +4,11 @@
 
 rule claims:
     input:
-        runs=read(of(jobs.Claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
-        judgements=read(of(jobs.Claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
-        problems=read(of(jobs.Claims), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.Claims), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        published=of_study(lambda study, job: study.published_files()),
+        runs=read(of(jobs.claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        judgements=read(of(jobs.claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
+        problems=read(of(jobs.claims), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.claims), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        sources=sources(of(jobs.claims)),
     output:
         claims=report(
             f"{RESULTS}/claims.csv",
@@ -28,16 +28,16 @@ rule claims:
         mem_mb=more(2000),
         runtime=more(20),
     params:
-        **params(jobs.Claims),
+        **params(jobs.claims),
     script:
         "../scripts/job.py"
 
 
 rule audit:
     input:
-        problems=read(of(jobs.Audit), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.Audit), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        published=of_study(lambda study, job: study.published_files()),
+        problems=read(of(jobs.audit), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.audit), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        sources=sources(of(jobs.audit)),
     output:
         report(
             f"{RESULTS}/audit.csv",
@@ -50,7 +50,7 @@ rule audit:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.Audit),
+        **params(jobs.audit),
     script:
         "../scripts/job.py"
 
@@ -59,14 +59,14 @@ rule audit:
 rule alternative:
     input:
         runs=read(
-            of(jobs.Alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+            of(jobs.alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
         ),
         judgements=read(
-            of(jobs.Alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
+            of(jobs.alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
         ),
-        problems=read(of(jobs.Alternative), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.Alternative), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        published=of_study(lambda study, job: study.published_files()),
+        problems=read(of(jobs.alternative), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.alternative), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        sources=sources(of(jobs.alternative)),
     output:
         runs=directory(f"{RESULTS}/sensitivity/{{alternative}}/runs"),
         claims=f"{RESULTS}/sensitivity/{{alternative}}/claims.csv",
@@ -79,7 +79,7 @@ rule alternative:
         mem_mb=more(2000),
         runtime=more(20),
     params:
-        **params(jobs.Alternative),
+        **params(jobs.alternative),
     script:
         "../scripts/job.py"
 
@@ -104,6 +104,6 @@ rule sensitivity:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.Sensitivity),
+        **params(jobs.sensitivity),
     script:
         "../scripts/job.py"

@@ -124,22 +124,23 @@ wildcard_constraints:
     alternative=one_of(name for study in STUDIES.values() for name in alternatives.tried(study)),
 
 
-def params(kind, **more):
-    """Params of a rule: a job of a class, and the digest by which Snakemake sees that it is another
-    one.
-    """
-    job = of(kind, **more)
+def params(make, **more):
+    """Params of a rule: its job, and the digest by which Snakemake sees that it is another one."""
+    job = of(make, **more)
     return {"job": job, "digest": lambda wildcards: job(wildcards).digest}
 
 
 @cache
-def made(kind, more, wildcards):
-    return kind.of(STUDIES, **dict(wildcards), **dict(more))
+def made(make, more, wildcards):
+    names = dict(wildcards)
+    names.pop("tree", None)
+    study = names.pop("study", None)
+    return make(STUDIES[study] if study else STUDIES, **names, **dict(more))
 
 
-def of(kind, **more):
-    """The job of a class for the wildcards of a rule."""
-    return lambda wildcards: made(kind, tuple(more.items()), tuple(sorted(wildcards.items())))
+def of(make, **more):
+    """The job that a function makes of a study, or of all, for the wildcards of a rule."""
+    return lambda wildcards: made(make, tuple(more.items()), tuple(sorted(wildcards.items())))
 
 
 def read(job, pattern):
@@ -162,11 +163,11 @@ def read(job, pattern):
     return files
 
 
-def of_study(files):
-    """Files of a study's folder that a job reads: they stay where they are, wherever a module has
-    its results.
+def sources(job):
+    """Files of the folders of studies that a job reads: they stay where they are, wherever a module
+    has its results.
     """
-    return lambda wildcards: [local(file) for file in files(STUDIES[wildcards.study], wildcards)]
+    return lambda wildcards: [local(file) for file in job(wildcards).sources]
 
 
 def more(least):

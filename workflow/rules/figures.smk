@@ -4,12 +4,11 @@
 
 rule figure:
     input:
-        runs=read(of(jobs.Figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
-        judgements=read(of(jobs.Figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
-        problems=read(of(jobs.Figure), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.Figure), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        published=of_study(lambda study, job: study.published_drawn(job.figure)),
-        maps=of_study(lambda study, job: study.maps(jobs.workspaces_of_figure(study, job.figure))),
+        runs=read(of(jobs.figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        judgements=read(of(jobs.figure), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
+        problems=read(of(jobs.figure), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.figure), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        sources=sources(of(jobs.figure)),
     output:
         svg=report(
             f"{RESULTS}/{{tree}}/{{figure}}.svg",
@@ -31,7 +30,7 @@ rule figure:
         mem_mb=more(1500),
         runtime=more(5),
     params:
-        **params(jobs.Figure),
+        **params(jobs.figure),
         caption=caption,
     script:
         "../scripts/job.py"

@@ -9,7 +9,7 @@
 
 rule problems:
     input:
-        maps=of_study(lambda study, job: study.maps_of(job.experiment, job.scale)),
+        sources=sources(of(jobs.problems)),
     output:
         f"{RESULTS}/problems/{{experiment}}.parquet",
     log:
@@ -21,7 +21,7 @@ rule problems:
         mem_mb=more(1500),
         runtime=more(5),
     params:
-        **params(jobs.Problems),
+        **params(jobs.problems),
     script:
         "../scripts/job.py"
 
@@ -42,7 +42,7 @@ rule bounds:
         mem_mb=more(1500),
         runtime=more(10),
     params:
-        **params(jobs.Bounds),
+        **params(jobs.bounds),
     script:
         "../scripts/job.py"
 
@@ -66,7 +66,7 @@ rule runs:
         mem_mb=more(1500),
         runtime=more(20),
     params:
-        **params(jobs.Runs),
+        **params(jobs.runs),
     script:
         "../scripts/job.py"
 
@@ -84,8 +84,8 @@ use rule runs as drives with:
 # Nothing reads runs that were not judged again from their rows, in a process that no planner was in.
 rule judgement:
     input:
-        runs=read(of(jobs.Judgement), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
-        problems=read(of(jobs.Judgement), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        runs=read(of(jobs.judgement), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"),
+        problems=read(of(jobs.judgement), f"{RESULTS}/problems/{{experiment}}.parquet"),
     output:
         f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
     log:
@@ -97,6 +97,6 @@ rule judgement:
         mem_mb=more(1500),
         runtime=more(10),
     params:
-        **params(jobs.Judgement),
+        **params(jobs.judgement),
     script:
         "../scripts/job.py"

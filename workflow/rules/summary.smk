@@ -4,15 +4,15 @@
 rule baseline_comparison:
     input:
         runs=read(
-            of(jobs.BaselineComparison),
+            of(jobs.baseline_comparison),
             f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         ),
         judgements=read(
-            of(jobs.BaselineComparison), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
+            of(jobs.baseline_comparison), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
         ),
-        problems=read(of(jobs.BaselineComparison), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        problems=read(of(jobs.baseline_comparison), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(
-            of(jobs.BaselineComparison), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
+            of(jobs.baseline_comparison), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
         ),
     output:
         report(
@@ -29,7 +29,7 @@ rule baseline_comparison:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.BaselineComparison),
+        **params(jobs.baseline_comparison),
     script:
         "../scripts/job.py"
 
@@ -42,7 +42,7 @@ rule summary:
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
         audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
-        verdicts=[local(STUDIES[key].verdict_file()) for key in FOLLOWING],
+        sources=sources(of(jobs.summary)),
     output:
         numbers="results/{scale}/numbers.csv",
         claims="results/{scale}/claims.csv",
@@ -58,7 +58,7 @@ rule summary:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.Summary),
+        **params(jobs.summary),
     script:
         "../scripts/job.py"
 
@@ -71,7 +71,7 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison")
         ],
         audit=f"{RESULTS}/audit.csv",
-        verdict=of_study(lambda study, job: [study.verdict_file()]),
+        sources=sources(of(jobs.verdict)),
     output:
         report(
             f"{RESULTS}/verdict.md",
@@ -86,7 +86,7 @@ rule verdict:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.Verdict),
+        **params(jobs.verdict),
     script:
         "../scripts/job.py"
 
@@ -103,16 +103,16 @@ SUMMARY = expand(
 rule verified:
     input:
         runs=read(
-            of(page.Verified, root=PREFIX),
+            of(page.verified, root=PREFIX),
             f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         ),
         judgements=read(
-            of(page.Verified, root=PREFIX),
+            of(page.verified, root=PREFIX),
             f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
         ),
-        problems=read(of(page.Verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        problems=read(of(page.verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(
-            of(page.Verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
+            of(page.verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
         ),
         shown=shown,
         summary=SUMMARY,
@@ -124,7 +124,7 @@ rule verified:
         "../envs/bezierplan.yaml"
     threads: 2
     params:
-        **params(page.Verified, root=PREFIX),
+        **params(page.verified, root=PREFIX),
     script:
         "../scripts/job.py"
 
@@ -132,11 +132,11 @@ rule verified:
 rule page:
     input:
         runs=read(
-            of(page.Page, root=PREFIX),
+            of(page.page, root=PREFIX),
             f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         ),
-        problems=read(of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(page.Page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        problems=read(of(page.page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(page.page, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
         shown=shown,
         summary=SUMMARY,
         # Last, for it is of all these files.
@@ -149,6 +149,6 @@ rule page:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(page.Page, root=PREFIX),
+        **params(page.page, root=PREFIX),
     script:
         "../scripts/job.py"

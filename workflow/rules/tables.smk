@@ -5,14 +5,14 @@
 rule table:
     input:
         runs=read(
-            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
         ),
         judgements=read(
-            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
+            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
         ),
-        problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        published=of_study(lambda study, job: [study.published_file(job.table)]),
+        problems=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        sources=sources(of(jobs.table_of_runs)),
     output:
         table=report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
@@ -38,7 +38,7 @@ rule table:
         mem_mb=more(1500),
         runtime=more(5),
     params:
-        **params(jobs.TableOfRuns),
+        **params(jobs.table_of_runs),
         caption=caption,
     script:
         "../scripts/job.py"
@@ -48,14 +48,14 @@ rule table:
 use rule table as unprinted_table with:
     input:
         runs=read(
-            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
         ),
         judgements=read(
-            of(jobs.TableOfRuns), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
+            of(jobs.table_of_runs), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
         ),
-        problems=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.TableOfRuns), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        published=of_study(lambda study, job: list(filter(None, [study.published_file(job.table)]))),
+        problems=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.table_of_runs), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        sources=sources(of(jobs.table_of_runs)),
     output:
         table=report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
@@ -71,7 +71,7 @@ use rule table as unprinted_table with:
 # What a paper prints, and what follows from it.
 rule listing:
     input:
-        published=of_study(lambda study, job: study.published_of(job.table)),
+        sources=sources(of(jobs.table_without_runs)),
     output:
         report(
             f"{RESULTS}/{{tree}}/{{table}}.csv",
@@ -89,7 +89,7 @@ rule listing:
         mem_mb=more(1500),
         runtime=more(5),
     params:
-        **params(jobs.TableWithoutRuns),
+        **params(jobs.table_without_runs),
         caption=caption,
     script:
         "../scripts/job.py"
@@ -111,6 +111,6 @@ rule latex:
     conda:
         "../envs/bezierplan.yaml"
     params:
-        **params(jobs.Latex),
+        **params(jobs.latex),
     script:
         "../scripts/job.py"

@@ -348,7 +348,7 @@ def audited(
     bound_files: Mapping[str, str],
     files: Mapping[str, str],
 ) -> pd.DataFrame:
-    """The audit of a paper as a table with `COLUMNS`. job: what `study.jobs.Audit` holds.
+    """The audit of a paper as a table with `COLUMNS`. job: the job (`jobs.Audit`).
 
     problem_files and bound_files: by experiment, problems of those alone whose printed lengths are
     identified. files: of published numbers, by table.

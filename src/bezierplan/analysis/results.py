@@ -1,6 +1,6 @@
 """The results of one experiment, read back for tables and figures."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path as FilePath
 from pathlib import PurePath
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from bezierplan.running import rows as row_files
 from bezierplan.running import worlds
 from bezierplan.running.chunk import Chunk, chunk_files
 from bezierplan.running.columns import TABLES
-from bezierplan.running.inputs import Files
+from bezierplan.running.inputs import Files, by_table
 from bezierplan.running.judge import answer
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
@@ -149,6 +149,11 @@ def published_table(file: str) -> pd.DataFrame:
     names.
     """
     return pd.read_csv(file, keep_default_na=False, na_values=[""])
+
+
+def published_tables(files: Iterable[str]) -> dict[str, pd.DataFrame]:
+    """Several files of published numbers, by table."""
+    return {name: published_table(file) for name, file in by_table(files).items()}
 
 
 def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:

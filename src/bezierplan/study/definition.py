@@ -136,11 +136,6 @@ class Study:
                 }
         return described
 
-    def maps_of(self, experiment: str, scale: str) -> list[str]:
-        """Map files of an experiment."""
-        problems = self.problems_of(experiment, scale).values()
-        return self.maps({problem["workspace"] for problem in problems})
-
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
         named = (files.sources(self.workspaces[name].plain(), self.folder) for name in workspaces)

@@ -1,13 +1,13 @@
 """The jobs that show all results of a scale: the page, and the check of what it shows."""
 
 import csv
-from dataclasses import dataclass
 from pathlib import Path
 
-from bezierplan.figures import page
+from bezierplan.analysis.jobs import Verified
+from bezierplan.figures.jobs import Page
+from bezierplan.figures.page import OUTCOME, files
 from bezierplan.figures.page.page_job import (
     AssumptionShown,
-    ExperimentShown,
     FigureShown,
     MethodShown,
     PageJob,
@@ -15,7 +15,6 @@ from bezierplan.figures.page.page_job import (
     StudyShown,
     TableShown,
 )
-from bezierplan.machine.digest import content_digest
 from bezierplan.places import STUDIES, TREE
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.schema import checked
@@ -23,7 +22,7 @@ from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
 from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
-from bezierplan.study.jobs import Analysis, Job, Studies
+from bezierplan.study.jobs import Studies
 
 SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
 """The settings of all studies behind the README's outcome."""
@@ -63,7 +62,7 @@ def shows(studies: Studies, scale: str, root: str = "") -> Shows:
     for key, study in studies.items():
         parts = [jobs.shown_by(study, name, scale) for name in shown_of(study, scale, root)]
         if study.claims:
-            parts.append(jobs.Claims.of(studies, scale, key).shows)
+            parts.append(jobs.claims(study, scale).shows)
         for part in parts:
             for name, methods in part.items():
                 place = f"{key}/{name}"
@@ -71,104 +70,22 @@ def shows(studies: Studies, scale: str, root: str = "") -> Shows:
     return behind
 
 
-@dataclass(frozen=True)
-class Verified(Job):
-    """What was judged again of all that the page shows: runs (`jobs.Judgement`), and every bound;
-    and the digest of every file.
-    """
-
-    folder: str
-    """That of the scale."""
-
-    @classmethod
-    def of(cls, studies, scale, root=""):
-        """What the page shows."""
-        return cls(f"{root}results/{scale}", shows=shows(studies, scale, root))
-
-    def run(self, input_files, output_files, threads):
-        """Compute the bounds again, and list the files."""
-        import json
-
-        from bezierplan.running import inputs
-        from bezierplan.running.judge import recheck
-
-        tasks = [
-            recheck.Task(files.problems, {}, files.bounds)
-            for files in inputs.experiments(self.shows, input_files).values()
-        ]
-        judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
-        verdict = recheck.merged(
-            [
-                recheck.verify(tasks, threads),
-                *(
-                    recheck.Verdict(**each | {"digests": tuple(each["digests"])})
-                    for each in judgements
-                ),
-            ]
-        )
-        # The times and traces of a chunk lie beside it.
-        beside = [
-            file for run in map(Path, input_files.runs) for file in run.parent.glob(f"{run.stem}.*")
-        ]
-        content = recheck.sound(verdict) | {
-            "digest": verdict.digest,
-            "versions": recheck.versions(),
-            "sha256": {
-                str(file.relative_to(self.folder)): recheck.sha256(file)
-                for file in sorted({*map(Path, input_files), *beside})
-            },
-        }
-        recheck.write(content, output_files[0])
+def verified(studies: Studies, scale: str, root: str = "") -> Verified:
+    """What the page shows is judged again."""
+    return Verified(f"{root}results/{scale}", shows=shows(studies, scale, root))
 
 
-@dataclass(frozen=True)
-class Page(Analysis):
+def page(studies: Studies, scale: str, root: str = "") -> Page:
     """The page of a scale."""
-
-    page: PageJob
-    moving: list[str]
-    """The experiments, each by study/experiment, whose runs are drives."""
-    sources: str
-    """Digest of templates, and of the README's outcome if it is shown."""
-
-    @classmethod
-    def of(cls, studies, scale, root=""):
-        """What the page shows."""
-        behind, outcome = shows(studies, scale, root), _outcome(studies, scale)
-        shown = {key: _study(own, scale, root) for key, own in studies.items()}
-        return cls(
-            PageJob(scale, shown, outcome=bool(outcome)),
-            [place for place in behind if studies[place.split("/")[0]].moves(place.split("/")[1])],
-            content_digest(*page.files(), *outcome),
-            shows=behind,
-            code=[module for own in studies.values() for module in own.code_for("metrics")],
-        )
-
-    def run(self, input_files, output_files, threads):
-        """Write the page."""
-        from bezierplan.figures.page import build
-        from bezierplan.running import inputs
-
-        self.load()
-        experiments: dict[str, dict[str, ExperimentShown]] = {key: {} for key in self.page.studies}
-        for place, files in inputs.experiments(self.shows, input_files).items():
-            key, _, name = place.partition("/")
-            methods, repeats = self.page.studies[key].experiments[name]
-            traces = [
-                str(Path(chunk).with_suffix(".traces.parquet"))
-                for chunk in files.chunks
-                if place in self.moving
-            ]
-            experiments[key][name] = ExperimentShown(
-                methods, repeats, files.chunks, files.problems, files.bounds, traces
-            )
-        studies = {
-            key: own._replace(experiments=experiments[key])
-            for key, own in self.page.studies.items()
-        }
-        job, folder = self.page._replace(studies=studies), Path(input_files.verified).parent
-        summary, verified = list(input_files.summary), input_files.verified
-        build.write(job, folder, summary, verified, output_files.page)
+    behind, outcome = shows(studies, scale, root), _outcome(studies, scale)
+    shown = {key: _study(own, scale, root) for key, own in studies.items()}
+    return Page(
+        PageJob(scale, shown, outcome=bool(outcome)),
+        [place for place in behind if studies[place.split("/")[0]].moves(place.split("/")[1])],
+        sources=[*files(), *outcome],
+        shows=behind,
+        code=[module for own in studies.values() for module in own.code_for("metrics")],
+    )
 
 
 def _outcome(studies: Studies, scale: str) -> list[str]:
@@ -176,14 +93,14 @@ def _outcome(studies: Studies, scale: str) -> list[str]:
     first, in a clone that has them; none if it shows none of the papers.
     """
     papers = any(study.folder.resolve().is_relative_to(STUDIES) for study in studies.values())
-    shown = scale != "extended" and papers and all(file.is_file() for file in page.OUTCOME)
-    return [*map(str, page.OUTCOME)] if shown else []
+    shown = scale != "extended" and papers and all(file.is_file() for file in OUTCOME)
+    return [*map(str, OUTCOME)] if shown else []
 
 
 def _study(study: Study, scale: str, root: str) -> StudyShown:
     """What the page needs of a study beside its results."""
     names = shown_of(study, scale, root)
-    files = {
+    there = {
         "claims": bool(study.claims),
         "checks": bool(study.claims),
         "audit": has_audit(study),
@@ -228,7 +145,7 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
             )
             for each in study.assumptions
         ],
-        files=[name for name, there in files.items() if there],
+        files=[name for name, of in there.items() if of],
         changed=changed(study),
         experiments=behind,
     )

@@ -77,7 +77,7 @@ def _runs(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
         check_known(scale, SCALES, f"{folder}: scale")
         check_known(experiment, studies[key].experiments, f"{place}: experiment")
         check_known(method, studies[key].methods_of(experiment), f"{place}: method")
-        chunks = jobs.Judgement.of(studies, scale, key, experiment, method).chunks
+        chunks = jobs.judgement(studies[key], scale, experiment, method).chunks
         files = {str(place / f"{number}.parquet"): chunk for number, chunk in enumerate(chunks)}
         yield Task(_problems(folder, key, experiment), files)
 
@@ -86,7 +86,7 @@ def _alternatives(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
     for place in sorted(folder.glob("*/sensitivity/*/runs")):
         key, _, name, _ = place.relative_to(folder).parts
         check_known(name, alternatives.tried(studies[key]), f"{place}: alternative")
-        for number, chunk in jobs.Alternative.of(studies, scale, key, name).chunks:
+        for number, chunk in jobs.alternative(studies[key], scale, name).chunks:
             file = place / chunk.experiment / chunk.method / f"{number}.parquet"
             yield Task(_problems(folder, key, chunk.experiment), {str(file): chunk})
 

@@ -147,6 +147,12 @@ def kind_of(description: dict) -> ModuleType:
     return module(_places()[description["kind"]])
 
 
+def modules_of(workspaces: dict[str, dict]) -> list[str]:
+    """Modules of the kinds of some workspaces, and of functions that draw them."""
+    functions = [each["file"] for each in workspaces.values() if "function" in each]
+    return [*(_places()[each["kind"]] for each in workspaces.values()), *functions]
+
+
 @cache
 def kinds() -> dict[str, type[Workspace]]:
     """Kind of workspace -> the keys of its descriptions; fixed ones, random ones, then worlds."""

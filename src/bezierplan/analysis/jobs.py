@@ -1,0 +1,397 @@
+"""The jobs of the workflow that work on results, each declared once: a class whose fields are all
+values that a job depends on, and whose `run` is the function that works. From that function, and
+from the modules that the values name, follows the digest of code (`Job.digest`) by which Snakemake
+sees that a job must run again. Files of results stand in the rules alone.
+
+`run` imports what it needs itself: the workflow makes jobs at every start, and imports none of it.
+"""
+
+import hashlib
+import inspect
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.material import Shown
+from bezierplan.analysis.sensitivity import Tried
+from bezierplan.analysis.table_kinds import Layout, Pivot, Table
+from bezierplan.machine.digest import content_digest, function_digest, module_of
+from bezierplan.running.chunk import Chunk
+from bezierplan.running.inputs import Shows
+
+
+@dataclass(frozen=True)
+class Job(ABC):
+    """What a job is made of.
+
+    shows: experiment, or study/experiment -> method -> number of chunks: the results that it reads,
+    in the order of its input files. sources: other files that it reads, of the folder of a study.
+    code: modules of the study's own code.
+    """
+
+    shows: Shows = field(default_factory=dict, kw_only=True)
+    sources: list[str] = field(default_factory=list, kw_only=True)
+    code: list[str] = field(default_factory=list, kw_only=True)
+
+    @abstractmethod
+    def run(self, input_files: Any, output_files: Any, threads: int) -> None:
+        """Do the work with the files of a rule, by their names there."""
+
+    @staticmethod
+    def write(table: Any, file: str) -> None:
+        """Write a table without an index."""
+        table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
+
+    def __str__(self) -> str:
+        """For reports, whose readers' browsers must not run words of a study."""
+        return type(self).__name__
+
+    def modules(self) -> Iterable[str]:
+        """Modules that `run` imports by name, because of the values."""
+        return self.code
+
+    @property
+    def digest(self) -> str:
+        """Of the values, the content of sources, and the code that works, with the versions of
+        libraries that compute. Objects that have the same text are the same.
+        """
+        values = [(each.name, getattr(self, each.name)) for each in fields(self)]
+        text = repr([each for each in values if each[0] != "sources"])
+        works = tuple(
+            function
+            for name, function in inspect.getmembers(type(self), inspect.isfunction)
+            if not name.startswith("__") and name != "modules"
+        )
+        return " ".join(
+            [
+                hashlib.sha256(text.encode()).hexdigest()[:16],
+                content_digest(*self.sources),
+                function_digest(works, *sorted(set(self.modules()))),
+            ]
+        )
+
+
+@dataclass(frozen=True)
+class TableOfRuns(Job):
+    """A table of runs, and its comparison with published numbers."""
+
+    name: str
+    """`study/table`, of the table that it extends, so that equal rows have equal numbers."""
+    spec: Pivot
+    """Without its title, which stands in the caption alone."""
+    labels: dict[str, str]
+    """Name -> how it is printed."""
+    variants: dict[str, str]
+    """Method -> the method whose published numbers it is compared with."""
+    baselines: list[str]
+    repeats: int
+
+    def run(self, input_files, output_files, threads):
+        """Make the table and its comparison."""
+        import pandas as pd
+
+        from bezierplan.analysis import comparison, results, study_code, tables
+        from bezierplan.running import inputs
+
+        study_code.functions(self.code)
+        ((experiment, files),) = inputs.experiments(self.shows, input_files).items()
+        runs = results.read(files, self.repeats, experiment)
+        file = input_files.sources[0] if self.sources else None
+        published = comparison.read_published(file, self.spec)
+        compared = comparison.compare(
+            runs, self.spec, published, self.variants, self.baselines, self.name
+        )
+        table = tables.pivot(runs, self.spec, self.labels)
+        table.to_csv(output_files.table, lineterminator="\n")
+        if self.spec.printed:
+            compared = compared[compared["value_published"].notna()]
+            numbers = pd.read_csv(file, dtype=str, keep_default_na=False)
+            verdicts = compared.assign(value=compared["verdict"].fillna(""))
+            for rows, laid in ((numbers, output_files.published), (verdicts, output_files.marks)):
+                laid_out = tables.alike(rows, self.spec, self.labels, like=table)
+                laid_out.to_csv(laid, lineterminator="\n")
+        self.write(compared, output_files.comparison)
+
+
+@dataclass(frozen=True)
+class TableWithoutRuns(Job):
+    """What a paper prints, or what follows from it."""
+
+    spec: Table
+    """Without its title."""
+
+    def run(self, input_files, output_files, threads):
+        """Make the table."""
+        from bezierplan.analysis import listing, study_code
+        from bezierplan.running import inputs
+
+        published, functions = inputs.by_table(input_files.sources), study_code.functions(self.code)
+        self.write(listing.table(self.spec, published, functions), output_files[0])
+
+
+@dataclass(frozen=True)
+class Latex(Job):
+    """A table as LaTeX, with its caption, which alone holds the title. One of the paper's form has
+    the printed numbers in the same cells.
+    """
+
+    label: str
+    caption: str
+    note: str | None
+
+    def run(self, input_files, output_files, threads):
+        """Set the table."""
+        import pandas as pd
+
+        from bezierplan.analysis import latex
+
+        table, *beside = (
+            pd.read_csv(file, dtype=str, keep_default_na=False)
+            for file in [input_files.table, *input_files.beside]
+        )
+        notes = [self.note] if self.note else []
+        if beside:
+            table, notes = latex.laid_over(table, *beside), [latex.LEGEND, *notes]
+        text = latex.document(table, self.caption, f"tab:{self.label}", notes)
+        Path(output_files[0]).write_text(text, encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Claims(Job):
+    """The claims of a study, judged on the runs of some experiments."""
+
+    study: str
+    claims: list[Claim]
+    artefacts: dict[str, list[Shown]]
+    """What each table and figure shows of runs."""
+    variant_of: dict[str, str]
+    """Method -> the method whose published numbers count."""
+    paired: dict[str, bool]
+    """By experiment, whether runs with equal repeat numbers share a start or a random workspace."""
+    paper_repeats: dict[str, int]
+    """By experiment, repeats of the paper, used if the printed numbers do not state them."""
+    labels: dict[str, str]
+    repeats: dict[str, int]
+    """By experiment, the repeats that are judged."""
+
+    def modules(self):
+        """Kinds of check as well."""
+        kinds = {check.test for claim in self.claims for check in claim.checks}
+        return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
+
+    def files(self, input_files, output_files):
+        """Files of the results by experiment."""
+        from bezierplan.running import inputs
+
+        return inputs.experiments(self.shows, input_files)
+
+    def run(self, input_files, output_files, threads):
+        """Judge the claims."""
+        from bezierplan.analysis import results, study_code
+        from bezierplan.analysis.claims import judge
+
+        judged, checks = judge.judge(
+            self.claims,
+            results.read_all(self.files(input_files, output_files), self.repeats),
+            results.published_tables(input_files.sources),
+            self.artefacts,
+            self.study,
+            study_code.functions(self.code),
+            variant_of=self.variant_of,
+            paired=self.paired,
+            repeats=self.paper_repeats,
+            labels=self.labels,
+        )
+        self.write(judged, output_files.claims)
+        self.write(checks, output_files.checks)
+
+
+@dataclass(frozen=True)
+class Alternative(Claims):
+    """Claims judged in their primary variant on runs with one alternative of an assumption, which
+    this job makes, and on the other methods' runs by default. One job, for most of its chunks take
+    less time than starting a process.
+    """
+
+    chunks: list[tuple[int, Chunk]]
+    """Numbers and chunks of runs that the alternative changes."""
+
+    def modules(self):
+        """Planners as well."""
+        return [*super().modules(), *(module_of(chunk.planner) for _, chunk in self.chunks)]
+
+    def files(self, input_files, output_files):
+        """Files of the results by experiment, with the runs that are made here."""
+        from bezierplan.running import again, inputs
+
+        return again.with_chunks(
+            inputs.experiments(self.shows, input_files), self.chunks, Path(output_files.runs)
+        )
+
+
+@dataclass(frozen=True)
+class Sensitivity(Job):
+    """Verdicts under each alternative beside those under the defaults."""
+
+    described: dict[str, Tried]
+
+    def run(self, input_files, output_files, threads):
+        """Compare the verdicts."""
+        import pandas as pd
+
+        from bezierplan.analysis import sensitivity
+
+        tried = {
+            name: pd.read_csv(file)
+            for name, file in zip(self.described, input_files.alternatives, strict=True)
+        }
+        table = sensitivity.sensitivity(pd.read_csv(input_files.claims), tried, self.described)
+        self.write(table, output_files[0])
+
+
+@dataclass(frozen=True)
+class Audit(Job):
+    """A paper's own numbers, checked against each other and against exact bounds."""
+
+    study: str
+    tables: dict[str, str]
+    """Table of published numbers -> the experiment that reproduces it."""
+    primary: dict[str, dict]
+    """By table, the rows that count as the paper's interpretation: column -> value."""
+    layouts: dict[str, Layout]
+    """By table."""
+    identified: list[str]
+    """Experiments among whose paths printed lengths are sought."""
+
+    def run(self, input_files, output_files, threads):
+        """Check the numbers."""
+        from bezierplan.analysis import audit, study_code
+        from bezierplan.running import inputs
+
+        study_code.functions(self.code)
+        files = inputs.experiments(self.shows, input_files)
+        table = audit.audited(
+            self,
+            study_code.audit(self.code),
+            {name: files[name].problems for name in self.identified},
+            {name: each.bounds for name, each in files.items()},
+            inputs.by_table(input_files.sources),
+        )
+        self.write(table, output_files[0])
+
+
+@dataclass(frozen=True)
+class BaselineComparison(Job):
+    """The methods of all studies beside the baselines that the studies name."""
+
+    baselines: dict[str, tuple[str, str | None]]
+    """By study, and the method that its paper proposes."""
+    repeats: dict[str, int]
+    """By study/experiment."""
+
+    def run(self, input_files, output_files, threads):
+        """Measure the methods."""
+        from bezierplan.analysis import baseline_comparison
+        from bezierplan.running import inputs
+
+        rows = baseline_comparison.of_studies(
+            self.baselines, self.repeats, inputs.experiments(self.shows, input_files)
+        )
+        rows.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
+
+
+@dataclass(frozen=True)
+class Summary(Job):
+    """The numbers and claims of all studies."""
+
+    scale: str
+    tables: list[tuple[str, str]]
+    """Study and table of each comparison with published numbers, in order."""
+    titles: dict[str, str]
+    """Those of the studies."""
+    verdicts: list[str]
+    """The studies that have sentences of what follows, in the order of these sources."""
+
+    def run(self, input_files, output_files, threads):
+        """Gather them."""
+        from bezierplan.analysis import study_code, summary
+
+        study_code.functions(self.code)
+        summed = summary.gathered(
+            dict(zip(self.tables, input_files.comparisons, strict=True)),
+            self.titles,
+            list(input_files.claims),
+            input_files.baseline_comparison,
+            dict(zip(self.verdicts, input_files.sources, strict=True)),
+            list(input_files.audits),
+            self.scale,
+        )
+        for table in ("numbers", "claims", "wholes"):
+            self.write(getattr(summed, table), getattr(output_files, table))
+        Path(output_files.summary).write_text(summed.report, encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Verdict(Job):
+    """What follows for a paper."""
+
+    study: str
+
+    def run(self, input_files, output_files, threads):
+        """Put the numbers into the sentences."""
+        import pandas as pd
+
+        from bezierplan.analysis import summary
+
+        tables = [pd.read_csv(file) for file in input_files.summary]
+        files = {self.study: input_files.sources[0]}
+        texts = summary.verdicts(*tables, files, [input_files.audit])
+        Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Verified(Job):
+    """What was judged again of all that the page shows: runs (judgements), and every bound; and the
+    digest of every file.
+    """
+
+    folder: str
+    """That of the scale."""
+
+    def run(self, input_files, output_files, threads):
+        """Compute the bounds again, and list the files."""
+        import json
+
+        from bezierplan.running import inputs
+        from bezierplan.running.judge import recheck
+
+        tasks = [
+            recheck.Task(files.problems, {}, files.bounds)
+            for files in inputs.experiments(self.shows, input_files).values()
+        ]
+        judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
+        verdict = recheck.merged(
+            [
+                recheck.verify(tasks, threads),
+                *(
+                    recheck.Verdict(**each | {"digests": tuple(each["digests"])})
+                    for each in judgements
+                ),
+            ]
+        )
+        # The times and traces of a chunk lie beside it.
+        beside = [
+            file for run in map(Path, input_files.runs) for file in run.parent.glob(f"{run.stem}.*")
+        ]
+        content = recheck.sound(verdict) | {
+            "digest": verdict.digest,
+            "versions": recheck.versions(),
+            "sha256": {
+                str(file.relative_to(self.folder)): recheck.sha256(file)
+                for file in sorted({*map(Path, input_files), *beside})
+            },
+        }
+        recheck.write(content, output_files[0])

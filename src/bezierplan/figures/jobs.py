@@ -1,0 +1,118 @@
+"""The jobs of the workflow that draw: figures, and the page of a scale (`analysis.jobs`)."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bezierplan.analysis.jobs import Job
+from bezierplan.figures.page.page_job import ExperimentShown, PageJob
+from bezierplan.figures.panels import Panel
+from bezierplan.machine.digest import module_of
+from bezierplan.running.chunk import Chunk
+from bezierplan.workspaces.kinds import modules_of
+
+
+@dataclass(frozen=True)
+class Figure(Job):
+    """A figure: pictures, exactly the data drawn in them, and what its caption says of the runs."""
+
+    study: str
+    columns: int
+    width: str
+    """Of the sheet, a key of `style.WIDTHS`."""
+    panels: list[Panel]
+    labels: dict[str, str]
+    """Name -> how it is printed."""
+    looks: dict[str, str]
+    """Method -> the name of its look."""
+    workspaces: dict[str, dict[str, Any]]
+    """By name, those that are drawn without runs, as their files describe them."""
+    repeats: dict[str, int]
+    """By experiment."""
+    chunks: dict[str, dict[str, Chunk]]
+    """Those whose runs the figure reruns, to draw what no table keeps, by experiment and method."""
+    unit: str
+    """That of lengths."""
+    folder: str
+    """That of the study, with its maps."""
+
+    def modules(self):
+        """Kinds of panel and workspace, and planners that run again."""
+        again = [chunk.planner for methods in self.chunks.values() for chunk in methods.values()]
+        return [
+            *self.code,
+            *(type(panel).__module__ for panel in self.panels),
+            *map(module_of, again),
+            *modules_of(self.workspaces),
+        ]
+
+    def run(self, input_files, output_files, threads):
+        """Draw the figure from its data, which are first written and read back."""
+        from bezierplan.analysis import results, study_code
+        from bezierplan.figures import sheet
+        from bezierplan.figures.panels import Sources
+        from bezierplan.running import inputs
+        from bezierplan.workspaces import files as workspace_files
+
+        published = results.published_tables(
+            file for file in input_files.sources if Path(file).parent.name == "published"
+        )
+        numbers = results.joined_numbers(published)
+        read = results.read_all(inputs.experiments(self.shows, input_files), self.repeats)
+        experiments = {
+            name: runs._replace(published=numbers, jobs=self.chunks.get(name))
+            for name, runs in read.items()
+        }
+        workspaces = {
+            name: workspace_files.load(described, Path(self.folder))
+            for name, described in self.workspaces.items()
+        }
+        problems = {name: runs.problems for name, runs in experiments.items()}
+        drawings = study_code.part_of(
+            [name for name in self.code if study_code.part(name) == "panels"]
+        )
+        scene = sheet.Scene(problems, workspaces, self.labels, self.unit, self.looks, drawings)
+        functions = study_code.functions(self.code)
+        sources = Sources(experiments, workspaces, functions, published, self.study)
+        sheet.write_data(sheet.data(self.panels, sources), output_files.data)
+        figure = sheet.draw(
+            self.panels, sheet.read_data(output_files.data), scene, self.columns, self.width
+        )
+        sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
+        Path(output_files.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Page(Job):
+    """The page of a scale."""
+
+    page: PageJob
+    moving: list[str]
+    """The experiments, each by study/experiment, whose runs are drives."""
+
+    def run(self, input_files, output_files, threads):
+        """Write the page."""
+        from bezierplan.analysis import study_code
+        from bezierplan.figures.page import build
+        from bezierplan.running import inputs
+
+        study_code.functions(self.code)
+        experiments: dict[str, dict[str, ExperimentShown]] = {key: {} for key in self.page.studies}
+        for place, files in inputs.experiments(self.shows, input_files).items():
+            key, _, name = place.partition("/")
+            methods, repeats = self.page.studies[key].experiments[name]
+            traces = [
+                str(Path(chunk).with_suffix(".traces.parquet"))
+                for chunk in files.chunks
+                if place in self.moving
+            ]
+            experiments[key][name] = ExperimentShown(
+                methods, repeats, files.chunks, files.problems, files.bounds, traces
+            )
+        studies = {
+            key: own._replace(experiments=experiments[key])
+            for key, own in self.page.studies.items()
+        }
+        job, folder = self.page._replace(studies=studies), Path(input_files.verified).parent
+        summary, verified = list(input_files.summary), input_files.verified
+        build.write(job, folder, summary, verified, output_files.page)
