@@ -97,12 +97,12 @@ def test_clipped_values_are_counted_and_the_sequence_goes_on_from_them():
     over = [
         start
         for start, found in zip(starts, second, strict=True)
-        if found.clipped and found.values[1] == 1
+        if found.clips and found.values[1] == 1
     ]
     assert over
     assert sequence("singer", over[0], 5, steep).values[1:].tolist() == [1, 0, 0, 0]
-    assert sequence("singer", over[0], 5, steep).clipped == 2
-    assert sequence("singer", 0.7, 10_000, MU).clipped == 0
+    assert sequence("singer", over[0], 5, steep).clips == 2
+    assert sequence("singer", 0.7, 10_000, MU).clips == 0
 
 
 @pytest.mark.parametrize(

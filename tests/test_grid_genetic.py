@@ -73,14 +73,14 @@ def test_start_and_target_need_not_be_centres_of_cells():
 
 
 def walker(grid, longest_walk=1000, detour=4, random_step=0.0):
-    walled = np.pad(grid, 1, constant_values=True)
-    return grid_genetic._Walker(walled.ravel(), walled.shape[1], longest_walk, detour, random_step)
+    walls = np.pad(grid, 1, constant_values=True)
+    return grid_genetic._Walker(walls.ravel(), walls.shape[1], longest_walk, detour, random_step)
 
 
-def is_path(cells, walled, columns):
+def is_path(cells, walls, columns):
     row, column = np.divmod(cells, columns)
     steps = np.maximum(abs(np.diff(row)), abs(np.diff(column)))
-    return bool((steps == 1).all() and not walled[cells].any())
+    return bool((steps == 1).all() and not walls[cells].any())
 
 
 def test_walks_go_to_their_goal_over_free_neighbours():
@@ -98,7 +98,7 @@ def test_walks_go_to_their_goal_over_free_neighbours():
         if count:
             reached += 1
             assert walk[count - 1] == 30 * columns + 30
-            assert is_path(walk[:count], given.walled, columns)
+            assert is_path(walk[:count], given.walls, columns)
     assert reached > 40
 
 
@@ -121,7 +121,7 @@ def test_random_steps_lead_away_from_the_straight_walk_and_still_to_the_goal():
         given = walker(free, longest_walk=20_000, random_step=share)
         counts = [grid_genetic._extend(rng, given, walk, 1, 30 * columns + 30) for _ in range(100)]
         assert walk[counts[-1] - 1] == 30 * columns + 30
-        assert is_path(walk[: counts[-1]], given.walled, columns)
+        assert is_path(walk[: counts[-1]], given.walls, columns)
         steps.append(np.mean(counts) - 1)
     assert steps[0] == 29
     # A random step takes the walk nowhere on average, so 1 / (1 - share) times as many are needed.
@@ -200,13 +200,13 @@ def test_mutation_replaces_what_lies_between_two_cells():
         [row * columns + 1 for row in range(1, 21)]
         + [20 * columns + column for column in range(2, 21)]
     )
-    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walled), dtype=np.int64)
+    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walls), dtype=np.int64)
     shorter = 0
     for _ in range(200):
         walk[: len(path)] = path
         count = grid_genetic._walk_anew(rng, given, walk, len(path), last_visit)
         assert (walk[0], walk[count - 1]) == (path[0], path[-1])
-        assert is_path(walk[:count], given.walled, columns)
+        assert is_path(walk[:count], given.walls, columns)
         # Head and tail are the path's own, in their places from its two ends; a free field is
         # crossed straight between them.
         after, both = walk[:count], min(count, len(path))
@@ -224,7 +224,7 @@ def test_a_failed_walk_leaves_the_path_as_it_is():
     given = walker(np.zeros((20, 20), dtype=bool), longest_walk=1)
     columns = given.columns
     path = np.array([row * columns + 1 for row in range(1, 21)])
-    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walled), dtype=np.int64)
+    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walls), dtype=np.int64)
     walk[:20] = path
     for seed in range(20):
         assert (

@@ -32,7 +32,7 @@ from bezierplan.workspaces.ground import (
     edge_energy,
     ground_of,
     least_energy,
-    obstacles_met,
+    obstacles_on,
 )
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -97,7 +97,7 @@ def test_maps_change_as_the_paper_says():
         assert before.occupied.shape == after.occupied.shape == (16, 16)
         _, path = cheapest(ground_of(before, 1.0), 0, 255)
         ground = ground_of(after, 1.0)
-        assert sum(obstacles_met(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
+        assert sum(obstacles_on(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
 
 
 # Share of the way, of the exact optimum, after which the map changes -> cell (column, row), what

@@ -32,7 +32,7 @@ from bezierplan.workspaces.ground import (
     edge_energy,
     free_neighbours,
     ground_of,
-    obstacles_met,
+    obstacles_on,
 )
 from bezierplan.workspaces.problem import Problem
 
@@ -118,14 +118,14 @@ def test_edges_meet_the_cells_whose_interior_they_pass(seed, shape):
     grid = Grid(np.random.default_rng(seed).random(shape) < 0.4, 1.0, "cell")
     ground = ground_of(grid, 1.0)
     for one, other in np.random.default_rng(seed).integers(0, grid.occupied.size, (40, 2)).tolist():
-        assert obstacles_met(ground, one, other) == met(one, other, grid)
+        assert obstacles_on(ground, one, other) == met(one, other, grid)
         assert edge_energy(ground, one, other) == length(one, other, shape[1])
 
 
 def test_an_edge_between_two_cells_that_touch_at_a_corner_is_free():
     ground = ground_of(from_lines([".#.", "#..", "..."], 1.0, "cell"), 1.0)
-    assert obstacles_met(ground, 3, 7) == 2
-    assert obstacles_met(ground, 4, 6) == 0
+    assert obstacles_on(ground, 3, 7) == 2
+    assert obstacles_on(ground, 4, 6) == 0
 
 
 @pytest.mark.parametrize("mutation", OPERATORS)
@@ -133,7 +133,7 @@ def test_edges_measured_on_demand_give_the_same_bits(mutation, monkeypatch):
     where = ENVIRONMENTS["env2_modified"]
     with_table = plan(where, mutation=mutation)
     monkeypatch.setattr(ground_of_cells, "TABLE_CELLS", 0)
-    assert ground_of(where.workspace, 1.0).met.size == 0
+    assert ground_of(where.workspace, 1.0).encounters.size == 0
     on_demand = plan(where, mutation=mutation)
     assert on_demand.history.tobytes() == with_table.history.tobytes()
     assert on_demand.path.points.tobytes() == with_table.path.points.tobytes()
@@ -310,11 +310,11 @@ def test_closed_corners_are_met():
     ):
         grid = from_lines(rows, 1.0, "cell")
         for one, other in ((0, 8), (8, 0)):
-            assert obstacles_met(ground_of(grid, 1.0), one, other) == open_
-            assert obstacles_met(ground_of(grid, 1.0, closed=True), one, other) == closed
+            assert obstacles_on(ground_of(grid, 1.0), one, other) == open_
+            assert obstacles_on(ground_of(grid, 1.0, closed=True), one, other) == closed
         # Along a row nothing changes, and what passes an interior is met by either rule.
         for one, other in itertools.product(range(9), repeat=2):
-            assert obstacles_met(ground_of(grid, 1.0, True), one, other) >= obstacles_met(
+            assert obstacles_on(ground_of(grid, 1.0, True), one, other) >= obstacles_on(
                 ground_of(grid, 1.0), one, other
             )
 

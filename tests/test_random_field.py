@@ -27,9 +27,9 @@ def test_a_field_is_drawn_from_its_name_alone():
         {"start": [0, 100], "target": [100, 0]},
     ):
         other = random_field.field(FIELD, PROBLEM | change, "study/dense")
-        assert not np.array_equal(one.drawn.centres[:20], other.drawn.centres[:20])
+        assert not np.array_equal(one.shapes.centres[:20], other.shapes.centres[:20])
     assert not np.array_equal(
-        one.drawn.centres, random_field.field(FIELD, PROBLEM, "study/other").drawn.centres
+        one.shapes.centres, random_field.field(FIELD, PROBLEM, "study/other").shapes.centres
     )
 
 
@@ -39,7 +39,7 @@ def test_nested_fields_stay_nested_where_draws_are_repeated():
     centres = {
         (count, layout): random_field.field(
             nested, PROBLEM | {"obstacles": count, "layout": layout}, "study/dense"
-        ).drawn.centres
+        ).shapes.centres
         for count in (17, 18)
         for layout in range(60)
     }
@@ -48,7 +48,7 @@ def test_nested_fields_stay_nested_where_draws_are_repeated():
         for layout in range(60)
     ]
     drawn_again = [
-        not np.array_equal(centres[17, layout][0], first.drawn.centres[0])
+        not np.array_equal(centres[17, layout][0], first.shapes.centres[0])
         for layout, first in enumerate(firsts)
     ]
     alike = [np.array_equal(centres[17, n], centres[18, n][:17]) for n in range(60)]
@@ -63,18 +63,18 @@ def test_radius_is_a_share_of_the_side_that_is_named():
             PROBLEM | {"side": side, "target": [side, side], "obstacles": 5},
             "study/dense",
         )
-        assert set(field.drawn.radii) == {radius}
+        assert set(field.shapes.radii) == {radius}
 
 
 def test_cells_are_those_whose_centres_lie_in_circles():
     grid = random_field.field(FIELD, PROBLEM, "study/dense")
     assert grid.occupied.shape == (101, 101)
     assert grid.bounds == (-0.5, 100.5, -0.5, 100.5)
-    assert len(grid.drawn.radii) == 25
-    assert set(grid.drawn.radii) == {6.0}
+    assert len(grid.shapes.radii) == 25
+    assert set(grid.shapes.radii) == {6.0}
     x, y = np.meshgrid(np.arange(101), np.arange(101))
     inside = (
-        np.hypot(x[..., None] - grid.drawn.centres[:, 0], y[..., None] - grid.drawn.centres[:, 1])
+        np.hypot(x[..., None] - grid.shapes.centres[:, 0], y[..., None] - grid.shapes.centres[:, 1])
         <= 6.0
     ).any(axis=-1)
     assert np.array_equal(grid.occupied, inside)
@@ -88,7 +88,7 @@ def test_circles_keep_clear_of_the_ends():
             FIELD | {"radius": 0.025}, PROBLEM | {"obstacles": 5, "layout": number}, "study/dense"
         )
         for end in ((0, 0), (100, 100)):
-            assert np.hypot(*(grid.drawn.centres - end).T).min() >= 2.5 + 2
+            assert np.hypot(*(grid.shapes.centres - end).T).min() >= 2.5 + 2
 
 
 def test_fields_that_cut_off_the_target_are_drawn_again():

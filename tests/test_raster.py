@@ -53,7 +53,7 @@ def ends(name):
 def test_occupied_cells_of_the_benchmark_maps(name):
     grid = drawn(name, 0.1, "centre")
     assert grid.occupied.sum() == OCCUPIED_CENTRES[name]
-    left, right, bottom, top = grid.drawn.bounds
+    left, right, bottom, top = grid.shapes.bounds
     assert grid.occupied.shape == (round((top - bottom) / 0.1) + 1, round((right - left) / 0.1) + 1)
     # What overlaps is not less, but for cells whose centre lies on an edge.
     assert drawn(name, 0.1, "overlap").occupied.sum() >= grid.occupied.sum() - 4 * sum(
@@ -81,7 +81,7 @@ def test_a_segment_over_free_cells_enters_no_polygon(data):
     centres = grid.in_units(np.array([[column, row], [column + 1, row]]) + 0.5)
     assert check(centres[None], region(grid)).feasible
     cell = shapely.box(*(centres[0] - 0.2 + 1e-6), *(centres[0] + 0.2 - 1e-6))
-    assert not any(shapely.Polygon(*rings[:1]).intersects(cell) for rings in grid.drawn.obstacles)
+    assert not any(shapely.Polygon(*rings[:1]).intersects(cell) for rings in grid.shapes.obstacles)
 
 
 def test_the_check_sees_the_polygons_and_not_the_cells():
@@ -133,7 +133,7 @@ def test_a_fine_raster_is_drawn_as_its_polygons():
     parts = picture.parts(drawn("gaps", 0.1, "overlap"))
     assert set(parts["part"]) == {"corner", "ring"}
     assert parts[parts["part"] == "ring"]["obstacle"].nunique() == len(
-        drawn("gaps", 0.1, "overlap").drawn.obstacles
+        drawn("gaps", 0.1, "overlap").shapes.obstacles
     )
     assert {"free", "occupied", "ring"} <= set(picture.parts(drawn("gaps", 1.0, "overlap"))["part"])
 

@@ -204,16 +204,16 @@ def test_a_grown_map_is_the_same_after_it_was_stored():
     text = files.to_json(grown)
     again = files.from_json(text)
     assert files.to_json(again) == text
-    assert again.grown.radius == 0.5
-    assert files.to_json(again.grown.original) == files.to_json(grown.grown.original)
+    assert again.growth.radius == 0.5
+    assert files.to_json(again.growth.original) == files.to_json(grown.growth.original)
 
 
 def test_cells_with_many_corners_grow_by_whole_cells():
     cells = np.zeros((70, 70), dtype=bool)
     cells[4:-4:3, 4:-4:3] = True
     grown = robot.grow(bp.Grid(cells, 1.0, "m"), 0.5)
-    assert grown.drawn is None
-    assert grown.grown.radius == 0.5
+    assert grown.shapes is None
+    assert grown.growth.radius == 0.5
     answer = bp.plan(
         bp.Problem("dots", bp.Grid(cells, 1.0, "m"), (2.0, 2.0), (68.0, 68.0)), robot_radius=0.5
     )

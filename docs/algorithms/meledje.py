@@ -30,7 +30,7 @@ def plan(
     """
     grid = problem.workspace
     ground = ground_of(grid, friction)  # eq. 2: epsilon = energy[i, j]; eq. 3: beta = met[i, j]
-    energy, beta, weight = ground.energy, ground.met, penalty / grid.cell
+    energy, beta, weight = ground.energy, ground.encounters, penalty / grid.cell
     columns = grid.occupied.shape[1]
     ends = (grid.cell_of(*point) for point in (problem.start, problem.target))
     start, target = (row * columns + column for row, column in ends)

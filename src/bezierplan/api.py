@@ -289,7 +289,7 @@ def read_map(
     Returns
     -------
     Grid or Polygons
-        With a `robot_radius`, a grid has the grown obstacles as polygons in its field `drawn`.
+        With a `robot_radius`, a grid has the grown obstacles as polygons in its field `shapes`.
 
     Raises
     ------

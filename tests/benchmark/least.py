@@ -202,7 +202,7 @@ COUNTS: dict[Dispatcher, Count] = {
     cell_paths.forage: lambda *_: {"cells": 8},
     grid_genetic._extend: _cells_of_walk,
     grid_genetic._cost: lambda _, path, count, *__: {"cells": count},
-    ground.obstacles_met: lambda *_: {"cells": 1},
+    ground.obstacles_on: lambda *_: {"cells": 1},
     ground.edge_energy: lambda *_: {"cells": 1},
 }
 

@@ -31,22 +31,22 @@ def draw(
     """
     workspace.shade(axes, workspace.parts(problem.workspace))
     workspace.scale(axes, problem.workspace.unit)
-    drawn = {"path": paths.steps(path)} if path else {}
-    drawn |= {"bound": shortest, "start": [problem.start], "target": [problem.target]}
+    parts = {"path": paths.steps(path)} if path else {}
+    parts |= {"bound": shortest, "start": [problem.start], "target": [problem.target]}
     if collision:
-        drawn["collision"] = [collision]
-    paths.draw_parts(axes, paths.table(drawn), clip=True)
+        parts["collision"] = [collision]
+    paths.draw_parts(axes, paths.table(parts), clip=True)
 
 
-def html(drawn: Callable[[Axes], object], lines: dict[str, str]) -> str:
+def html(draw: Callable[[Axes], object], lines: dict[str, str]) -> str:
     """What a function draws on axes, and lines by name, as HTML."""
     picture = io.StringIO()
-    save(picture, drawn)
+    save(picture, draw)
     rows = "".join(f"<tr><th>{name}<td>{escape(text)}" for name, text in lines.items())
     return picture.getvalue()[picture.getvalue().index("<svg") :] + f"<table>{rows}</table>"
 
 
-def save(file: File | io.StringIO, drawn: Callable[[Axes], object]) -> None:
+def save(file: File | io.StringIO, draw: Callable[[Axes], object]) -> None:
     """What a function draws on axes as a picture with a legend, of the kind that the file's suffix
     names; into text as SVG.
     """
@@ -56,6 +56,6 @@ def save(file: File | io.StringIO, drawn: Callable[[Axes], object]) -> None:
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=2 * [style.WIDTHS["one"]], layout="constrained")
         axes = figure.add_subplot()
-        drawn(axes)
+        draw(axes)
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
         figure.savefig(file, dpi=300, format="svg" if isinstance(file, io.StringIO) else None)

@@ -133,14 +133,14 @@ def _fit(axes: Axes, heading: str, width: float) -> None:
     to fit.
     """
     room = width - _BESIDE
-    axes.set_title(_broken(heading, room))
+    axes.set_title(_in_lines(heading, room))
     if axes.name == "3d":
         return
     if axes.get_aspect() == "auto" and axes.get_box_aspect() is None:
         axes.set_box_aspect(style.PANEL_HEIGHT)
     high = room * (axes.get_box_aspect() or 1)
-    axes.set_xlabel(_broken(axes.get_xlabel(), room))
-    axes.set_ylabel(_broken(axes.get_ylabel(), high))
+    axes.set_xlabel(_in_lines(axes.get_xlabel(), room))
+    axes.set_ylabel(_in_lines(axes.get_ylabel(), high))
     if width < _NARROW_PANEL:
         for line in axes.get_lines():
             line.set_markersize(_SMALLER * line.get_markersize())
@@ -148,7 +148,7 @@ def _fit(axes: Axes, heading: str, width: float) -> None:
             axes.locator_params(nbins=4, integer=True)
 
 
-def _broken(text: str, room: float) -> str:
+def _in_lines(text: str, room: float) -> str:
     """Text in lines that fit a width in inches."""
     letters = max(10, int(room / _LETTER))
     return "\n".join(textwrap.fill(line, letters) for line in text.splitlines())

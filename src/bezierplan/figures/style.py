@@ -151,14 +151,14 @@ def interval_band(colour: str) -> dict[str, Any]:
     return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
 
 
-def looks_of(planners: Mapping[str, str], declared: Mapping[str, str]) -> dict[str, str]:
+def looks_of(planners: Mapping[str, str], own: Mapping[str, str]) -> dict[str, str]:
     """Method -> the name of its look in every figure: the declared one, else its planner's, else
     one that few other methods have.
 
     planners: method -> planner.
     """
     looks = {
-        method: declared.get(method) or LOOK_OF_PLANNER.get(planner)
+        method: own.get(method) or LOOK_OF_PLANNER.get(planner)
         for method, planner in planners.items()
     }
     for method, look in looks.items():

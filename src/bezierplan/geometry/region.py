@@ -126,8 +126,8 @@ def region(workspace: Workspace) -> Region:
     GridRegion, CircleRegion or PolygonRegion
         It shares no memory with the workspace. Those of the last maps are remembered.
     """
-    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
-        return _polygon_region(workspace.drawn)
+    if isinstance(workspace, Grid) and isinstance(workspace.shapes, Polygons):
+        return _polygon_region(workspace.shapes)
     if isinstance(workspace, Grid):
         return _grid_region(workspace)
     if isinstance(workspace, Circles):

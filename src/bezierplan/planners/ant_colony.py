@@ -249,8 +249,8 @@ def _choose(rng, attraction, exploitation):
 
 
 @allocation_free
-def _lay(lattice, trail, one, other, kept, added):
+def _lay(lattice, trail, one, other, rest, deposit):
     """Keep a share of a step's trail and add to it, in both directions."""
     there, back = step_between(lattice, one, other), step_between(lattice, other, one)
-    trail[one, there] = kept * trail[one, there] + added
-    trail[other, back] = kept * trail[other, back] + added
+    trail[one, there] = rest * trail[one, there] + deposit
+    trail[other, back] = rest * trail[other, back] + deposit

@@ -64,7 +64,7 @@ class Swarm(NamedTuple):
     paths that collide; colliding_samples: colliding samples of all evaluated paths, summed over
     obstacles. best_colliding_samples: those of the best path, summed over the iterations.
     best_infeasible: number of iterations, including the initial one, after which the best path
-    collides. zeta_clipped: number of clipped values of the chaotic sequence. zeta_collapsed_at: the
+    collides. zeta_clips: number of clipped values of the chaotic sequence. zeta_collapsed_at: the
     iteration at which the sequence collapsed, or 0.
     """
 
@@ -75,7 +75,7 @@ class Swarm(NamedTuple):
     colliding_samples: int
     best_colliding_samples: int
     best_infeasible: int
-    zeta_clipped: int
+    zeta_clips: int
     zeta_collapsed_at: int
 
 
@@ -241,7 +241,7 @@ def plan(
             "collisions_e": int(not feasible),
             "collisions_f": float(swarm.infeasible),
             "zeta_collapsed_at": swarm.zeta_collapsed_at,
-            "zeta_clipped": swarm.zeta_clipped,
+            "zeta_clipped": swarm.zeta_clips,
         },
     )
 
@@ -280,12 +280,12 @@ def search(
         )
         shares[0] = known
     x = low + (high - low) * shares
-    zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
+    zeta, clips, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
     return Swarm(
         *_swarm(
             moves, x, zeta, low, high, settings.velocity_limit * (high - low), objective, settings
         ),
-        clipped,
+        clips,
         collapsed_at,
     )
 
@@ -332,7 +332,7 @@ def _zeta(
         start = chaos.random()
     found = chaotic_maps.sequence(name, start, math.prod(shape), settings.singer_mu)
     collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
-    return chaotic_maps.Sequence(found.values.reshape(shape), found.clipped, collapsed_in)
+    return chaotic_maps.Sequence(found.values.reshape(shape), found.clips, collapsed_in)
 
 
 @compiled

@@ -85,29 +85,29 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     elhoseny2017, Tables 2, 3 and 6.
     """
     grid = problem.workspace
-    walled = np.pad(grid.occupied, 1, constant_values=True)
+    walls = np.pad(grid.occupied, 1, constant_values=True)
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     (start_column, target_column), (start_row, target_row) = (
         np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
     )
     rows, columns = grid.occupied.shape
     walker = _Walker(
-        walled=walled.ravel(),
-        columns=walled.shape[1],
+        walls=walls.ravel(),
+        columns=walls.shape[1],
         longest_walk=_LONGEST_WALK * (rows + columns),
         most_detour=max(_LEAST_DETOUR, _LEAST_DETOUR - 1 + int(_DETOUR_SHARE * columns)),
         random_step=settings.random_step,
     )
     if problem.start == problem.target:
         settings = settings._replace(generations=0)
-    start = start_row * walled.shape[1] + start_column
-    target = target_row * walled.shape[1] + target_column
+    start = start_row * walls.shape[1] + start_column
+    target = target_row * walls.shape[1] + target_column
     cells, found, history = _search(*rng.spawn(2), walker, start, target, settings)
     history *= grid.cell
     extra = {"first_walks": int(found)}
     if found == 0:
         return Plan.of_one(None, np.inf, "no way", extra)
-    row, column = np.divmod(cells, walled.shape[1])
+    row, column = np.divmod(cells, walls.shape[1])
     centres = grid.in_units(np.column_stack([column, row]) - 0.5)
     return Plan(
         path=Path("polyline", _through(problem, centres[_turns(column, row)])),
@@ -142,11 +142,11 @@ def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
 
 
 class _Walker(NamedTuple):
-    """What a walk depends on. walled: bool (cells,), the framed grid row by row; columns: of the
+    """What a walk depends on. walls: bool (cells,), the framed grid row by row; columns: of the
     framed grid. longest_walk: in steps; most_detour: steps of a detour, inclusive.
     """
 
-    walled: np.ndarray
+    walls: np.ndarray
     columns: int
     longest_walk: int
     most_detour: int
@@ -158,7 +158,7 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
     """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far
     (generations + 1,).
     """
-    size, columns, population = len(walker.walled), walker.columns, rules.population
+    size, columns, population = len(walker.walls), walker.columns, rules.population
     # A path visits a cell once; before its loops are removed, a child consists of at most two paths
     # and a walk.
     walk = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64)
@@ -221,9 +221,9 @@ def _first_walks(rng, walker, start, target, rules, walk, last_visit):
         walk[0] = start
         count = 1
         if attempt > 0:
-            way = integer(rng, 0, len(walker.walled))
-            while walker.walled[way]:
-                way = integer(rng, 0, len(walker.walled))
+            way = integer(rng, 0, len(walker.walls))
+            while walker.walls[way]:
+                way = integer(rng, 0, len(walker.walls))
             count = _extend(rng, walker, walk, count, way)
         if count > 0:
             count = _extend(rng, walker, walk, count, target)
@@ -239,7 +239,7 @@ def _extend(rng, walker, walk, count, goal):
     """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, or 0
     if the walk becomes too long or cannot move.
     """
-    walled, columns = walker.walled, walker.columns
+    walls, columns = walker.walls, walker.columns
     end = count + walker.longest_walk
     goal_row, goal_column = goal // columns, goal % columns
     cell = walk[count - 1]
@@ -260,7 +260,7 @@ def _extend(rng, walker, walk, count, goal):
                 ) ** 2
                 if (
                     distance < nearest
-                    and not walled[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
+                    and not walls[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
                 ):
                     nearest = distance
                     nearer = k
@@ -270,9 +270,9 @@ def _extend(rng, walker, walk, count, goal):
                 step = nearer
         if detour > 0:
             detour -= 1
-            blocked = step < 0 or walled[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
+            blocked = step < 0 or walls[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
             if blocked or rng.random() >= _STRAIGHT_ON:
-                step = _random_step(rng, walled, columns, cell)
+                step = _random_step(rng, walls, columns, cell)
                 if step < 0:
                     return 0
         row += _ROW_STEPS[step]
@@ -284,18 +284,18 @@ def _extend(rng, walker, walk, count, goal):
 
 
 @allocation_free
-def _random_step(rng, walled, columns, cell):
+def _random_step(rng, walls, columns, cell):
     """A random step to a free neighbour of a cell, -1 if it has none."""
     free = 0
     for k in range(8):
-        free += not walled[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
+        free += not walls[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
     if free == 0:
         return -1
     left = integer(rng, 0, free)
     step = -1
     while left >= 0:
         step += 1
-        left -= not walled[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
+        left -= not walls[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
     return step
 
 

@@ -145,7 +145,7 @@ class Settings(NamedTuple):
     ]
 
 
-class Found(NamedTuple):
+class Outcome(NamedTuple):
     """Result of a search. ones: those of the best chromosome, empty if none. cost: its length.
 
     history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct
@@ -288,7 +288,7 @@ def search(
     first: np.ndarray,
     counts: np.ndarray,
     scratch: Scratch,
-) -> Found:
+) -> Outcome:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
     first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their
@@ -331,10 +331,10 @@ def search(
         # A child that costs more than any parent does not survive, so nobody needs to know by how
         # much; unless equal chromosomes are told by their costs.
         limit = np.inf if rules.diversity == Diversity.unique else pool.cost[:size].max()
-        filled, pairs = size, 0.0
+        fill, pairs = size, 0.0
         for batch in range(batches):
-            before = filled
-            filled, tried, invalid = _add_offspring(
+            before = fill
+            fill, tried, invalid = _add_offspring(
                 rng, pool, before, wheel, eta, limit, child, memory, field, rules, scratch
             )
             evaluations += tried
@@ -343,23 +343,23 @@ def search(
             further += batch > 0
             if rules.diversity == Diversity.more_offspring:
                 pairs += gene_lists.sum_of_q(
-                    pool, before if batch > 0 else 0, filled, len(field.points)
+                    pool, before if batch > 0 else 0, fill, len(field.points)
                 )
-                q[iteration] = pairs / (filled * (filled - 1) / 2)
+                q[iteration] = pairs / (fill * (fill - 1) / 2)
                 if not q[iteration] > eta:
                     break
-        gene_lists.select(pool, size, filled)
+        gene_lists.select(pool, size, fill)
         population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (
             size * (size - 1) / 2
         )
         eta *= rules.eta_decay
-    return Found(
+    return Outcome(
         best, best_cost, history, distinct, q, population_q, further, evaluations, 1.0 - lost / bred
     )
 
 
 @allocation_free
-def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, rules, scratch):
+def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, field, rules, scratch):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after
     those already in it.
 
@@ -386,11 +386,11 @@ def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, r
                     if cost < np.inf:
                         break
                 if cost < np.inf and not _is_too_alike(
-                    child[:count], cost, pool, filled, eta, field, rules
+                    child[:count], cost, pool, fill, eta, field, rules
                 ):
-                    gene_lists.put(child, count, cost, pool, filled)
-                    filled += 1
-    return filled, tried, invalid
+                    gene_lists.put(child, count, cost, pool, fill)
+                    fill += 1
+    return fill, tried, invalid
 
 
 @inlined
@@ -483,15 +483,15 @@ def _random_chromosome(rng, child, field, rules):
 
 
 @allocation_free
-def _is_too_alike(ones, cost, pool, filled, eta, field, rules):
+def _is_too_alike(ones, cost, pool, fill, eta, field, rules):
     """Whether a diversity rule rejects a child (Section 3.3)."""
     if rules.diversity == Diversity.unique:
-        for i in range(filled):
+        for i in range(fill):
             if cost == pool.cost[i] and same(ones, pool.ones[i, : pool.count[i]]):
                 return True
     if rules.diversity == Diversity.relaxing:
         total = 0.0
-        for i in range(filled):
+        for i in range(fill):
             total += gene_lists.q(ones, pool.ones[i, : pool.count[i]], len(field.points))
-        return total > (1.0 - eta) * filled
+        return total > (1.0 - eta) * fill
     return False

@@ -32,8 +32,8 @@ from bezierplan.workspaces.ground import (
     edge_energy,
     ground_of,
     least_energy,
-    obstacles_met,
-    path_met,
+    obstacles_along,
+    obstacles_on,
 )
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -144,17 +144,17 @@ class Settings(NamedTuple):
     ]
 
 
-class _Found(NamedTuple):
+class _Outcome(NamedTuple):
     """path: the cells of the result, empty if there was no first population. objective: its energy
-    plus penalty. met: number of occupied cells it meets. history: lowest objective so far, by
-    generation. feasible_last: share of feasible paths in the last population. made_infeasible:
+    plus penalty. encounters: number of occupied cells it meets. history: lowest objective so far,
+    by generation. feasible_last: share of feasible paths in the last population. made_infeasible:
     share of mutated feasible paths that the mutation made infeasible. diversity: mean of
     `node_diversity`.
     """
 
     path: np.ndarray
     objective: float
-    met: int
+    encounters: int
     history: np.ndarray
     evaluations: int
     stalled: bool
@@ -203,18 +203,18 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     start, target = (_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
     optimum = least_energy(grid, friction, closed, start, target)
     starts, moves = rng.spawn(2)
-    if obstacles_met(ground, start, target) == 0:
+    if obstacles_on(ground, start, target) == 0:
         # No search needed: a walk sees its target immediately, and paths without inner nodes cannot
         # change.
         energy = edge_energy(ground, start, target)
-        result = _Found(
+        result = _Outcome(
             np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0
         )
         stop = "direct"
     elif math.isinf(optimum):
         result, stop = _NOTHING, "no path"
     else:
-        drawn = _inner(~grid.occupied | (settings.random_node == RandomNode.any), start, target)
+        alleles = _inner(~grid.occupied | (settings.random_node == RandomNode.any), start, target)
         result = _search(
             starts,
             moves,
@@ -222,7 +222,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             start,
             target,
             _inner(~grid.occupied, start, target),
-            drawn,
+            alleles,
             in_cells(settings, grid.cell),
         )
         stop = (
@@ -232,7 +232,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             if result.stalled
             else "generations"
         )
-    feasible = len(result.path) > 0 and result.met == 0
+    feasible = len(result.path) > 0 and result.encounters == 0
     optimal = feasible and result.objective <= optimum * (1 + settings.optimal_within)
     return Plan(
         path=Path("polyline", centres(grid, result.path)) if len(result.path) else None,
@@ -253,7 +253,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     )
 
 
-_NOTHING = _Found(
+_NOTHING = _Outcome(
     np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0
 )
 
@@ -286,8 +286,8 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
 
 
 @compiled
-def _search(starts, moves, ground, start, target, free, drawn, rules):
-    """The genetic algorithm. free: free cells without the ends; drawn: for random mutation."""
+def _search(starts, moves, ground, start, target, free, alleles, rules):
+    """The genetic algorithm. free: free cells without the ends; alleles: for random mutation."""
     population = rules.population
     paths = np.empty((population, rules.most_nodes + 2), dtype=np.int64)
     lengths = np.empty(population, dtype=np.int64)
@@ -296,19 +296,19 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         lengths[i] = _first_path(starts, paths[i], target, free, ground, rules)
         if lengths[i] == 0:
             none = np.full(1, np.inf)
-            return _Found(paths[i, :0].copy(), np.inf, 0, none, 1, False, 0.0, np.nan, 0.0)
+            return _Outcome(paths[i, :0].copy(), np.inf, 0, none, 1, False, 0.0, np.nan, 0.0)
     children, child_lengths = paths.copy(), lengths.copy()
-    objective, met = np.empty(population), np.empty(population, dtype=np.int64)
+    objective, encounters = np.empty(population), np.empty(population, dtype=np.int64)
     ranks = np.arange(population, 0, -1).astype(np.float64)
     neighbours = np.empty(MOST_NEIGHBOURS, dtype=np.int64)
     history = np.empty(rules.generations + 1)
-    best, best_length, best_objective, best_met = paths[0].copy(), 0, np.inf, 0
+    best, best_length, best_objective, best_encounters = paths[0].copy(), 0, np.inf, 0
     improved = evaluations = feasible = spoiled = 0
     diversity = 0.0
 
     for generation in range(rules.generations + 1):
         for i in range(population):
-            objective[i], met[i] = _evaluate(paths[i, : lengths[i]], ground, rules.penalty)
+            objective[i], encounters[i] = _evaluate(paths[i, : lengths[i]], ground, rules.penalty)
         evaluations += population
         diversity += node_diversity(paths, lengths, ground.occupied.size)
         order = ascending(objective)
@@ -316,7 +316,11 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         if objective[first] < best_objective - _IMPROVEMENT:
             if len(best) < lengths[first]:
                 best = np.empty(paths.shape[1], dtype=np.int64)
-            best_length, best_objective, best_met = lengths[first], objective[first], met[first]
+            best_length, best_objective, best_encounters = (
+                lengths[first],
+                objective[first],
+                encounters[first],
+            )
             copy(paths[first, :best_length], best)
             improved = generation
         history[generation] = best_objective
@@ -357,10 +361,10 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             for _ in range(lengths[i] - 2 if rules.mutation_for == MutationFor.node else 1):
                 if moves.random() < rules.mutation_probability and lengths[i] > 2:
                     path = paths[i, : lengths[i]]
-                    was_feasible = path_met(path, ground) == 0
-                    evaluations += mutate(moves, path, drawn, ground, rules, neighbours)
+                    was_feasible = obstacles_along(path, ground) == 0
+                    evaluations += mutate(moves, path, alleles, ground, rules, neighbours)
                     feasible += was_feasible
-                    spoiled += was_feasible and path_met(path, ground) > 0
+                    spoiled += was_feasible and obstacles_along(path, ground) > 0
         if rules.elitism:
             copy(best[:best_length], paths[0])
             lengths[0] = best_length
@@ -369,15 +373,15 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         best = paths[first]
         best_length = lengths[first]
         best_objective = objective[first]
-        best_met = met[first]
-    return _Found(
+        best_encounters = encounters[first]
+    return _Outcome(
         best[:best_length].copy(),
         best_objective,
-        best_met,
+        best_encounters,
         history[: generation + 1].copy(),
         evaluations,
         stalled,
-        (met == 0).mean(),
+        (encounters == 0).mean(),
         spoiled / feasible if feasible else np.nan,
         diversity / (generation + 1),
     )
@@ -403,8 +407,8 @@ def _evaluate(path, ground, penalty):
     energy = 0.0
     for k in range(len(path) - 1):
         energy += edge_energy(ground, path[k], path[k + 1])
-    met = path_met(path, ground)
-    return energy + penalty * met, met
+    encounters = obstacles_along(path, ground)
+    return energy + penalty * encounters, encounters
 
 
 @compiled
@@ -437,7 +441,9 @@ def _first_path(rng, path, target, free, ground, rules):
             if rules.initial == Initial.feasible
             else _random_path(rng, path, target, free)
         )
-        if length and (rules.initial != Initial.rejection or path_met(path[:length], ground) == 0):
+        if length and (
+            rules.initial != Initial.rejection or obstacles_along(path[:length], ground) == 0
+        ):
             return length
     return 0
 
@@ -448,7 +454,7 @@ def _walk(rng, path, target, free, ground):
     if it becomes too long or sees no new cell.
     """
     length = 1
-    while obstacles_met(ground, path[length - 1], target) > 0:
+    while obstacles_on(ground, path[length - 1], target) > 0:
         if length == len(path) - 1:
             return 0
         path[length] = -1
@@ -488,7 +494,7 @@ def _one_of_few(rng, path, length, free, ground):
 @allocation_free
 def _continues(cell, path, length, ground):
     """Whether a cell is visible from the last cell of a path and not yet part of it."""
-    return obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length)
+    return obstacles_on(ground, path[length - 1], cell) == 0 and not _among(cell, path, length)
 
 
 @allocation_free

@@ -165,11 +165,13 @@ def _discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
     """
     if isinstance(workspace, Circles):
         return workspace.centres, workspace.radii, _ON_CIRCLE
-    if isinstance(workspace, Polygons) and workspace.grown:
-        around = workspace.grown.radius * (1 + robot.ARC_EXCESS)  # outside the tangents at a corner
+    if isinstance(workspace, Polygons) and workspace.growth:
+        around = workspace.growth.radius * (
+            1 + robot.ARC_EXCESS
+        )  # outside the tangents at a corner
         return (
-            workspace.grown.centres,
-            np.full(len(workspace.grown.centres), around),
+            workspace.growth.centres,
+            np.full(len(workspace.growth.centres), around),
             robot.ARC_EXCESS * around + robot.TOLERANCE,
         )
     return np.empty((0, 2)), np.empty(0), 0.0
@@ -201,20 +203,20 @@ def _rounded(
     count = len(turns.side)
     # Share of the desired radius, share of the way inwards up to the corner's clearance, and
     # whether a turn begins at a corner.
-    share, pulled, begins = np.ones(count), np.ones(count), np.ones(count, dtype=bool)
+    share, pull, begins = np.ones(count), np.ones(count), np.ones(count, dtype=bool)
     tries = 0
     while True:
         tries += 1
-        radii, centres = _circles(turns, begins, share, pulled, settings)
+        radii, centres = _circles(turns, begins, share, pull, settings)
         legs, sweeps, bent_back, crowded = _string(problem, turns, centres, radii)
         if bent_back.any() and _join(begins, bent_back, turns):
             continue
         wrong = _beside(bent_back) | crowded
         if wrong.any():
-            slack = wrong & (pulled > 0) & (radii > turns.radius)
+            slack = wrong & (pull > 0) & (radii > turns.radius)
             if not (slack.any() or share[_of_turns(wrong, begins)].any()):
                 return np.empty((0, 2)), radii, tries, False
-            pulled[slack] = np.where(pulled[slack] > 0.1, pulled[slack] * _SHRINKING, 0.0)
+            pull[slack] = np.where(pull[slack] > 0.1, pull[slack] * _SHRINKING, 0.0)
             _shrink(share, wrong & ~slack, begins)
             continue
         points, owner = _chain(legs, sweeps, centres, radii, turns)
@@ -256,14 +258,14 @@ def _join(begins: np.ndarray, bent_back: np.ndarray, turns: Turns) -> bool:
     return joined
 
 
-def _beside(marked: np.ndarray) -> np.ndarray:
+def _beside(marks: np.ndarray) -> np.ndarray:
     """The marked ones (n,) and their neighbours."""
-    wide = np.concatenate([[False], marked, [False]])
+    wide = np.concatenate([[False], marks, [False]])
     return wide[:-2] | wide[1:-1] | wide[2:]
 
 
 def _circles(
-    turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, settings: Settings
+    turns: Turns, begins: np.ndarray, share: np.ndarray, pull: np.ndarray, settings: Settings
 ) -> tuple[np.ndarray, np.ndarray]:
     """Radii (n,) and centres (n, 2) of the circles around which the path runs; the corners lie
     inside them, at the depth of the offset.
@@ -272,7 +274,7 @@ def _circles(
     radii = np.maximum(margin, share * settings.turning_radius)
     first, last = _runs(begins)
     inward = _unit(turns.after[last] - turns.before[first])[np.cumsum(begins) - 1]
-    return radii, turns.corner + (pulled * (radii - margin))[:, None] * inward
+    return radii, turns.corner + (pull * (radii - margin))[:, None] * inward
 
 
 def _string(

@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from bezierplan.geometry import shortest_paths
 
 
-def placed(problem: Problem, served: Collection[str] | None = None) -> Problem:
+def placed(problem: Problem, kinds: Collection[str] | None = None) -> Problem:
     """A problem whose start and target are known to be free, on the map that suits a planner of
     some kinds of workspace, None for all.
 
     Raises ValueError as `build` does.
     """
-    home = robot.suited(problem.workspace, served)
+    home = robot.suited(problem.workspace, kinds)
     return build(problem.name, {"start": problem.start, "target": problem.target}, home)
 
 
@@ -74,14 +74,14 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
     if grown and blocks(region(workspace), point):
         distance = check(np.array([[point, point]]), region(home)).clearance
         least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
-        cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.drawn else ""
+        cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.shapes else ""
         raise ValueError(
             f"{key}: {value}: {distance:.6g} from an obstacle or the border; expected at least "
             f"the robot's radius, {least:.6g}{cells}"
         )
     if (
         isinstance(workspace, Grid)
-        and workspace.drawn
+        and workspace.shapes
         and workspace.occupied[workspace.cell_of(*point)]
     ):
         raise ValueError(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezierplan.workspaces.arrays import read_only
-from bezierplan.workspaces.grown import Grown
+from bezierplan.workspaces.grown import Growth
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,7 +13,7 @@ class Circles:
     """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units.
     radii: (n,) in units. unit: its name.
 
-    grown: what they were before they grew by a robot's radius, if they did. The arrays are
+    growth: what they were before they grew by a robot's radius, if they did. The arrays are
     read-only.
     """
 
@@ -21,7 +21,7 @@ class Circles:
     centres: np.ndarray
     radii: np.ndarray
     unit: str
-    grown: Grown | None = None
+    growth: Growth | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "centres", read_only(self.centres, float))

@@ -12,7 +12,7 @@ from bezierplan.workspaces import grid, random_field
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import Grown
+from bezierplan.workspaces.grown import Growth
 from bezierplan.workspaces.polygons import Polygons
 
 Workspace = Grid | Circles | Polygons
@@ -44,22 +44,22 @@ def to_json(workspace: Workspace) -> str:
     """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its
     circles, whatever the number of its cells.
     """
-    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Circles):
-        content = _circles_content(workspace.drawn) | {"kind": "random_field"}
-    elif isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
+    if isinstance(workspace, Grid) and isinstance(workspace.shapes, Circles):
+        content = _circles_content(workspace.shapes) | {"kind": "random_field"}
+    elif isinstance(workspace, Grid) and isinstance(workspace.shapes, Polygons):
         cells = {
             "cell": workspace.cell,
             "rows": grid.to_lines(workspace),
             "origin": workspace.origin,
         }
-        content = _polygons_content(workspace.drawn) | cells | {"kind": "raster"}
+        content = _polygons_content(workspace.shapes) | cells | {"kind": "raster"}
     elif isinstance(workspace, Grid):
         content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
         if workspace.origin != (0.0, 0.0):
             content["origin"] = workspace.origin
         if workspace.heights is not None:
             content["heights"] = workspace.heights.tolist()
-        content |= _grown_content(workspace.grown)
+        content |= _growth_content(workspace.growth)
     elif isinstance(workspace, Circles):
         content = _circles_content(workspace)
     else:
@@ -69,35 +69,37 @@ def to_json(workspace: Workspace) -> str:
 
 def _polygons_content(polygons: Polygons) -> dict:
     obstacles = [[ring.tolist() for ring in rings] for rings in polygons.obstacles]
-    return {"kind": "polygons", "bounds": polygons.bounds, "obstacles": obstacles} | _grown_content(
-        polygons.grown
-    )
+    return {
+        "kind": "polygons",
+        "bounds": polygons.bounds,
+        "obstacles": obstacles,
+    } | _growth_content(polygons.growth)
 
 
 def _circles_content(circles: Circles) -> dict:
     table = np.column_stack([circles.centres, circles.radii]).tolist()
-    return {"kind": "circles", "bounds": circles.bounds, "circles": table} | _grown_content(
-        circles.grown
+    return {"kind": "circles", "bounds": circles.bounds, "circles": table} | _growth_content(
+        circles.growth
     )
 
 
-def _grown_content(grown: Grown | None) -> dict:
-    if grown is None:
+def _growth_content(growth: Growth | None) -> dict:
+    if growth is None:
         return {}
     return {
         "grown": {
-            "radius": grown.radius,
-            "original": to_json(grown.original),
-            "centres": grown.centres.tolist(),
+            "radius": growth.radius,
+            "original": to_json(growth.original),
+            "centres": growth.centres.tolist(),
         }
     }
 
 
-def _grown(content: dict) -> Grown | None:
+def _growth(content: dict) -> Growth | None:
     if "grown" not in content:
         return None
     known = content["grown"]
-    return Grown(
+    return Growth(
         known["radius"],
         from_json(known["original"]),
         read_only(np.array(known["centres"], dtype=float).reshape(-1, 2), float),
@@ -112,21 +114,21 @@ def from_json(text: str) -> Workspace:
         flat = replace(
             grid.from_lines(content["rows"], content["cell"], unit),
             origin=tuple(content.get("origin", (0.0, 0.0))),
-            grown=_grown(content),
+            growth=_growth(content),
         )
         return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])
     if content["kind"] in ("polygons", "raster"):
         obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])
-        polygons = Polygons(bounds, obstacles, unit, _grown(content))
+        polygons = Polygons(bounds, obstacles, unit, _growth(content))
         if content["kind"] == "polygons":
             return polygons
         cells = grid.from_lines(content["rows"], content["cell"], unit)
         return replace(
             cells,
             origin=tuple(content["origin"]),
-            drawn=polygons,
+            shapes=polygons,
         )
     table = np.array(content["circles"], dtype=float).reshape(-1, 3)
-    circles = Circles(bounds, table[:, :2], table[:, 2], unit, _grown(content))
+    circles = Circles(bounds, table[:, :2], table[:, 2], unit, _growth(content))
     return random_field.from_circles(circles) if content["kind"] == "random_field" else circles

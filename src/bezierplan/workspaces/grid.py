@@ -11,7 +11,7 @@ import numpy as np
 
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grown import Grown
+from bezierplan.workspaces.grown import Growth
 from bezierplan.workspaces.limits import check_cells, check_numbers
 from bezierplan.workspaces.polygons import Polygons
 
@@ -26,11 +26,11 @@ class Grid:
     """Cells of a rectangle.
 
     occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name
-    of the unit of length. origin: x, y of the lower left corner, in units. drawn: the shapes from
+    of the unit of length. origin: x, y of the lower left corner, in units. shapes: those from
     which the cells were drawn, if any: circles, which only pictures show, or polygons, which are
     then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows,
     columns) height of the ground in each cell, in units, where it is not flat; only some planners
-    use them. grown: what the grid was before its occupied cells grew by a robot's radius, if they
+    use them. growth: what the grid was before its occupied cells grew by a robot's radius, if they
     did. The arrays are read-only.
     """
 
@@ -38,9 +38,9 @@ class Grid:
     cell: float
     unit: str
     origin: tuple[float, float] = (0.0, 0.0)
-    drawn: Circles | Polygons | None = None
+    shapes: Circles | Polygons | None = None
     heights: np.ndarray | None = None
-    grown: Grown | None = None
+    growth: Growth | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "occupied", read_only(self.occupied, bool))

@@ -44,7 +44,7 @@ class Ground(NamedTuple):
     heights: np.ndarray
     friction: float
     closed: bool
-    met: np.ndarray
+    encounters: np.ndarray
     energy: np.ndarray
 
 
@@ -88,7 +88,7 @@ def _ground(
         cells, above, friction, closed, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0))
     )
     return (
-        bare._replace(**dict(zip(("met", "energy"), _tables(bare))))
+        bare._replace(**dict(zip(("encounters", "energy"), _tables(bare))))
         if cells.size <= table_cells
         else bare
     )
@@ -97,36 +97,36 @@ def _ground(
 @compiled
 def _tables(ground):
     cells = ground.occupied.size
-    met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
+    encounters, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
     # Back and forth an edge meets the same cells, but climbs differently.
     for one in range(cells):
         for other in range(one + 1):
-            met[one, other] = met[other, one] = obstacles_met(ground, one, other)
+            encounters[one, other] = encounters[other, one] = obstacles_on(ground, one, other)
             energy[one, other] = energy[other, one] = edge_energy(ground, one, other)
             if ground.heights.size:
                 energy[other, one] = edge_energy(ground, other, one)
-    return met, energy
+    return encounters, energy
 
 
 @inlined
-def obstacles_met(ground: Ground, start: int, end: int) -> int:
+def obstacles_on(ground: Ground, start: int, end: int) -> int:
     """Number of occupied cells that the edge between two cells meets, including the two (meledje,
     eq. 3: beta).
     """
-    if ground.met.size:
-        return int(ground.met[start, end])
+    if ground.encounters.size:
+        return int(ground.encounters[start, end])
     return _passed(ground, start, end)[0]
 
 
 @allocation_free
-def path_met(path: np.ndarray, ground: Ground) -> int:
+def obstacles_along(path: np.ndarray, ground: Ground) -> int:
     """Number of occupied cells that the edges of a path of cells (n,) meet; a cell counts once for
     every edge that meets it.
     """
-    met = 0
+    encounters = 0
     for k in range(len(path) - 1):
-        met += obstacles_met(ground, path[k], path[k + 1])
-    return met
+        encounters += obstacles_on(ground, path[k], path[k + 1])
+    return encounters
 
 
 @inlined
@@ -163,13 +163,13 @@ def _passed(ground, start, end):
     across, up = end % columns - column, end // columns - row
     right, upward = (1 if across > 0 else -1), (1 if up > 0 else -1)
     across, up = abs(across), abs(up)
-    met, climb = int(ground.occupied[row, column]), 0.0
+    encounters, climb = int(ground.occupied[row, column]), 0.0
     i = j = 0
     while i < across or j < up:
         height = ground.heights[row, column] if ground.heights.size else 0.0
         ahead = (2 * i + 1) * up - (2 * j + 1) * across
         if ahead == 0 and ground.closed:
-            met += int(ground.occupied[row, column + right]) + int(
+            encounters += int(ground.occupied[row, column + right]) + int(
                 ground.occupied[row + upward, column]
             )
         if ahead <= 0:
@@ -178,10 +178,10 @@ def _passed(ground, start, end):
         if ahead >= 0:
             j += 1
             row += upward
-        met += int(ground.occupied[row, column])
+        encounters += int(ground.occupied[row, column])
         if ground.heights.size:
             climb += max(ground.heights[row, column] - height, 0.0)
-    return met, climb
+    return encounters, climb
 
 
 @lru_cache(maxsize=64)
@@ -226,7 +226,7 @@ def _cheapest(ground, start, target):
             if (
                 not done[cell]
                 and energy[here] + distance(ground, here, cell) < energy[cell]
-                and obstacles_met(ground, here, cell) == 0
+                and obstacles_on(ground, here, cell) == 0
             ):
                 through = energy[here] + edge_energy(ground, here, cell)
                 if through < energy[cell]:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 
-class Grown(NamedTuple):
+class Growth(NamedTuple):
     """radius: by how much obstacles grew and the border shrank, in units. original: the map before.
     centres: (n, 2) the corners of its obstacles around which the grown ones are round, in units.
     """
@@ -17,13 +17,13 @@ class Grown(NamedTuple):
     centres: np.ndarray
 
 
-def grown_of(workspace: Any) -> Grown | None:
+def grown_of(workspace: Any) -> Growth | None:
     """By how much a map has grown and from which; None for a map as it was given."""
-    drawn = getattr(workspace, "drawn", None)
-    return (drawn.grown if drawn else None) or workspace.grown
+    shapes = getattr(workspace, "shapes", None)
+    return (shapes.growth if shapes else None) or workspace.growth
 
 
 def original(workspace: Any) -> Any:
     """The map before it grew."""
-    grown = grown_of(workspace)
-    return grown.original if grown else workspace
+    growth = grown_of(workspace)
+    return growth.original if growth else workspace

@@ -38,7 +38,7 @@ def circles(
     )
 
 
-def drawn(
+def movement(
     rng: np.random.Generator,
     description: dict,
     count: int,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezierplan.workspaces.arrays import read_only
-from bezierplan.workspaces.grown import Grown
+from bezierplan.workspaces.grown import Growth
 
 if TYPE_CHECKING:
     import shapely
@@ -17,14 +17,14 @@ class Polygons:
     """bounds: lowest and highest x, lowest and highest y, in units.
 
     obstacles: one tuple of rings per obstacle, outer ring first, then its holes; a ring is (n, 2)
-    in units, not closed. unit: name of the unit of length. grown: what they were before they grew
+    in units, not closed. unit: name of the unit of length. growth: what they were before they grew
     by a robot's radius, if they did. The arrays are read-only.
     """
 
     bounds: tuple[float, float, float, float]
     obstacles: tuple[tuple[np.ndarray, ...], ...]
     unit: str
-    grown: Grown | None = None
+    growth: Growth | None = None
 
     def __post_init__(self) -> None:
         obstacles = tuple(

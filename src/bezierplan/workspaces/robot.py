@@ -21,7 +21,7 @@ from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import Grown, grown_of
+from bezierplan.workspaces.grown import Growth, grown_of
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.polygons import Polygons, cross, rings, unit
 
@@ -55,9 +55,9 @@ _STRAIGHT = 1e-9
 
 @lru_cache(maxsize=4)
 def grow(workspace: Workspace, radius: float) -> Workspace:
-    """The map for the centre of a robot of a radius, in units, with its original as `grown`.
+    """The map for the centre of a robot of a radius, in units, with its original as `growth`.
 
-    Of cells it is a grid with the grown polygons as `drawn`, in which the cells that these overlap
+    Of cells it is a grid with the grown polygons as `shapes`, in which the cells that these overlap
     are occupied.
 
     Raises ValueError for a radius that is no number, 0 < radius < `SMALLEST_FEATURE`, or so large
@@ -73,32 +73,32 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
         )
     if isinstance(workspace, Circles):
         bounds = _shrunk(workspace.bounds, radius)
-        grown = Grown(radius, workspace, workspace.centres)
-        return replace(workspace, bounds=bounds, radii=workspace.radii + radius, grown=grown)
+        growth = Growth(radius, workspace, workspace.centres)
+        return replace(workspace, bounds=bounds, radii=workspace.radii + radius, growth=growth)
     if isinstance(workspace, Polygons):
         return _polygons(workspace, _clean(workspace.union()), workspace.bounds, radius)
-    if isinstance(workspace.drawn, Polygons):
+    if isinstance(workspace.shapes, Polygons):
         polygons = _polygons(
-            workspace, _clean(workspace.drawn.union()), workspace.drawn.bounds, radius
+            workspace, _clean(workspace.shapes.union()), workspace.shapes.bounds, radius
         )
         return raster.from_polygons(polygons, workspace.cell, "overlap")
     shape = _union_of_cells(workspace)
     if shape is None:
         return by_cells(workspace, radius)
     polygons = _polygons(workspace, shape, workspace.bounds, radius)
-    return replace(workspace, occupied=raster.overlapped(polygons, workspace), drawn=polygons)
+    return replace(workspace, occupied=raster.overlapped(polygons, workspace), shapes=polygons)
 
 
-def suited(workspace: Workspace, served: Collection[str] | None) -> Workspace:
+def suited(workspace: Workspace, kinds: Collection[str] | None) -> Workspace:
     """A grown map for a planner that serves some kinds of workspace, None for all: the polygons
     themselves, unless it needs cells.
     """
     if (
         isinstance(workspace, Grid)
-        and isinstance(workspace.drawn, Polygons)
-        and workspace.drawn.grown
+        and isinstance(workspace.shapes, Polygons)
+        and workspace.shapes.growth
     ):
-        return workspace.drawn if served is None or "polygons" in served else workspace
+        return workspace.shapes if kinds is None or "polygons" in kinds else workspace
     return workspace
 
 
@@ -147,7 +147,7 @@ def _polygons(
         for part in parts
     )
     return Polygons(
-        limits, obstacles, workspace.unit, Grown(radius, workspace, read_only(centres, float))
+        limits, obstacles, workspace.unit, Growth(radius, workspace, read_only(centres, float))
     )
 
 
@@ -245,4 +245,6 @@ def by_cells(grid: Grid, radius: float) -> Grid:
     occupied = walled | (distance_transform_edt(~touching) * grid.cell < radius - SLACK)
     if occupied.all():
         raise _nothing_free(radius)
-    return replace(grid, occupied=occupied[1:-1, 1:-1], grown=Grown(radius, grid, np.empty((0, 2))))
+    return replace(
+        grid, occupied=occupied[1:-1, 1:-1], growth=Growth(radius, grid, np.empty((0, 2)))
+    )

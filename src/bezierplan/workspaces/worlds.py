@@ -24,7 +24,7 @@ class MovingCircles:
 
     bounds: lowest and highest x, lowest and highest y of the robot's field; walls: likewise, of the
     centres; in units. centres: (n, 2) at step 0, in units; velocities: (n, 2), in units per step;
-    radii: (n,), in units. seen: what planners see, the field's cells, of side 1 (`random_field`),
+    radii: (n,), in units. view: what planners see, the field's cells, of side 1 (`random_field`),
     or the circles. pace: in units per step. end: in steps.
 
     At whole steps the reflected positions are exact. From one step to the next each circle moves
@@ -36,7 +36,7 @@ class MovingCircles:
     centres: np.ndarray
     velocities: np.ndarray
     radii: np.ndarray
-    seen: Literal["cells", "circles"]
+    view: Literal["cells", "circles"]
     pace: float
     end: int
     unit: str
@@ -54,7 +54,7 @@ class MovingCircles:
         they occupy.
         """
         circles = Circles(self.bounds, self.at(step), self.radii + margin, self.unit)
-        if self.seen == "circles":
+        if self.view == "circles":
             return circles
         field = Circles(self.walls, circles.centres, circles.radii, self.unit)
         return random_field.from_circles(field)
@@ -127,7 +127,7 @@ def to_json(world: World) -> str:
             "bounds": world.bounds,
             "walls": world.walls,
             "circles": table,
-            "seen": world.seen,
+            "seen": world.view,
             "unit": world.unit,
         }
     return json.dumps(content | {"pace": world.pace, "end": world.end})
@@ -146,7 +146,7 @@ def from_json(text: str) -> World:
         centres=table[:, :2],
         velocities=table[:, 2:4],
         radii=table[:, 4],
-        seen=content["seen"],
+        view=content["seen"],
         pace=content["pace"],
         end=content["end"],
         unit=content["unit"],

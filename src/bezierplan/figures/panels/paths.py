@@ -223,7 +223,7 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
     if options.explicit is not None:
         path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
-        return table({"start": [start], "target": [target]} | _drawn(path, options.control))
+        return table({"start": [start], "target": [target]} | _parts(path, options.control))
     if options.hue is not None:
         alone = options.but(hue=None, control="none")
         groups = results.runs.groupby(options.hue)
@@ -237,40 +237,40 @@ def data(results: Results | None, options: Options) -> pd.DataFrame:
         return frame.assign(measure=frame["run"].map(by_run))
     run, names = picked(results, options.pick)
     problem = results.problems[names["problem"]]
-    drawn = {"start": [problem.start], "target": [problem.target]}
+    places = {"start": [problem.start], "target": [problem.target]}
     if options.changed_from is not None:
         before = results.problems[options.changed_from].workspace
         for part, cells, others in (
             ("appeared", problem.workspace, before),
             ("vanished", before, problem.workspace),
         ):
-            drawn[part] = _centres(cells, np.flatnonzero(cells.occupied & ~others.occupied))
+            places[part] = _centres(cells, np.flatnonzero(cells.occupied & ~others.occupied))
     if options.bare:
-        return table(drawn).assign(problem=problem.name)
+        return table(places).assign(problem=problem.name)
     if options.printed is not None and results.published is not None:
         printed = published(results, "length", options.printed, "min")
         names["printed"] = next(iter(printed), np.nan)
     path = None if run is None else path_of(run)
     if path is not None:
         if options.context:
-            drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
-        drawn |= _drawn(path, options.control)
+            places["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
+        places |= _parts(path, options.control)
         if not run["feasible"]:
-            drawn["collision"] = [curves.point_at(path, run["collision_at"])]
-    return table(drawn).assign(**names)[[*names, "part", "x", "y"]]
+            places["collision"] = [curves.point_at(path, run["collision_at"])]
+    return table(places).assign(**names)[[*names, "part", "x", "y"]]
 
 
-def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
+def _parts(path: Path, control: str) -> dict[str, np.ndarray]:
     """Points (n, 2) of a path by the part that they form."""
     import shapely
 
-    drawn = {}
+    places = {}
     if path.curve in curves.B_SPLINES and control == "all":
-        drawn["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
+        places["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
     if path.curve != "ferguson" and control != "none":
         alone = "nodes" if path.curve == "polyline" else "points"
-        drawn["control" if control == "all" else alone] = path.points
-    return drawn | {"path": steps(path)}
+        places["control" if control == "all" else alone] = path.points
+    return places | {"path": steps(path)}
 
 
 def _centres(grid: Grid, cells: Any) -> np.ndarray:
@@ -278,13 +278,13 @@ def _centres(grid: Grid, cells: Any) -> np.ndarray:
     return np.reshape([grid.centre(int(number)) for number in cells], (-1, 2))
 
 
-def table(drawn: Mapping[str, Any]) -> pd.DataFrame:
+def table(places: Mapping[str, Any]) -> pd.DataFrame:
     """Points (n, 2) by part as rows."""
     import pandas as pd
 
     points = [
         pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part)
-        for part, xy in drawn.items()
+        for part, xy in places.items()
     ]
     return pd.concat(points, ignore_index=True)[["part", "x", "y"]]
 

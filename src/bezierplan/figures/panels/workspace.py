@@ -107,7 +107,7 @@ def parts(workspace: Workspace) -> pd.DataFrame:
     """What is drawn of a workspace itself, without numbers: rows as in `data`."""
     shapes, cells = workspace, []
     if isinstance(workspace, Grid):
-        shapes = workspace.drawn
+        shapes = workspace.shapes
         if not shapes or workspace.occupied.size <= _MOST_CELLS:
             cells = [_cells(workspace, workspace, "none")]
     return _table(workspace.bounds, *cells, *([_shapes(shapes)] if shapes else []))

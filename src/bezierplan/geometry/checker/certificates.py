@@ -347,7 +347,7 @@ def _is_free_in_polygons(points, region):
     x_low, x_high, y_low, y_high = hull_box = box(points)
     along_x, along_y = direction(points)
     across_low, across_high = range_along(points, -along_y, along_x)
-    touched = np.zeros(len(region.edges), dtype=np.bool_)
+    contacts = np.zeros(len(region.edges), dtype=np.bool_)
     near = np.empty(len(region.edges), dtype=np.int64)
     count = 0
     bins = region.bins
@@ -361,18 +361,18 @@ def _is_free_in_polygons(points, region):
             low, high = rows_between(points[0], points[-1], within, bins)
         for place in range(column * bins.rows + low, column * bins.rows + high + 1):
             for e in bins.members[bins.first[place] : bins.first[place + 1]]:
-                if not touched[e] and _touches(
+                if not contacts[e] and _touches(
                     points, hull_box, along_x, along_y, across_low, across_high, region, e
                 ):
-                    touched[e] = True
+                    contacts[e] = True
                     near[count] = e
                     count += 1
 
     remaining = count
     for e in near[:count]:
-        if not touched[region.preceding[e]]:
+        if not contacts[region.preceding[e]]:
             length = _passes_chain(
-                points, region, touched, e, along_x, along_y, across_low, across_high
+                points, region, contacts, e, along_x, along_y, across_low, across_high
             )
             if length == 0:
                 return False
@@ -405,7 +405,9 @@ def _touches(points, hull_box, along_x, along_y, across_low, across_high, region
 
 
 @allocation_free
-def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
+def _passes_chain(
+    points, region, contacts, first, along_x, along_y, across_low, across_high
+) -> int:
     """Number of edges of a chain of touched edges if a hull passes it on the free side, or 0.
 
     It does if it lies on the free side of all lines of the chain. Where the blocked region is
@@ -420,7 +422,7 @@ def _passes_chain(points, region, touched, first, along_x, along_y, across_low, 
     chain_low = facing_low = math.inf
     chain_high = facing_high = -math.inf
     e = first
-    while touched[e]:
+    while contacts[e]:
         if length > 0:
             only_convex &= region.convex[region.preceding[e]]
         length += 1

@@ -9,7 +9,7 @@ from bezierplan.geometry.bins import Bins, bins_of_discs
 from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import CircleRegion
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
-from bezierplan.geometry.shortest_paths.tangents import SAME_ANGLE, Scene, met, search
+from bezierplan.geometry.shortest_paths.tangents import SAME_ANGLE, Scene, circles_beside, search
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.problem import Problem
 
@@ -297,7 +297,7 @@ def _circumscribed(
                 )
             polyline.append(points[end : end + 1])
         line = np.concatenate(polyline)
-        near = met(line, bins, len(blocked.radii))
+        near = circles_beside(line, bins, len(blocked.radii))
         nearby = blocked._replace(centres=blocked.centres[near], radii=blocked.radii[near])
         if first_collision(np.stack([line[:-1], line[1:]], axis=1), nearby)[0] == math.inf:
             break

@@ -50,21 +50,21 @@ def lattice_path(
 
 
 @compiled
-def _least_cells(walled, start, target, steps, diagonal_weight, most_beside):
+def _least_cells(walls, start, target, steps, diagonal_weight, most_beside):
     """Length of a shortest path and its cells (n,), numbered row by row; infinite and empty if
     there is no path.
 
-    walled: bool (rows, columns), the cells with a frame of occupied ones. start, target: row and
+    walls: bool (rows, columns), the cells with a frame of occupied ones. start, target: row and
     column. most_beside: how many of the two cells beside a diagonal step may be occupied. The
     remaining length is estimated by the shortest path without obstacles, so only cells near the
     shortest paths are examined.
     """
-    columns = walled.shape[1]
+    columns = walls.shape[1]
     # A step of either kind may be replaced by two of the other kind.
     straight, diagonal = min(1.0, diagonal_weight), min(diagonal_weight, 2.0)
-    length = np.full(walled.shape, np.inf)
-    came_by = np.full(walled.shape, -1, dtype=np.int8)
-    settled = np.zeros(walled.shape, dtype=np.bool_)
+    length = np.full(walls.shape, np.inf)
+    came_by = np.full(walls.shape, -1, dtype=np.int8)
+    settled = np.zeros(walls.shape, dtype=np.bool_)
     length[start[0], start[1]] = 0.0
     # Estimated length, the part of it still ahead, and the cell; ties go to those nearest to the
     # target.
@@ -79,9 +79,9 @@ def _least_cells(walled, start, target, steps, diagonal_weight, most_beside):
         for k in range(len(steps)):
             next_row, next_column = row + steps[k, 0], column + steps[k, 1]
             is_diagonal = next_row != row and next_column != column
-            if walled[next_row, next_column] or settled[next_row, next_column]:
+            if walls[next_row, next_column] or settled[next_row, next_column]:
                 continue
-            if is_diagonal and walled[next_row, column] + walled[row, next_column] > most_beside:
+            if is_diagonal and walls[next_row, column] + walls[row, next_column] > most_beside:
                 continue
             so_far = length[row, column] + (diagonal_weight if is_diagonal else 1.0)
             if so_far < length[next_row, next_column]:

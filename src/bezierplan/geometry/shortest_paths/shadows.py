@@ -68,12 +68,12 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
     length = np.full(len(points), np.inf)
     came_by = np.full(len(points), -1)
     settled = np.zeros(len(points), dtype=np.bool_)
-    seen = np.empty(len(scene.corners), dtype=np.int64)
+    view = np.empty(len(scene.corners), dtype=np.int64)
     fans = np.empty((2, scene.cells.shape[1] + 1, 4), dtype=np.int64)
     sees_target = np.zeros(len(points), dtype=np.bool_)
     sees_target[0] = direct
-    for k in range(_look_around(at[1], scene, fans, seen)):
-        sees_target[seen[k] + 2] = True
+    for k in range(_look_around(at[1], scene, fans, view)):
+        sees_target[view[k] + 2] = True
 
     length[0] = 0.0
     heap = [(ahead[0], 0)]
@@ -85,14 +85,14 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
         if i == 1:
             return way_back(came_by, length[1])
         count = (
-            _look(at[i], at[i] - at[came_by[i]], i - 2, scene, fans, seen)
+            _look(at[i], at[i] - at[came_by[i]], i - 2, scene, fans, view)
             if i
-            else _look_around(at[0], scene, fans, seen)
+            else _look_around(at[0], scene, fans, view)
         )
         for k in range(-1, count):
             if k < 0 and not sees_target[i]:
                 continue
-            j = 1 if k < 0 else seen[k] + 2
+            j = 1 if k < 0 else view[k] + 2
             so_far = length[i] + math.sqrt(
                 (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
             )
@@ -104,16 +104,16 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
 
 
 @allocation_free
-def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
+def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, view: np.ndarray) -> int:
     """The corners that a point sees and a shortest path can pass in that direction: their number,
-    and themselves in `seen`.
+    and themselves in `view`.
 
     fans: (2, columns + 3, 4) room for intervals.
     """
     x, y = point
-    count = _look_along(x, y, 0, scene, seen)
+    count = _look_along(x, y, 0, scene, view)
     for side in (-1, 1):
-        count = _look_across(x, y, side, (-1, 0, 1, 0), scene, fans, seen, count)
+        count = _look_across(x, y, side, (-1, 0, 1, 0), scene, fans, view, count)
     return count
 
 
@@ -124,7 +124,7 @@ def _look(
     corner: int,
     scene: Scene,
     fans: np.ndarray,
-    seen: np.ndarray,
+    view: np.ndarray,
 ) -> int:
     """As `_look_around`, from a corner that a path has come to along a vector.
 
@@ -134,7 +134,7 @@ def _look(
     x, y = point
     right, up = abs(came[0]), abs(came[1])
     if right == 0 and up == 0:
-        return _look_around(point, scene, fans, seen)
+        return _look_around(point, scene, fans, view)
     slope, cell = scene.slopes[corner], scene.sides[corner]
     to_right = came[0] + slope * came[1] > 0
     side = slope if to_right else -slope
@@ -143,13 +143,13 @@ def _look(
     high, high_y = (right, up) if cell == side else (1, 0)
     count = 0
     if high_y == 0:
-        count = _look_along(x, y, 1 if to_right else -1, scene, seen)
+        count = _look_along(x, y, 1 if to_right else -1, scene, view)
     cone = (low, low_y, high, high_y) if to_right else (-high, high_y, -low, low_y)
-    return _look_across(x, y, side, cone, scene, fans, seen, count)
+    return _look_across(x, y, side, cone, scene, fans, view, count)
 
 
 @allocation_free
-def _look_along(x: int, y: int, to: int, scene: Scene, seen: np.ndarray) -> int:
+def _look_along(x: int, y: int, to: int, scene: Scene, view: np.ndarray) -> int:
     """The corners that a point sees along its horizontal grid line, if it lies on one: to the right
     (1), to the left (-1), or both (0).
 
@@ -163,12 +163,12 @@ def _look_along(x: int, y: int, to: int, scene: Scene, seen: np.ndarray) -> int:
         left -= 1
     while to >= 0 and not (below[right + 1] and above[right + 1]):
         right += 1
-    return _gather(left, right, y // scene.scale, x, 0, scene, seen, 0)
+    return _gather(left, right, y // scene.scale, x, 0, scene, view, 0)
 
 
 @allocation_free
-def _look_across(x, y, side, cone, scene, fans, seen, count):
-    """Add to `seen` the corners within a cone above a point (side 1) or below it (-1), and return
+def _look_across(x, y, side, cone, scene, fans, view, count):
+    """Add to `view` the corners within a cone above a point (side 1) or below it (-1), and return
     how many there are now.
 
     cone: its lowest and its highest slope, each by numerator and denominator, which may be 0; so
@@ -194,7 +194,7 @@ def _look_across(x, y, side, cone, scene, fans, seen, count):
         for k in range(intervals):
             left = -((-fan[k, 0] * far // fan[k, 1] - x) // scene.scale)
             right = (fan[k, 2] * far // fan[k, 3] + x) // scene.scale
-            count = _gather(left, right, line, x, side, scene, seen, count)
+            count = _gather(left, right, line, x, side, scene, view, count)
         band += side
         intervals = _cast_shadows(x, band, far, fan, intervals, scene, following)
         fan, following = following, fan
@@ -250,8 +250,8 @@ def _first_run_beyond(column: int, band: int, scene: Scene) -> int:
 
 
 @allocation_free
-def _gather(left, right, line, x, side, scene, seen, count):
-    """Add to `seen` the corners on a horizontal grid line between two vertical ones that a shortest
+def _gather(left, right, line, x, side, scene, view, count):
+    """Add to `view` the corners on a horizontal grid line between two vertical ones that a shortest
     path from x can pass; their number.
     """
     corner, end = scene.first_corner[line], scene.first_corner[line + 1]
@@ -264,7 +264,7 @@ def _gather(left, right, line, x, side, scene, seen, count):
             corner = middle + 1
     while corner < end and scene.corners[corner, 0] <= right:
         if scene.slopes[corner] * side * (scene.corners[corner, 0] * scene.scale - x) >= 0:
-            seen[count] = corner
+            view[count] = corner
             count += 1
         corner += 1
     return count

@@ -75,7 +75,7 @@ class _Sights(NamedTuple):
     so_far: list[float]
 
 
-class _Reached(NamedTuple):
+class _Arrivals(NamedTuple):
     """Lists of what has been reached, the start first.
 
     side, angle: where. length: of the way. by: the tangent by which it came, before: what was
@@ -90,18 +90,18 @@ class _Reached(NamedTuple):
 
 
 class _Scratch(NamedTuple):
-    """Room for a look. seen: (n,) the side from which a circle was last looked at. hidden:
-    (_SECTORS,) the distance from which on nothing can be seen in a sector. found: (2 n, 4) tangents
-    as leave, to, arrive, length. segment: (2, 2). queue: (bins,) bins to look into. queued: (bins,)
-    the side from which a bin was last in the queue.
+    """Room for a look. looks: (n,) the side from which a circle was last looked at. horizon:
+    (_SECTORS,) the distance from which on nothing can be seen in a sector. tangents: (2 n, 4)
+    tangents as leave, to, arrive, length. segment: (2, 2). queue: (bins,) bins to look into.
+    queue_side: (bins,) the side from which a bin was last in the queue.
     """
 
-    seen: np.ndarray
-    hidden: np.ndarray
-    found: np.ndarray
+    looks: np.ndarray
+    horizon: np.ndarray
+    tangents: np.ndarray
     segment: np.ndarray
     queue: np.ndarray
-    queued: np.ndarray
+    queue_side: np.ndarray
 
 
 @compiled
@@ -129,7 +129,7 @@ def search(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         np.empty(scene.bins.columns * scene.bins.rows, dtype=np.int64),
         np.full(scene.bins.columns * scene.bins.rows, -1),
     )
-    reached = _Reached([0], [0.0], [0.0], [-1], [-1])
+    arrivals = _Arrivals([0], [0.0], [0.0], [-1], [-1])
     latest = np.full(sides, -1)
     latest[0] = 0
     heap = [(_ahead(0, 0.0, scene), 0)]
@@ -138,29 +138,29 @@ def search(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         estimate, k = heapq.heappop(heap)
         if estimate > longest:
             break
-        side = reached.side[k]
+        side = arrivals.side[k]
         if side == 2:
             if shortest == np.inf:
-                shortest = reached.length[k]
+                shortest = arrivals.length[k]
                 longest = shortest * (1.0 + _TIED)
             continue
-        tangent = reached.by[k]
-        if tangent >= 0 and reached.length[k] > sights.so_far[tangent] + sights.length[tangent]:
+        tangent = arrivals.by[k]
+        if tangent >= 0 and arrivals.length[k] > sights.so_far[tangent] + sights.length[tangent]:
             continue
         if first[side] < 0:
             first[side] = len(sights.leave)
             _look(side, scene, scratch, sights)
             last[side] = len(sights.leave)
         radius = scene.radii[side // 2]
-        end = _free_sweep(side, reached.angle[k], scene)
+        end = _free_sweep(side, arrivals.angle[k], scene)
         count = last[side] - first[side]
-        begin = _first_beyond(sights.leave, first[side], last[side], reached.angle[k])
+        begin = _first_beyond(sights.leave, first[side], last[side], arrivals.angle[k])
         for step in range(count):
             tangent = begin + step if begin + step < last[side] else begin + step - count
-            sweep = _sweep(reached.angle[k], sights.leave[tangent])
+            sweep = _sweep(arrivals.angle[k], sights.leave[tangent])
             if sweep > end:
                 break
-            so_far = reached.length[k] + radius * abs(sweep)
+            so_far = arrivals.length[k] + radius * abs(sweep)
             if so_far >= sights.so_far[tangent]:
                 # Who reached it sooner has gone on as well.
                 if sweep > 0.0:
@@ -170,21 +170,21 @@ def search(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
             there = sights.to[tangent]
             so_far += sights.length[tangent]
             estimate = so_far + _ahead(there, sights.arrive[tangent], scene)
-            heapq.heappush(heap, (estimate, len(reached.side)))
-            reached.before.append(latest[there])
-            latest[there] = len(reached.side)
-            reached.side.append(there)
-            reached.angle.append(sights.arrive[tangent])
-            reached.length.append(so_far)
-            reached.by.append(tangent)
-    return _ways_back(scene, sights, reached, latest, longest)
+            heapq.heappush(heap, (estimate, len(arrivals.side)))
+            arrivals.before.append(latest[there])
+            latest[there] = len(arrivals.side)
+            arrivals.side.append(there)
+            arrivals.angle.append(sights.arrive[tangent])
+            arrivals.length.append(so_far)
+            arrivals.by.append(tangent)
+    return _ways_back(scene, sights, arrivals, latest, longest)
 
 
 @compiled
 def _ways_back(
     scene: Scene,
     sights: _Sights,
-    reached: _Reached,
+    arrivals: _Arrivals,
     latest: np.ndarray,
     longest: float,
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -197,11 +197,11 @@ def _ways_back(
     shortest = np.inf
     k = latest[2]
     while k >= 0:
-        shortest = min(shortest, reached.length[k])
-        if reached.length[k] <= longest:
-            taken[reached.by[k]] = True
-            waiting.append(reached.by[k])
-        k = reached.before[k]
+        shortest = min(shortest, arrivals.length[k])
+        if arrivals.length[k] <= longest:
+            taken[arrivals.by[k]] = True
+            waiting.append(arrivals.by[k])
+        k = arrivals.before[k]
     slack = longest - shortest
     tangents = np.empty((len(sights.leave), 4), dtype=np.int64)
     arcs = [(0, 0.0, 0.0)]
@@ -216,17 +216,17 @@ def _ways_back(
         count += 1
         k = latest[side]
         while k >= 0:
-            sweep = _sweep(reached.angle[k], sights.leave[tangent])
-            way = reached.length[k] + scene.radii[side // 2] * abs(sweep)
+            sweep = _sweep(arrivals.angle[k], sights.leave[tangent])
+            way = arrivals.length[k] + scene.radii[side // 2] * abs(sweep)
             if way <= sights.so_far[tangent] + slack and sweep <= _free_sweep(
-                side, reached.angle[k], scene
+                side, arrivals.angle[k], scene
             ):
-                begin = reached.angle[k] if _sense(side) > 0 else -sights.leave[tangent]
+                begin = arrivals.angle[k] if _sense(side) > 0 else -sights.leave[tangent]
                 arcs.append((side // 2, begin, sweep))
-                if reached.by[k] >= 0 and not taken[reached.by[k]]:
-                    taken[reached.by[k]] = True
-                    waiting.append(reached.by[k])
-            k = reached.before[k]
+                if arrivals.by[k] >= 0 and not taken[arrivals.by[k]]:
+                    taken[arrivals.by[k]] = True
+                    waiting.append(arrivals.by[k])
+            k = arrivals.before[k]
     spans = np.empty((len(arcs), 3))
     for k in range(len(arcs)):
         spans[k, 0], spans[k, 1], spans[k, 2] = arcs[k]
@@ -328,10 +328,10 @@ def _before(middle: float, half: float) -> float:
 def _look(side: int, scene: Scene, scratch: _Scratch, sights: _Sights) -> None:
     """Add the free tangents from a side to circles and to the target."""
     circle, bins = side // 2, scene.bins
-    seen, hidden = scratch.seen, scratch.hidden
+    looks, horizon = scratch.looks, scratch.horizon
     radius = scene.radii[circle]
-    _hide_outside(side, scene, hidden)
-    seen[circle], seen[0], seen[1] = side, side, side
+    _hide_outside(side, scene, horizon)
+    looks[circle], looks[0], looks[1] = side, side, side
     count = _look_at(side, 1, scene, scratch, 0)
     # From the bins of the circle on to their neighbours, as long as any ray gets there.
     x, y = scene.centres[circle]
@@ -346,38 +346,38 @@ def _look(side: int, scene: Scene, scratch: _Scratch, sights: _Sights) -> None:
         place = scratch.queue[done]
         done += 1
         column, row = place // bins.rows, place % bins.rows
-        if _is_hidden(side, column, row, scene, hidden):
+        if _is_hidden(side, column, row, scene, horizon):
             continue
         for k in bins.members[bins.first[place] : bins.first[place + 1]]:
-            if seen[k] != side:
-                seen[k] = side
+            if looks[k] != side:
+                looks[k] = side
                 count = _look_at(side, k, scene, scratch, count)
-                _hide(side, k, scene, hidden)
+                _hide(side, k, scene, horizon)
         for next_column in range(max(column - 1, 0), min(column + 1, bins.columns - 1) + 1):
             for next_row in range(max(row - 1, 0), min(row + 1, bins.rows - 1) + 1):
                 waiting = _wait(next_column * bins.rows + next_row, side, scratch, waiting)
-    order = np.argsort(scratch.found[:count, 0])
+    order = np.argsort(scratch.tangents[:count, 0])
     for k in order:
         sights.leaves.append(side)
-        sights.leave.append(scratch.found[k, 0])
-        sights.to.append(int(scratch.found[k, 1]))
-        sights.arrive.append(scratch.found[k, 2])
-        sights.length.append(scratch.found[k, 3])
+        sights.leave.append(scratch.tangents[k, 0])
+        sights.to.append(int(scratch.tangents[k, 1]))
+        sights.arrive.append(scratch.tangents[k, 2])
+        sights.length.append(scratch.tangents[k, 3])
         sights.so_far.append(np.inf)
 
 
 @allocation_free
 def _wait(place: int, side: int, scratch: _Scratch, waiting: int) -> int:
     """Put a bin into the queue, unless it has been there in this look; the queue's length."""
-    if scratch.queued[place] == side:
+    if scratch.queue_side[place] == side:
         return waiting
-    scratch.queued[place] = side
+    scratch.queue_side[place] = side
     scratch.queue[waiting] = place
     return waiting + 1
 
 
 @allocation_free
-def _is_hidden(side: int, column: int, row: int, scene: Scene, hidden: np.ndarray) -> bool:
+def _is_hidden(side: int, column: int, row: int, scene: Scene, horizon: np.ndarray) -> bool:
     """Whether all rays that leave a side towards a bin end before it."""
     circle, sense, bins = side // 2, _sense(side), scene.bins
     radius = scene.radii[circle]
@@ -393,18 +393,18 @@ def _is_hidden(side: int, column: int, row: int, scene: Scene, hidden: np.ndarra
     for sector in range(
         math.floor(begin * (_SECTORS / math.tau)), math.ceil(end * (_SECTORS / math.tau))
     ):
-        if hidden[sector % _SECTORS] > nearest:
+        if horizon[sector % _SECTORS] > nearest:
             return False
     return True
 
 
 @allocation_free
-def _look_at(side: int, seen: int, scene: Scene, scratch: _Scratch, count: int) -> int:
+def _look_at(side: int, other: int, scene: Scene, scratch: _Scratch, count: int) -> int:
     """Add the free tangents from a side to a circle to those found; their number."""
     circle, sense = side // 2, _sense(side)
-    radius, size = scene.radii[circle], scene.radii[seen]
-    dx = scene.centres[seen, 0] - scene.centres[circle, 0]
-    dy = scene.centres[seen, 1] - scene.centres[circle, 1]
+    radius, size = scene.radii[circle], scene.radii[other]
+    dx = scene.centres[other, 0] - scene.centres[circle, 0]
+    dy = scene.centres[other, 1] - scene.centres[circle, 1]
     distance = math.hypot(dx, dy)
     towards = sense * math.atan2(dy, dx)
     segment = scratch.segment
@@ -419,15 +419,15 @@ def _look_at(side: int, seen: int, scene: Scene, scratch: _Scratch, count: int) 
         length = math.sqrt(max(distance**2 - offset**2, 0.0))
         half = math.acos(min(max(offset / distance, -1.0), 1.0)) if distance else 0.5 * math.pi
         leave = (towards - half) % math.tau
-        if scratch.hidden[_sector(leave)] <= length:
+        if scratch.horizon[_sector(leave)] <= length:
             continue
-        there = 2 * seen + (side % 2 if turn > 0 else 1 - side % 2)
+        there = 2 * other + (side % 2 if turn > 0 else 1 - side % 2)
         arrive = leave if turn > 0 else (math.pi - leave) % math.tau
         segment[0, 0], segment[0, 1] = _x_at(side, leave, scene), _y_at(side, leave, scene)
         segment[1, 0], segment[1, 1] = _x_at(there, arrive, scene), _y_at(there, arrive, scene)
         if is_free(segment[0], segment[1], scene):
-            found = scratch.found[count]
-            found[0], found[1], found[2] = leave, 2 if seen == 1 else there, arrive
+            found = scratch.tangents[count]
+            found[0], found[1], found[2] = leave, 2 if other == 1 else there, arrive
             found[3] = math.hypot(segment[1, 0] - segment[0, 0], segment[1, 1] - segment[0, 1])
             count += 1
     return count
@@ -439,7 +439,7 @@ def _sector(angle: float) -> int:
 
 
 @allocation_free
-def _hide(side: int, other: int, scene: Scene, hidden: np.ndarray) -> None:
+def _hide(side: int, other: int, scene: Scene, horizon: np.ndarray) -> None:
     """Note in which sectors all rays that leave a side enter a circle."""
     circle, sense = side // 2, _sense(side)
     radius, size = scene.radii[circle], _WELL_INSIDE * scene.radii[other]
@@ -459,18 +459,18 @@ def _hide(side: int, other: int, scene: Scene, hidden: np.ndarray) -> None:
     for sector in range(
         math.ceil(begin * (_SECTORS / math.tau)), math.floor(end * (_SECTORS / math.tau))
     ):
-        hidden[sector % _SECTORS] = min(hidden[sector % _SECTORS], distance)
+        horizon[sector % _SECTORS] = min(horizon[sector % _SECTORS], distance)
 
 
 @allocation_free
-def _hide_outside(side: int, scene: Scene, hidden: np.ndarray) -> None:
+def _hide_outside(side: int, scene: Scene, horizon: np.ndarray) -> None:
     """Note for each sector how far the rays that leave a side in it get before the border."""
     circle, sense = side // 2, _sense(side)
     x, y, radius = scene.centres[circle, 0], scene.centres[circle, 1], scene.radii[circle]
     left, right, bottom, top = scene.bounds
     if min(x - left, right - x, y - bottom, top - y) < radius:
         for sector in range(_SECTORS):
-            hidden[sector] = np.inf
+            horizon[sector] = np.inf
         return
     # Between two corners a ray gets farthest at one end of a sector.
     last = np.inf
@@ -485,7 +485,7 @@ def _hide_outside(side: int, scene: Scene, hidden: np.ndarray) -> None:
         if along_y:
             end = min(end, ((top if along_y > 0.0 else bottom) - from_y) / along_y)
         if sector > 0:
-            hidden[sector - 1] = max(last, end)
+            horizon[sector - 1] = max(last, end)
         last = end
     for corner in range(4):
         dx, dy = scene.bounds[corner % 2] - x, scene.bounds[2 + corner // 2] - y
@@ -493,9 +493,9 @@ def _hide_outside(side: int, scene: Scene, hidden: np.ndarray) -> None:
         if distance > radius:
             leave = (sense * math.atan2(dy, dx) - math.acos(radius / distance)) % math.tau
             length = math.sqrt(distance**2 - radius**2)
-            hidden[_sector(leave)] = max(hidden[_sector(leave)], length)
+            horizon[_sector(leave)] = max(horizon[_sector(leave)], length)
     for sector in range(_SECTORS):
-        hidden[sector] = _JUST_BEYOND * hidden[sector] + 1e3 * TOLERANCE
+        horizon[sector] = _JUST_BEYOND * horizon[sector] + 1e3 * TOLERANCE
 
 
 @allocation_free
@@ -528,7 +528,7 @@ def is_free(a: np.ndarray, b: np.ndarray, scene: Scene) -> bool:
 
 
 @compiled
-def met(line: np.ndarray, bins: Bins, count: int) -> np.ndarray:
+def circles_beside(line: np.ndarray, bins: Bins, count: int) -> np.ndarray:
     """Which of so many circles have their bins passed by a polyline (n, 2): bool (count,)."""
     near = np.zeros(count, dtype=np.bool_)
     for i in range(len(line) - 1):

@@ -47,7 +47,7 @@ class Sequence(NamedTuple):
     """
 
     values: np.ndarray
-    clipped: int
+    clips: int
     collapsed_at: int
 
 
@@ -90,7 +90,7 @@ def _number(name: str) -> int:
 def _sequence(number, start, length, singer_mu):
     """The fields of a `Sequence`."""
     values = np.empty(length)
-    clipped = 0
+    clips = 0
     collapsed_at = 0
     x = start
     for k in range(length):
@@ -98,13 +98,13 @@ def _sequence(number, start, length, singer_mu):
             x = _next(number, x, singer_mu)
             if number != Map.gauss_printed and not 0.0 <= x <= 1.0:
                 x = min(max(x, 0.0), 1.0)
-                clipped += 1
+                clips += 1
             if abs(x - values[k - 1]) >= STANDSTILL:
                 collapsed_at = 0
             elif collapsed_at == 0:
                 collapsed_at = k
         values[k] = x
-    return values, clipped, collapsed_at
+    return values, clips, collapsed_at
 
 
 @allocation_free

@@ -94,13 +94,13 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
 
 
 @compiled
-def _distances(walled, row, column, steps):
+def _distances(walls, row, column, steps):
     """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours,
     infinite where there is no path.
 
-    walled: the cells with a frame of occupied cells around them.
+    walls: the cells with a frame of occupied cells around them.
     """
-    far = np.full(walled.shape, np.inf)
+    far = np.full(walls.shape, np.inf)
     far[row + 1, column + 1] = 0.0
     heap = [(0.0, row + 1, column + 1)]
     while len(heap) > 0:
@@ -110,7 +110,7 @@ def _distances(walled, row, column, steps):
         for k in range(len(steps)):
             up, right = row + steps[k, 0], column + steps[k, 1]
             ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
-            if not walled[up, right] and ahead < far[up, right]:
+            if not walls[up, right] and ahead < far[up, right]:
                 far[up, right] = ahead
                 heapq.heappush(heap, (ahead, up, right))
     return far[1:-1, 1:-1]

@@ -39,12 +39,12 @@ def put(ones: np.ndarray, count: int, cost: float, pool: Pool, place: int) -> No
 
 
 @compiled
-def select(pool: Pool, survivors: int, filled: int) -> None:
+def select(pool: Pool, survivors: int, fill: int) -> None:
     """Move the best of the first chromosomes to the front, in place; ties in their order."""
     highest = pool.cost[:survivors].max()
     # Some that cost no more are enough, so the others need no sorting.
-    order, count = np.empty(filled, dtype=np.int64), 0
-    for i in range(filled):
+    order, count = np.empty(fill, dtype=np.int64), 0
+    for i in range(fill):
         order[count] = i
         count += pool.cost[i] <= highest
     sort(order[:count], pool.cost)
@@ -82,13 +82,13 @@ def flip(genes: np.ndarray, count: int, gene: int) -> int:
 
 
 @allocation_free
-def gap(rng: np.random.Generator, unchanged: float) -> int:
+def gap(rng: np.random.Generator, log_stay: float) -> int:
     """Number of genes left unchanged before the next change; 2**31 stands for more than there are
-    genes. unchanged: the logarithm of the probability that a gene does not change.
+    genes. log_stay: the logarithm of the probability that a gene does not change.
     """
-    if unchanged == 0.0:
+    if log_stay == 0.0:
         return 2**31
-    return int(min(math.log(1.0 - rng.random()) / unchanged, 2.0**31)) if unchanged > -np.inf else 0
+    return int(min(math.log(1.0 - rng.random()) / log_stay, 2.0**31)) if log_stay > -np.inf else 0
 
 
 @allocation_free
@@ -141,14 +141,14 @@ def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 
 
 @compiled
-def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
+def sum_of_q(pool: Pool, first: int, fill: int, genes: int) -> float:
     """Sum of Q over the pairs of chromosomes in the pool, the second of which is at a place from
     `first` on.
 
     A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum
     is made in the order of the places.
     """
-    kinds, heads, kind = kinds_of(pool, filled)
+    kinds, heads, kind = kinds_of(pool, fill)
     values, marked = np.empty((kinds, kinds)), np.zeros(genes, dtype=np.int64)
     for k in range(kinds):
         chromosome = heads[k]
@@ -165,7 +165,7 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
         for gene in pool.ones[chromosome, : pool.count[chromosome]]:
             marked[gene] = 0
     total = 0.0
-    for j in range(max(first, 1), filled):
+    for j in range(max(first, 1), fill):
         row = values[kind[j]]
         for i in range(j):
             total += row[kind[i]]

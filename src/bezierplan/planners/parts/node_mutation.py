@@ -14,8 +14,8 @@ from bezierplan.workspaces.ground import (
     Ground,
     edge_energy,
     free_neighbours,
-    obstacles_met,
-    path_met,
+    obstacles_along,
+    obstacles_on,
 )
 
 Mutation = IntEnum("Mutation", "random random_repair ref12 ref21 proposed", start=0)
@@ -32,21 +32,21 @@ _TIE = 1e-12
 def mutate(
     rng: np.random.Generator,
     path: np.ndarray,
-    drawn: np.ndarray,
+    alleles: np.ndarray,
     ground: Ground,
     rules: NamedTuple,
     neighbours: np.ndarray,
 ) -> int:
     """Apply the operator once to a path of cells (n,), n at least 3; returns how many it evaluated.
 
-    drawn: cells for random mutation. rules: `node_genetic.Settings`. neighbours: (MOST_NEIGHBOURS,)
-    scratch.
+    alleles: cells for random mutation. rules: `node_genetic.Settings`. neighbours:
+    (MOST_NEIGHBOURS,) scratch.
     """
     if rules.mutation == Mutation.random:
-        path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
+        path[1 + below(rng, len(path) - 2)] = alleles[below(rng, len(alleles))]
         return 0
     if rules.mutation == Mutation.random_repair:
-        return _random_repair(rng, path, drawn, ground)
+        return _random_repair(rng, path, alleles, ground)
     if rules.mutation == Mutation.ref21:
         return _ref21(rng, path, ground, rules, neighbours)
     k = (
@@ -62,13 +62,13 @@ def mutate(
 
 
 @allocation_free
-def _random_repair(rng, path, drawn, ground):
+def _random_repair(rng, path, alleles, ground):
     """Random mutation, repeated until the path is feasible."""
     for _ in range(_MOST_REPAIRS):
         k = 1 + below(rng, len(path) - 2)
         before = path[k]
-        path[k] = drawn[below(rng, len(drawn))]
-        if path_met(path, ground) == 0:
+        path[k] = alleles[below(rng, len(alleles))]
+        if obstacles_along(path, ground) == 0:
             return 0
         path[k] = before
     return 0
@@ -97,7 +97,7 @@ def _encounters(path, k, ground, beside_obstacle):
     cells around the node is occupied.
     """
     if not beside_obstacle:
-        return obstacles_met(ground, path[k], path[k + 1]) > 0
+        return obstacles_on(ground, path[k], path[k + 1]) > 0
     row, column = divmod(path[k], ground.occupied.shape[1])
     return ground.occupied[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any()
 
@@ -124,11 +124,11 @@ def _best_neighbour(path, k, ground, rules, neighbours):
 @inlined
 def _cost_through(path, k, cell, ground, penalty):
     """Energy plus penalty of the two edges that node k would have if it were in the given cell."""
-    met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])
+    encounters = obstacles_on(ground, path[k - 1], cell) + obstacles_on(ground, cell, path[k + 1])
     return (
         edge_energy(ground, path[k - 1], cell)
         + edge_energy(ground, cell, path[k + 1])
-        + penalty * met
+        + penalty * encounters
     )
 
 
@@ -145,8 +145,8 @@ def _ref21(rng, path, ground, rules, neighbours):
         cell = neighbours[tried]
         if (
             _towards(path[0], cell, path[-1], ground.occupied.shape[1])
-            and obstacles_met(ground, path[k - 1], cell) == 0
-            and obstacles_met(ground, cell, path[k + 1]) == 0
+            and obstacles_on(ground, path[k - 1], cell) == 0
+            and obstacles_on(ground, cell, path[k + 1]) == 0
         ):
             path[k] = cell
             return tried + 1

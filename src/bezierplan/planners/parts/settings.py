@@ -112,17 +112,21 @@ def setting(annotation: Any) -> Setting:
     return Setting(annotation, (), limits, about)
 
 
-def setting_fault(declared: Setting, value: Any) -> str | None:
+def setting_fault(declaration: Setting, value: Any) -> str | None:
     """What is expected instead of a setting's value, or None if the value is valid."""
-    if declared.words:
-        return None if value in declared.words else str(declared)
-    accepted = (int, float) if declared.kind is float else declared.kind
-    if not isinstance(value, accepted) or (isinstance(value, bool) and declared.kind is not bool):
-        return str(declared._replace(limits=Range()))
-    if declared.kind is bool or declared.limits.low <= value <= declared.limits.high:
+    if declaration.words:
+        return None if value in declaration.words else str(declaration)
+    accepted = (int, float) if declaration.kind is float else declaration.kind
+    if not isinstance(value, accepted) or (
+        isinstance(value, bool) and declaration.kind is not bool
+    ):
+        return str(declaration._replace(limits=Range()))
+    if declaration.kind is bool or declaration.limits.low <= value <= declaration.limits.high:
         return None
     return (
-        str(declared) if abs(value) < math.inf else f"a finite {str(declared).removeprefix('a ')}"
+        str(declaration)
+        if abs(value) < math.inf
+        else f"a finite {str(declaration).removeprefix('a ')}"
     )
 
 

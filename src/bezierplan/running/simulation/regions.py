@@ -20,7 +20,7 @@ def region_of(workspace: Workspace) -> Region:
     """
     if (
         not isinstance(workspace, Grid)
-        or workspace.drawn is not None
+        or workspace.shapes is not None
         or workspace.occupied.size > _MOST_CELLS
     ):
         return region(workspace)

@@ -57,19 +57,19 @@ File = Annotated[str, _IS_FILE]
 Unit = Annotated[
     str,
     value(
-        lambda given: isinstance(given, str) and re.fullmatch(r"[^\W\d_]{1,20}", given) is not None,
+        lambda entry: isinstance(entry, str) and re.fullmatch(r"[^\W\d_]{1,20}", entry) is not None,
         "letters, 20 at most",
     ),
 ]
 
 
-def of_length(length: int, wanted: str) -> AfterValidator:
+def of_length(length: int, form: str) -> AfterValidator:
     """A check of a list of numbers: that there are so many."""
 
-    def check(given: list) -> list:
-        if len(given) != length:
-            raise wrong(f"{given!r}: expected {wanted}")
-        return given
+    def check(entry: list) -> list:
+        if len(entry) != length:
+            raise wrong(f"{entry!r}: expected {form}")
+        return entry
 
     return AfterValidator(check)
 
@@ -77,7 +77,7 @@ def of_length(length: int, wanted: str) -> AfterValidator:
 Size = Annotated[
     float,
     value(
-        lambda given: is_number(given) and given >= SMALLEST_FEATURE,
+        lambda entry: is_number(entry) and entry >= SMALLEST_FEATURE,
         f"a number of at least {SMALLEST_FEATURE:g}",
     ),
 ]

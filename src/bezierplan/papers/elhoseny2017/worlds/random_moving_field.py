@@ -36,8 +36,8 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     ends = [*problem["start"], *problem["target"]]
     rng = generator(name, side, *ends, count, problem["layout"])
     radius = description["radius"] * side
-    centres, velocities = moving.drawn(
+    centres, velocities = moving.movement(
         rng, description, count, walls, np.reshape(ends, (2, 2)), radius
     )
     circles = moving.circles(description, walls, centres, velocities, np.full(count, float(radius)))
-    return replace(circles, bounds=(-0.5, side + 0.5, -0.5, side + 0.5), seen="cells")
+    return replace(circles, bounds=(-0.5, side + 0.5, -0.5, side + 0.5), view="cells")

@@ -34,7 +34,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     ends = [*problem["start"], *problem["target"]]
     rng = generator(name, *ends, problem["layout"])
     radius, count = description["radius"], problem["obstacles"]
-    centres, velocities = moving.drawn(
+    centres, velocities = moving.movement(
         rng, description, description["circles"], walls, np.reshape(ends, (2, 2)), radius
     )
     radii = np.full(len(centres[:count]), float(radius))
