@@ -1,126 +1,131 @@
-"""The wheel: built, installed without the extra into a fresh environment, and used away from the
-clone.
+"""The wheel: built, installed into an environment of its own, and used away from the clone, with
+the libraries of the tests, or without those of the extra.
 """
 
 import os
+import re
+import shlex
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import pytest
 
+from bezierplan.places import EXTRA
+
 ROOT = Path(__file__).parents[1]
-MAP = ROOT / "config/studies/elhoseny2017/workspaces/gaps.geojson"
-FIVE_LINES = """
-import bezierplan as bp
-room = bp.read_map("gaps.geojson")
-answer = bp.plan(bp.Problem("room", room, (2.0, 10.0), (18.0, 10.0)), turning_radius=0.5)
-print(round(answer.length, 3), answer.feasible)
-cells = bp.read_map("gaps.geojson", cell=0.5)
-problem = bp.Problem("room", cells, (2.0, 10.0), (18.0, 10.0))
-print(bp.plan(problem, "song2016/smooth", generations=5).evaluations)
-"""
-
-
-def done(command, **options):
-    ended = subprocess.run(command, capture_output=True, text=True, check=False, **options)
-    assert ended.returncode == 0, ended.stdout + ended.stderr
-    return ended.stdout
+PAGES = ["README.md", *(f"docs/{name}.md" for name in ("start", "python"))]
+PAGES += [f"docs/tutorials/{name}.md" for name in ("map", "planner", "paper", "moving")]
+# What needs the results of a clone.
+IN_A_CLONE = re.compile(r"bezierplan (verify|digest) ")
+MAP = "image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n"
+MAP += "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
 
 
 @pytest.fixture(scope="module")
 def away(tmp_path_factory):
-    """A fresh environment with the wheel and nothing else, and beside it a folder with a map."""
+    """A folder with an environment that has the wheel."""
     folder = tmp_path_factory.mktemp("wheel")
-    done(
-        [
-            sys.executable,
-            "-m",
-            "hatchling",
-            "build",
-            "--target",
-            "wheel",
-            "--directory",
-            str(folder / "dist"),
-        ],
-        cwd=ROOT,
-    )
-    (wheel,) = (folder / "dist").glob("*.whl")
-    done(
-        [
-            sys.executable,
-            "-m",
-            "uv",
-            "venv",
-            "--quiet",
-            "--python",
-            sys.executable,
-            str(folder / "venv"),
-        ]
-    )
+    hatch = ["hatchling", "build", "--target", "wheel", "--directory", str(folder)]
+    done([sys.executable, "-m", *hatch], cwd=ROOT)
+    (wheel,) = folder.glob("*.whl")
+    done([sys.executable, "-m", "venv", "--without-pip", str(folder / "venv")])
     python = folder / "venv/bin/python"
-    constraints = folder / "constraints.txt"
-    constraints.write_text(
-        "".join(
-            f"{line.split(' ')[0]}\n"
-            for line in (ROOT / "environment.txt").read_text().splitlines()
-            if "==" in line[:60]
-        )
-    )
-    # Where no package index can be reached, this test says so.
-    install = [sys.executable, "-m", "uv", "pip", "install", "--quiet"]
-    got = subprocess.run(
-        [*install, "--python", str(python), "--constraint", str(constraints), str(wheel)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if got.returncode and "error sending request" in got.stderr.lower():
-        pytest.skip("no package index can be reached")
-    assert got.returncode == 0, got.stderr
-    (folder / "gaps.geojson").write_bytes(MAP.read_bytes())
+    uv = [sys.executable, "-m", "uv", "pip", "install", "--quiet", "--no-deps", "--offline"]
+    done([*uv, "--python", str(python), str(wheel)])
+    paths = [sysconfig.get_path(name) for name in ("purelib", "platlib")]
+    (packages,) = (folder / "venv/lib").glob("*/site-packages")
+    (packages / "libraries.pth").write_text("\n".join(dict.fromkeys(paths)) + "\n")
+    # Kernels are named by their code.
+    (folder / "cache/bezierplan").mkdir(parents=True)
+    (folder / "cache/bezierplan/kernels").symlink_to(ROOT / ".cache/kernels")
+    (folder / "core").mkdir()
+    for name in EXTRA:
+        fault = f"raise ModuleNotFoundError('no {name}', name={name!r})\n"
+        (folder / "core" / f"{name}.py").write_text(fault)
     return folder
 
 
-def environment(folder):
-    """The variables of a shell that knows nothing of the clone."""
-    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | {
-        "XDG_CACHE_HOME": str(folder / "cache")
-    }
+def done(command, status=0, **options):
+    """What a command prints, which must end with a status."""
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, **options)
+    assert ended.returncode == status, ended.stdout + ended.stderr
+    return ended.stdout + ended.stderr
 
 
-def test_wheel_plans_away_from_the_clone_without_the_extra(away):
-    said = done(
-        [str(away / "venv/bin/python"), "-c", FIVE_LINES], cwd=away, env=environment(away)
-    ).split()
-    assert said[1] == "True"
-    assert (away / "cache/bezierplan").is_dir()
-    installed = done(
-        [sys.executable, "-m", "uv", "pip", "list", "--python", str(away / "venv/bin/python")]
-    )
-    assert "snakemake" not in installed
-    assert "pyarrow" not in installed
+def shell(away, command, place, core=False, status=0):
+    """What a command line prints in a shell that knows nothing of the clone."""
+    variables = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    variables["XDG_CACHE_HOME"] = str(away / "cache")
+    variables["PATH"] = f"{away / 'venv/bin'}:{variables['PATH']}"
+    if core:
+        variables["PYTHONPATH"] = str(away / "core")
+    place.mkdir(exist_ok=True)
+    return done(["bash", "-c", command], status, cwd=place, env=variables)
 
 
-def test_console_command_plans_and_writes_a_picture(away):
-    words = ["plan", "gaps.geojson", "--start", "2,10", "--target", "18,10", "--out", "path.svg"]
-    said = done([str(away / "venv/bin/bezierplan"), *words], cwd=away, env=environment(away))
+def examples(page):
+    """The command lines and the Python of a page that anybody can try."""
+    blocks = re.findall(r"^```(\w*)\n(.*?)^```$", (ROOT / page).read_text(), flags=re.M | re.S)
+    for language, block in blocks:
+        if language == "sh":
+            lines = [re.split(r"\s+# ", line)[0] for line in block.splitlines()]
+            ours = [line for line in lines if re.match(r"(python -m )?bezierplan ", line)]
+            yield from (line for line in ours if not IN_A_CLONE.search(line))
+        elif language == "python" and not block.startswith((">>> ", "# Snakefile")):
+            yield f"python -c {shlex.quote(block)}"
+    session = "".join(block for language, block in blocks if block.startswith(">>> "))
+    if session:
+        code = f"import doctest; print(doctest.run_docstring_examples({session!r}, {{}}))"
+        yield f"python -c {shlex.quote(code)}"
+
+
+def prepared(place):
+    """A folder with the map of one's own that pages speak of."""
+    place.mkdir()
+    (place / "map.yaml").write_text(MAP)
+    (place / "map.pgm").write_bytes(b"P5 10 10 255 " + bytes([254]) * 100)
+    return place
+
+
+def test_the_core_plans_by_a_paper_s_method_and_says_what_it_lacks(away):
+    place = prepared(away / "few")
+    words = "--start 2,10 --target 18,10"
+    said = shell(away, f"bezierplan plan gaps {words} --out path.svg", place, core=True)
     assert "feasible        yes" in said
-    assert (away / "path.svg").read_text().startswith("<?xml")
-
-
-def test_command_that_needs_the_extra_says_which(away):
-    ended = subprocess.run(
-        [str(away / "venv/bin/bezierplan"), "digest", "results"],
-        cwd=away,
-        env=environment(away),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert ended.returncode == 2
-    assert (
-        ended.stderr
-        == "digest: needs pyarrow, which is not installed; install it with: pip install "
+    assert (place / "path.svg").read_text().startswith("<?xml")
+    method = "--method song2016/smooth --settings '{generations: 5}'"
+    said = shell(away, f"bezierplan plan gaps {words} {method}", place, core=True, status=2)
+    assert "the map is polygons; read it with a cell" in said
+    cells = "--start 0.5,0.5 --target 15.5,15.5"
+    said = shell(away, f"bezierplan plan figure2 {cells} {method}; true", place, core=True)
+    assert "song2016/smooth" in said
+    said = shell(away, "bezierplan digest results", place, core=True, status=2)
+    assert said == (
+        "digest: needs pyarrow, which is not installed; install it with: pip install "
         "'bezierplan[workflow]'\n"
     )
+
+
+def test_the_papers_can_be_run_by_name_in_any_folder(away):
+    place = prepared(away / "names")
+    assert "song2016: " in shell(away, "bezierplan list", place)
+    assert "page" in shell(away, "bezierplan run smoke -n", place)
+    assert "song2016" in shell(away, "bezierplan run song2016_figure4 -n", place)
+    said = shell(away, "bezierplan replay song2016/routes/15_240/smooth/3", place)
+    assert "picture         results/replay/song2016/routes/15_240/smooth/3.svg" in said
+
+
+@pytest.mark.rare
+@pytest.mark.parametrize("page", PAGES)
+def test_examples_of_a_page_run_away_from_the_clone(away, page):
+    place = prepared(away / Path(page).stem)
+    commands = [*examples(page)]
+    assert commands
+    # A page may make a study twice: empty, and with a map of one's own.
+    for command in commands:
+        if "--from" in command:
+            command = command.replace("new mystudy", "new another")
+        said = shell(away, command, place)
+        assert "Failed example" not in said, said
