@@ -154,7 +154,7 @@ def _next_point(rng, occupied, target, path, count, rules):
         low[k] = max(0.5, path[count - 1, k] - rules.reach)
         high[k] = min(occupied.shape[1 - k] - 0.5, path[count - 1, k] + rules.reach)
     x, cost = np.empty((_SOURCES, 2)), np.empty(_SOURCES)
-    failed = np.zeros(_SOURCES, dtype=np.int64)
+    failures = np.zeros(_SOURCES, dtype=np.int64)
     point = np.empty(2)
     best, best_cost = path[count], np.inf
     for i in range(_SOURCES):
@@ -170,10 +170,10 @@ def _next_point(rng, occupied, target, path, count, rules):
         if cycle == rules.cycles:
             break
         for i in range(_SOURCES):
-            if failed[i] >= _TRIAL_LIMIT:  # a scout
+            if failures[i] >= _TRIAL_LIMIT:  # a scout
                 _draw(rng, low, high, x[i])
                 cost[i] = _cost(occupied, target, path, count, x[i], rules)
-                failed[i] = 0
+                failures[i] = 0
         for turn in range(2):
             if turn == 1:
                 onlooked = roulette(rng, 1.0 / (1.0 + cost), _SOURCES)
@@ -189,9 +189,9 @@ def _next_point(rng, occupied, target, path, count, rules):
                 if tried < cost[i]:
                     x[i, k] = point[k]
                     cost[i] = tried
-                    failed[i] = 0
+                    failures[i] = 0
                 else:
-                    failed[i] += 1
+                    failures[i] += 1
     return best_cost
 
 

@@ -291,7 +291,7 @@ def _search(rng, codes, cells, curve, rules):
     cost, parent_cost = np.empty(population), np.empty(population)
     # The first generation inherits nothing.
     parents = np.full_like(codes, -1)
-    drawn = np.zeros(population, dtype=np.int64)
+    draws = np.zeros(population, dtype=np.int64)
     best, best_cost = codes[0].copy(), np.inf
     history = np.empty(rules.generations + 1)
     scratch = np.empty((3, curve.ends.shape[1]))
@@ -299,7 +299,7 @@ def _search(rng, codes, cells, curve, rules):
     for generation in range(rules.generations + 1):
         for i in range(population):
             # A child equal to one of its parents takes over its cost, which changes no result.
-            mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
+            mother, father = draws[i - i % 2], draws[min(i | 1, population - 1)]
             if generation > 0 and same(codes[i], parents[mother]):
                 cost[i] = parent_cost[mother]
             elif generation > 0 and same(codes[i], parents[father]):
@@ -315,7 +315,7 @@ def _search(rng, codes, cells, curve, rules):
 
         parents, codes = codes, parents
         parent_cost, cost = cost, parent_cost
-        drawn = breed(rng, parents, parent_cost, codes, 0, rules.crossover_probability, bits, bits)
+        draws = breed(rng, parents, parent_cost, codes, 0, rules.crossover_probability, bits, bits)
         for i in range(population):
             _mutate(rng, codes[i], bits, cells, rules)
         if rules.elitism:

@@ -226,7 +226,7 @@ def _search(rng, cells, occupied, places, curve, rules):
     parent_entries = np.empty_like(entries)
     # The first generation inherits nothing.
     parents = np.full_like(cells, -1)
-    drawn = np.zeros(population, dtype=np.int64)
+    draws = np.zeros(population, dtype=np.int64)
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
     history = np.empty(rules.generations + 1)
@@ -243,8 +243,8 @@ def _search(rng, cells, occupied, places, curve, rules):
             # Elitism brings the best of the generation before, so this one is never worse.
             best_objective = np.inf
         for i in range(population):
-            mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
-            length, count, entered = 0.0, 0, 0
+            mother, father = draws[i - i % 2], draws[min(i | 1, population - 1)]
+            length, count, visits = 0.0, 0, 0
             for k in range(len(stretches)):
                 first, last = stretches[k, 0], stretches[k, 1] + 1
                 if same(cells[i, first:last], parents[mother, first:last]):
@@ -270,10 +270,8 @@ def _search(rng, cells, occupied, places, curve, rules):
                     )
                 length += lengths[i, k]
                 count += bad[i, k]
-                entered += entries[i, k]
-                objective[i] = length + rules.penalty * _penalties(
-                    count, entered, rules.penalty_for
-                )
+                visits += entries[i, k]
+                objective[i] = length + rules.penalty * _penalties(count, visits, rules.penalty_for)
                 # No other stretch makes it smaller, and only parents need to be measured in full.
                 if generation == rules.generations and objective[i] >= best_objective:
                     break
@@ -292,7 +290,7 @@ def _search(rng, cells, occupied, places, curve, rules):
         parent_bad, bad = bad, parent_bad
         parent_entries, entries = entries, parent_entries
         unit = bits if rules.cut == Cut.gene else 1
-        drawn = breed(rng, parents, objective, cells, 1, rules.crossover_probability, unit, bits)
+        draws = breed(rng, parents, objective, cells, 1, rules.crossover_probability, unit, bits)
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
         if rules.elitism:

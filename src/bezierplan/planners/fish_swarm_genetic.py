@@ -92,9 +92,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if places.start == places.target:
         # No search needed: all fish have arrived.
         settings = settings._replace(generations=0)
-        paths, sizes, released = np.array([[places.start]]), np.array([1]), 1
+        paths, sizes, releases = np.array([[places.start]]), np.array([1]), 1
     else:
-        paths, sizes, released = _release(first, places, settings)
+        paths, sizes, releases = _release(first, places, settings)
     best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
     if len(sizes) > 0:
         rules = cell_paths.Rules(
@@ -109,7 +109,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         best, history = cell_paths.evolve(
             moves, places, paths[turns], sizes[turns], settings.generations, rules
         )
-    evaluations = settings.fish * released + settings.population * (len(history) - 1)
+    evaluations = settings.fish * releases + settings.population * (len(history) - 1)
     return cell_paths.plan_of(problem, best, history, evaluations, "generations")
 
 
@@ -121,16 +121,16 @@ def _release(rng, lattice, swarm):
     """The first paths (n, longest path) of fish that arrive, at most a population, their sizes
     (n,), and the number of releases.
     """
-    wanted = swarm.population
-    arrivals = np.empty((wanted, _LONGEST_PATH), dtype=np.int64)
-    arrival_sizes = np.empty(wanted, dtype=np.int64)
+    most = swarm.population
+    arrivals = np.empty((most, _LONGEST_PATH), dtype=np.int64)
+    arrival_sizes = np.empty(most, dtype=np.int64)
     paths = np.empty((swarm.fish, _LONGEST_PATH), dtype=np.int64)
     sizes = np.empty(swarm.fish, dtype=np.int64)
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
     cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
-    arrived = released = 0
-    while arrived < wanted and released < _RELEASES:
-        released += 1
+    count = releases = 0
+    while count < most and releases < _RELEASES:
+        releases += 1
         visited[:] = 0
         visited[:, lattice.start] = 1
         paths[:, 0] = cells[:] = lattice.start
@@ -157,12 +157,12 @@ def _release(rng, lattice, swarm):
                 sizes[i] += 1
                 if cell == lattice.target:
                     states[i] = _ARRIVED
-                    if arrived < wanted:
-                        arrival_sizes[arrived] = cell_paths.put(
-                            paths[i, : sizes[i]], arrivals[arrived], 0
+                    if count < most:
+                        arrival_sizes[count] = cell_paths.put(
+                            paths[i, : sizes[i]], arrivals[count], 0
                         )
-                        arrived += 1
-    return arrivals[:arrived], arrival_sizes[:arrived], released
+                        count += 1
+    return arrivals[:count], arrival_sizes[:count], releases
 
 
 @allocation_free

@@ -302,7 +302,7 @@ def search(
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations)
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
-    further = evaluations = bred = lost = 0
+    further = evaluations = births = losses = 0
 
     for row in range(size):
         for _ in range(rules.first_draws):
@@ -334,12 +334,12 @@ def search(
         fill, pairs = size, 0.0
         for batch in range(batches):
             before = fill
-            fill, tried, invalid = _add_offspring(
+            fill, tries, invalid = _add_offspring(
                 rng, pool, before, wheel, eta, limit, child, memory, field, rules, scratch
             )
-            evaluations += tried
-            bred += children
-            lost += invalid
+            evaluations += tries
+            births += children
+            losses += invalid
             further += batch > 0
             if rules.diversity == Diversity.more_offspring:
                 pairs += gene_lists.sum_of_q(
@@ -354,7 +354,15 @@ def search(
         )
         eta *= rules.eta_decay
     return Outcome(
-        best, best_cost, history, distinct, q, population_q, further, evaluations, 1.0 - lost / bred
+        best,
+        best_cost,
+        history,
+        distinct,
+        q,
+        population_q,
+        further,
+        evaluations,
+        1.0 - losses / births,
     )
 
 
@@ -367,7 +375,7 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, field, rul
     memory: of validated chromosomes, changed in place. Returns the number of chromosomes now in the
     pool, of chromosomes validated, and of invalid children.
     """
-    tried = invalid = 0
+    tries = invalid = 0
     for _ in range(rules.population // 2):
         one, other = _parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
@@ -381,7 +389,7 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, field, rul
                     if replaced > 0:
                         count = _random_chromosome(rng, child, field, rules)
                     cost = _validated(child[:count], memory, field, rules, limit, scratch)
-                    tried += 1
+                    tries += 1
                     invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
                         break
@@ -390,7 +398,7 @@ def _add_offspring(rng, pool, fill, wheel, eta, limit, child, memory, field, rul
                 ):
                     gene_lists.put(child, count, cost, pool, fill)
                     fill += 1
-    return fill, tried, invalid
+    return fill, tries, invalid
 
 
 @inlined

@@ -157,7 +157,7 @@ class _Outcome(NamedTuple):
     encounters: int
     history: np.ndarray
     evaluations: int
-    stalled: bool
+    stalls: bool
     feasible_last: float
     made_infeasible: float
     diversity: float
@@ -229,7 +229,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
             "no first population"
             if not len(result.path)
             else "stall"
-            if result.stalled
+            if result.stalls
             else "generations"
         )
     feasible = len(result.path) > 0 and result.encounters == 0
@@ -303,7 +303,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
     neighbours = np.empty(MOST_NEIGHBOURS, dtype=np.int64)
     history = np.empty(rules.generations + 1)
     best, best_length, best_objective, best_encounters = paths[0].copy(), 0, np.inf, 0
-    improved = evaluations = feasible = spoiled = 0
+    last_gain = evaluations = feasible = losses = 0
     diversity = 0.0
 
     for generation in range(rules.generations + 1):
@@ -322,10 +322,10 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
                 encounters[first],
             )
             copy(paths[first, :best_length], best)
-            improved = generation
+            last_gain = generation
         history[generation] = best_objective
-        stalled = generation - improved >= rules.stall
-        if stalled or generation == rules.generations:
+        stalls = generation - last_gain >= rules.stall
+        if stalls or generation == rules.generations:
             break
 
         if rules.selection == Selection.roulette:
@@ -364,7 +364,7 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
                     was_feasible = obstacles_along(path, ground) == 0
                     evaluations += mutate(moves, path, alleles, ground, rules, neighbours)
                     feasible += was_feasible
-                    spoiled += was_feasible and obstacles_along(path, ground) > 0
+                    losses += was_feasible and obstacles_along(path, ground) > 0
         if rules.elitism:
             copy(best[:best_length], paths[0])
             lengths[0] = best_length
@@ -380,9 +380,9 @@ def _search(starts, moves, ground, start, target, free, alleles, rules):
         best_encounters,
         history[: generation + 1].copy(),
         evaluations,
-        stalled,
+        stalls,
         (encounters == 0).mean(),
-        spoiled / feasible if feasible else np.nan,
+        losses / feasible if feasible else np.nan,
         diversity / (generation + 1),
     )
 

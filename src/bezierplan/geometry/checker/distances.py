@@ -73,7 +73,7 @@ def least_clearance(
     both halves: they are swapped to positions beyond those that the halves examine.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
-    considered = np.empty(STACK, dtype=np.int64)
+    counts = np.empty(STACK, dtype=np.int64)
     obstacles = np.empty(len(edges) + len(radii), dtype=np.int64)
     piece_of = np.full(len(edges), -1)
     discs = np.arange(len(edges), len(edges) + len(radii))
@@ -91,13 +91,13 @@ def least_clearance(
         for disc in discs:
             obstacles[count] = disc
             count += 1
-        considered[0] = count
+        counts[0] = count
         top = 0
         while top >= 0:
             points = stack[top]
             bulge = bulge_of(points)
             near = 0
-            for k in range(considered[top]):
+            for k in range(counts[top]):
                 if (
                     _clearance_bound(points, bulge, obstacles[k], edges, centres, radii)
                     < least - CLEARANCE_TOLERANCE
@@ -114,7 +114,7 @@ def least_clearance(
                         points[0, 0], points[0, 1], obstacles[:near], edges, centres, radii
                     ),
                 )
-                considered[top] = considered[top + 1] = near
+                counts[top] = counts[top + 1] = near
                 top += 1
     return least
 

@@ -191,7 +191,7 @@ def _ways_back(
     """The tangents (t, 4) and arcs (a, 3) of all ways up to a length: back from the target, from
     all that has been reached on each side.
     """
-    taken = np.zeros(len(sights.leave), dtype=np.bool_)
+    marks = np.zeros(len(sights.leave), dtype=np.bool_)
     waiting = [0]
     waiting.clear()
     shortest = np.inf
@@ -199,7 +199,7 @@ def _ways_back(
     while k >= 0:
         shortest = min(shortest, arrivals.length[k])
         if arrivals.length[k] <= longest:
-            taken[arrivals.by[k]] = True
+            marks[arrivals.by[k]] = True
             waiting.append(arrivals.by[k])
         k = arrivals.before[k]
     slack = longest - shortest
@@ -223,8 +223,8 @@ def _ways_back(
             ):
                 begin = arrivals.angle[k] if _sense(side) > 0 else -sights.leave[tangent]
                 arcs.append((side // 2, begin, sweep))
-                if arrivals.by[k] >= 0 and not taken[arrivals.by[k]]:
-                    taken[arrivals.by[k]] = True
+                if arrivals.by[k] >= 0 and not marks[arrivals.by[k]]:
+                    marks[arrivals.by[k]] = True
                     waiting.append(arrivals.by[k])
             k = arrivals.before[k]
     spans = np.empty((len(arcs), 3))
@@ -399,12 +399,12 @@ def _is_hidden(side: int, column: int, row: int, scene: Scene, horizon: np.ndarr
 
 
 @allocation_free
-def _look_at(side: int, other: int, scene: Scene, scratch: _Scratch, count: int) -> int:
+def _look_at(side: int, aim: int, scene: Scene, scratch: _Scratch, count: int) -> int:
     """Add the free tangents from a side to a circle to those found; their number."""
     circle, sense = side // 2, _sense(side)
-    radius, size = scene.radii[circle], scene.radii[other]
-    dx = scene.centres[other, 0] - scene.centres[circle, 0]
-    dy = scene.centres[other, 1] - scene.centres[circle, 1]
+    radius, size = scene.radii[circle], scene.radii[aim]
+    dx = scene.centres[aim, 0] - scene.centres[circle, 0]
+    dy = scene.centres[aim, 1] - scene.centres[circle, 1]
     distance = math.hypot(dx, dy)
     towards = sense * math.atan2(dy, dx)
     segment = scratch.segment
@@ -421,13 +421,13 @@ def _look_at(side: int, other: int, scene: Scene, scratch: _Scratch, count: int)
         leave = (towards - half) % math.tau
         if scratch.horizon[_sector(leave)] <= length:
             continue
-        there = 2 * other + (side % 2 if turn > 0 else 1 - side % 2)
+        there = 2 * aim + (side % 2 if turn > 0 else 1 - side % 2)
         arrive = leave if turn > 0 else (math.pi - leave) % math.tau
         segment[0, 0], segment[0, 1] = _x_at(side, leave, scene), _y_at(side, leave, scene)
         segment[1, 0], segment[1, 1] = _x_at(there, arrive, scene), _y_at(there, arrive, scene)
         if is_free(segment[0], segment[1], scene):
             found = scratch.tangents[count]
-            found[0], found[1], found[2] = leave, 2 if other == 1 else there, arrive
+            found[0], found[1], found[2] = leave, 2 if aim == 1 else there, arrive
             found[3] = math.hypot(segment[1, 0] - segment[0, 0], segment[1, 1] - segment[0, 1])
             count += 1
     return count
