@@ -18,16 +18,23 @@ from bezierplan.running.jobs import watchdog
 from bezierplan.schema.checked import Fault
 from bezierplan.study.jobs import job
 
+# Of searches: the contract is that of a long one.
+FEW = {"generations": 5, "iterations": 5}
+
 
 def settings_in_force() -> dict[str, dict]:
-    """Planner -> its settings in the first experiment of a study that runs it."""
+    """Planner -> its settings in the first experiment of a study that runs it, with few rounds of a
+    search.
+    """
     found = {}
     for study in studies().values():
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)
                 condition = described.conditions()[0]
-                found.setdefault(study.planner(method), execution.settings_in(described, condition))
+                settings = execution.settings_in(described, condition)
+                few = {key: count for key, count in FEW.items() if key in settings}
+                found.setdefault(study.planner(method), settings | few)
     return found
 
 
