@@ -133,22 +133,6 @@ def test_paths_of_the_workspace_of_song2016(first, last, any_angle, through_cent
     assert_is_path(centre_path(problem), problem)
 
 
-@pytest.mark.parametrize(
-    ("environment", "any_angle", "one", "none"),
-    [(1, 29.2080963, 31.2132034, 33.5563492), (2, 30.0618849, 32.3847763, 32.9705627)],
-)
-def test_paths_of_the_environments_of_ma2020(environment, any_angle, one, none):
-    grid = grid_map(f"ma2020/environment{environment}.txt")
-    assert shortest_path(Problem("", grid, (0.0, 0.0), (20.0, 20.0))).length == pytest.approx(
-        any_angle, abs=1e-6
-    )
-    for rule, length in {"free": one, "one": one, "none": none}.items():
-        # Half a diagonal from the map's corners to the centres of their cells.
-        assert lattice_path(
-            grid.occupied, (0, 0), (19, 19), ROOT2, rule
-        ).length + ROOT2 == pytest.approx(length, abs=1e-6)
-
-
 CORNER_CONTACT = np.zeros((4, 4), dtype=bool)
 CORNER_CONTACT[1, 1] = CORNER_CONTACT[2, 2] = True
 

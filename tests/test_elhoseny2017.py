@@ -4,7 +4,6 @@ random fields and settings.
 
 from pathlib import Path as File
 
-import numpy as np
 import pandas as pd
 import pytest
 from studies import study
@@ -24,29 +23,6 @@ PUBLISHED = {
     file.stem: audit.read_published(str(file))
     for file in sorted((FOLDER / "published").glob("*.csv"))
 }
-
-
-# Printed numbers.
-
-
-def test_every_cell_of_the_tables_of_lengths_is_there():
-    for table, total in (("table2", 8414), ("table3", 17244)):
-        cells = PUBLISHED[table]
-        assert len(cells) == 40
-        assert not cells.duplicated(["route", "obstacles", "method"]).any()
-        assert cells["value"].sum() == total
-        assert set(cells["method"]) == {"prm", "abc_ep", "ga", "mga"}
-
-
-def test_every_cell_of_the_tables_of_times_is_there():
-    assert len(PUBLISHED["table5"]) == len(PUBLISHED["table6"]) == 20
-    assert PUBLISHED["table6"].query("method == 'prm' and obstacles == 15")["value"].item() == 1.9
-    assert (
-        PUBLISHED["table5"]
-        .query("method == 'mga_plain' and obstacles == 25 and statistic == 'std'")["value"]
-        .item()
-        == 0.47
-    )
 
 
 # The worked example.
@@ -212,16 +188,6 @@ def test_printed_lengths_over_the_bounds():
         for name, factor in (("table2", 1), ("table3", 2))
     }
     assert elhoseny2017.printed_over_bound(CHECK, found, PUBLISHED | low)[0] == "+"
-
-
-def test_means_of_fields_follow_the_free_diagonals():
-    """The expected length is that of a monotone path: 1.5 N where the diagonal is free, and 2 N
-    where it is not.
-    """
-    blocked = np.array([1 - (1 - np.sqrt(2) * 0.025) ** (2 * n) for n in (5, 25)])
-    np.testing.assert_allclose(
-        elhoseny2017.expected_length(100, 0.025, np.array([5, 25])), 150 + 50 * blocked
-    )
 
 
 @pytest.mark.parametrize("problem", ["case1_100", "case1_100_dense"])

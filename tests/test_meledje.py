@@ -22,7 +22,6 @@ from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import between
 from bezierplan.running.simulation.robot import drive
-from bezierplan.schema import checked
 from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
 from bezierplan.workspaces import files, grid
@@ -50,42 +49,6 @@ def problem(name):
     return problems.build(
         name, STUDY.problems[name].plain(), workspace(STUDY.problems[name].workspace)
     )
-
-
-# The study's files
-
-
-def test_repeats_are_the_trials_of_the_paper():
-    assert STUDY.experiments["operators"].repeats["full"] == 100
-    assert STUDY.experiments["operators"].seeds == "shared"
-
-
-def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_reconstructed():
-    """That of a panel is drawn; a panel without one stands beside others that say so."""
-    for each in (STUDY.tables | STUDY.figures).values():
-        artefact = each.plain()
-        shown = {
-            artefact.get("experiment"),
-            *(panel.get("experiment") for panel in artefact.get("panels", [])),
-        }
-        if shown & {"operators", "from_current", "harder_map", "first_populations"}:
-            assert "reconstruct" in artefact["title"]
-        for panel in artefact.get("panels", []):
-            if panel.get("experiment") in ("operators", "from_current"):
-                assert "reconstructed" in panel.get("title", ""), (artefact["title"], panel)
-
-
-@pytest.mark.parametrize(
-    "name",
-    ["env1_initial", "env1_modified", "env2_initial", "env2_modified", "env2_modified_counts"],
-)
-def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
-    where = problem(name)
-    energy, path = cheapest(ground_of(where.workspace, 1.0), 0, 255)
-    exact = shortest_paths.centre_path(where)
-    assert energy == pytest.approx(exact.length, rel=1e-12)
-    points = centres(where.workspace, path)
-    assert np.hypot(*np.diff(points, axis=0).T).sum() == pytest.approx(exact.length, rel=1e-12)
 
 
 def test_maps_change_as_the_paper_says():
@@ -292,13 +255,6 @@ def test_an_own_map_of_any_size_needs_configuration_alone():
         assert (table["objective"] >= table["optimum"] - 1e-9).all()
         free = table[table["feasible"]]
         assert free["length"].to_numpy() == pytest.approx(free["objective"].to_numpy())
-
-
-def test_schemas_know_heights():
-    assert (
-        checked.read(FOLDER / "experiments.yaml")["workspaces"]["hill"]["heights"]
-        == "workspaces/hill_heights.txt"
-    )
 
 
 def test_closed_corners_contradict_five_printed_means_on_the_reconstructed_maps():

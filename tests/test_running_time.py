@@ -9,14 +9,11 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from matplotlib.text import Text
-from panels import options_of, panels_of
+from panels import options_of
 
 from bezierplan.analysis import metrics, running_time
 from bezierplan.analysis.results import Results
-from bezierplan.figures import sheet
 from bezierplan.figures.panels import (
-    Sources,
     critical_difference,
     expected_running_time,
     performance_profile,
@@ -208,25 +205,3 @@ def test_ranks_over_problems_are_those_of_the_median_run():
     ranks = frame[frame["part"] == "rank"].set_index("method")["value"]
     assert ranks.to_dict() == {"a": 1, "b": 2, "c": 3}
     assert frame["units"].unique().tolist() == [5]
-
-
-@pytest.mark.parametrize(
-    ("kind", "options", "words"),
-    [
-        ("performance_profile", {"cost": "length"}, {"share of problems", "bad"}),
-        ("performance_profile", {"cost": "cpu_s", "within": 0.05}, {"share of problems", "bad"}),
-        (
-            "expected_running_time",
-            {"cost": "evaluations"},
-            {"expected evaluations", "within 5 %"},
-        ),
-    ],
-)
-def test_words_that_are_drawn(kind, options, words, tmp_path):
-    panels = panels_of([{"kind": kind, "experiment": "e", **options}])
-    file = str(tmp_path / "figure.csv")
-    sheet.write_data(sheet.data(panels, Sources({"e": TWO})), file)
-    scene = sheet.Scene({"e": {}}, {}, {"good": "the good one"}, "m")
-    figure = sheet.draw(panels, sheet.read_data(file), scene, 1)
-    drawn = {text.get_text() for text in figure.findobj(Text)} | {figure.get_label()}
-    assert words | {"the good one"} <= drawn
