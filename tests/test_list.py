@@ -12,14 +12,15 @@ def listed(capsys, *words):
 
 def test_list_shows_the_kinds_and_studies_that_are_named(capsys):
     first, *lines = listed(capsys, "methods", "song2016")
-    assert first.startswith("song2016: ")
-    assert {line.split()[0] for line in lines} == {"method"}
+    assert first.startswith("song2016, methods: ")
     # One line says what the method is.
-    smooth = next(line for line in lines if line.split()[1] == "smooth")
+    smooth = next(line for line in lines if line.split()[0] == "smooth")
     assert "Genetic algorithm over the cells of a grid" in smooth
     assert any("6 problems" in line for line in listed(capsys, "experiments", "song2016"))
     lines = listed(capsys, "claims", "tables")
-    assert {line.split()[0] for line in lines if line.startswith("  ")} == {"claim", "table"}
+    headings = {line.split(":")[0].split(", ")[1] for line in lines if not line.startswith("  ")}
+    assert headings == {"claims", "tables"}
+    assert any("population" in line for line in listed(capsys, "settings", "song2016"))
 
 
 def test_list_says_what_an_unknown_word_may_mean(capsys):

@@ -79,6 +79,6 @@ def test_names_are_explained(mine, capsys):
     main(["list", "metrics", "mine"])
     said = capsys.readouterr().out
     assert "length of the truly shortest path" in said
-    assert "\nexpanded " in said
+    assert "\n  expanded " in said
     main(["list", "worlds"])
-    assert "\ndrawn " in capsys.readouterr().out
+    assert "\n  drawn " in capsys.readouterr().out

@@ -168,7 +168,7 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
     missing = {name: each for name, each in declared.items() if name not in settings}
     if len(missing) > MOST_EXPLAINED:
         raise Fault(
-            f"{location} are missing: {', '.join(missing)}; `list --settings` explains those of "
+            f"{location} are missing: {', '.join(missing)}; `list settings` explains those of "
             "studies' planners, and STUDY/METHOD has the settings of a study's method"
         )
     if missing:
