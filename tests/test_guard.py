@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezierplan.commands.digest import row_text
+from bezierplan.analysis.run_tables import row_text
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
 from bezierplan.running.chunk import Chunk

@@ -10,6 +10,7 @@ import pytest
 from PIL import Image, ImageSequence
 
 from bezierplan.analysis import metrics, results
+from bezierplan.analysis.run_tables import equal
 from bezierplan.commands import replay
 from bezierplan.figures import animation
 from bezierplan.geometry import shortest_paths
@@ -124,7 +125,7 @@ def test_equal_seeds_give_equal_drives(tmp_path):
         pd.testing.assert_frame_equal(one[number].to_pandas(), other[number].to_pandas())
     stored = one[0].to_pylist()[1]
     found = replay.replay(stored["id"], {"mystudy": study})
-    assert replay.equal(found.runs.iloc[0], stored)
+    assert equal(found.runs.iloc[0], stored)
 
 
 def test_a_plan_starts_from_what_the_last_one_kept(tmp_path):
@@ -158,7 +159,7 @@ def test_a_drive_that_is_made_again_has_the_path_of_its_row(tmp_path):
 def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path):
     study = reading.load([written(tmp_path)])["mystudy"]
     file = tmp_path / "drive.gif"
-    replay.animate(replay.replay("mystudy/drives/across/mine/0", {"mystudy": study}), file)
+    animation.save_run(replay.replay("mystudy/drives/across/mine/0", {"mystudy": study}), file)
     assert file.stat().st_size < 500_000
     with Image.open(file) as found:
         frames = [

@@ -243,18 +243,13 @@ def two_walls():
 
 
 def test_a_turning_radius_is_kept_where_there_is_room_and_what_is_kept_is_told():
-    kept = bp.plan(two_walls(), turning_radius=1.5, strict=True)
+    kept = bp.plan(two_walls(), turning_radius=1.5)
     assert kept.feasible
     assert kept.turning_radius == 1.5
     assert kept.curvature == pytest.approx(1 / 1.5, rel=1e-3)
     tight = bp.plan(two_walls(), turning_radius=3.0)
     assert tight.feasible
     assert 0 < tight.turning_radius < 3
-    with pytest.raises(
-        ValueError,
-        match=r"turning_radius: 3 m asked, \d\.\d+ m kept; expected one that can",
-    ):
-        bp.plan(two_walls(), turning_radius=3.0, strict=True)
 
 
 def test_way_points_are_passed_in_their_order():
@@ -289,10 +284,6 @@ REFUSED = {
         (*WALL, "--robot-radius", "1"),
         "--robot-radius: 1: no place of the map is that far from its obstacles and its border",
     ),
-    "strict planner": (
-        (*WALL, "--method", "prm", "--strict"),
-        "--strict: only for rounded_shortest_path",
-    ),
     "via planner": (
         (*WALL, "--method", "prm", "--via", "1,1.8"),
         "--via: only for rounded_shortest_path and shortest_path",
@@ -315,12 +306,6 @@ REFUSED = {
         "--step: 1: only for --out with a file that ends in .csv, .geojson",
     ),
 }
-
-
-def test_strict_ends_with_status_1_where_a_turning_radius_has_no_room(capsys, tmp_path):
-    words = (*WALL, "--settings", "{turning_radius: 9}", "--strict")
-    told = refused(capsys, one_wall("geojson", tmp_path)[0], *words, status=1)
-    assert told.startswith("--settings: turning_radius: 9 m asked, ")
 
 
 @pytest.mark.parametrize("name", REFUSED)

@@ -7,7 +7,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from bezierplan.commands.digest import row_text
+from bezierplan.analysis.run_tables import row_text
 from bezierplan.running import execution
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.guard import interface, worker

@@ -14,8 +14,8 @@ import numpy as np
 from studies import study
 
 import bezierplan
+from bezierplan.analysis.run_tables import row_text
 from bezierplan.commands import replay
-from bezierplan.commands.digest import row_text
 from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import Region, region

@@ -11,7 +11,6 @@ from studies import studies
 
 from bezierplan import __main__
 from bezierplan.analysis import verification
-from bezierplan.commands import verify
 
 
 def rows(values, unit="m", n=50, width=1.0):
@@ -91,7 +90,7 @@ def test_independent_samples_of_one_distribution_seldom_fail(name, statistic):
 @pytest.fixture
 def made(tmp_path):
     """A folder with all tables as docs/outcome has them, and the file of song2016's."""
-    outcome = pd.read_csv(verify.OUTCOME)
+    outcome = pd.read_csv(verification.OUTCOME)
     for (study, table), rows in outcome.groupby(["study", "table"]):
         file = tmp_path / study / "paper" / f"{table}.comparison.csv"
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -100,7 +99,7 @@ def made(tmp_path):
 
 
 def test_docs_outcome_agrees_with_itself(made):
-    (first, last), sound = verify.against_outcome(made.parents[2])
+    (first, last), sound = verification.against_outcome(made.parents[2])
     n = re.fullmatch(r"(\d+) numbers compared, \1 equal, 0 different by more than chance", first)[1]
     assert int(n) > 20
     assert last.startswith("sound: ")
@@ -125,10 +124,10 @@ def test_a_wrong_planner_ends_the_command_with_status_1(made, capsys):
 def test_a_missing_table_is_named(made):
     made.unlink()
     with pytest.raises(FileNotFoundError, match=r"table1\.comparison\.csv: not there; make verify"):
-        verify.against_outcome(made.parents[2])
+        verification.against_outcome(made.parents[2])
 
 
 def test_docs_outcome_has_the_tables_with_published_numbers():
-    outcome = pd.read_csv(verify.OUTCOME)
+    outcome = pd.read_csv(verification.OUTCOME)
     printed = {(key, name) for key, own in studies().items() for name in own.with_published()}
     assert printed == set(zip(outcome["study"], outcome["table"]))

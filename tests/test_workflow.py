@@ -22,7 +22,7 @@ import starts
 import trees
 import yaml
 
-from bezierplan.commands.digest import run_tables, table_digest
+from bezierplan.analysis.run_tables import run_tables, table_digest
 
 ROOT = Path(__file__).parents[1]
 # Those of the paper, and the baseline that all studies share.

@@ -389,7 +389,6 @@ def plan(
     seed: int = 0,
     robot_radius: float = 0.0,
     via: Via = (),
-    strict: bool = False,
     **settings: Any,
 ) -> Answer:
     """Plan one path and judge it by exact geometry.
@@ -410,9 +409,6 @@ def plan(
     via : sequence of tuple of float
         Way points (x, y), in their order: the path joins paths from one to the next, with a corner
         where their directions differ. For the planner without a method and `shortest_path`.
-    strict : bool
-        Whether a turning radius that cannot be kept everywhere is an error. For the planner
-        without a method.
     **settings
         Settings in place of the method's own. Without a method: `turning_radius` and `offset`.
 
@@ -424,8 +420,7 @@ def plan(
     ------
     ValueError
         Names the argument or the setting and what is expected: an unknown method, a wrong setting,
-        a start in an obstacle, a map that the planner does not serve, a turning radius that cannot
-        be kept where `strict` asks for it.
+        a start in an obstacle, a map that the planner does not serve.
     TypeError
         For a problem that is no `Problem`, or a method that is none of the above.
 
@@ -451,10 +446,8 @@ def plan(
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
     places = tuple(map(tuple, np.array(via, dtype=float).tolist()))
     name, planner, module, preset = _planner(method, problem.workspace)
-    wishes = {"via": (places, planning.CHAINED), "strict": (strict, (planning.ROUNDED,))}
-    for wish, (value, allowed) in wishes.items():
-        if value and planner not in allowed:
-            raise ValueError(f"{wish}: only for {' and '.join(allowed)}; the planner is {name}")
+    if places and planner not in planning.CHAINED:
+        raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {name}")
     plain = {k: v.item() if isinstance(v, np.generic) else v for k, v in settings.items()}
     settings = preset | plain
     grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
@@ -477,12 +470,6 @@ def plan(
             f"shorter than {shortest.length:.12g}: the checker or the bound is wrong"
         )
     radius = answer.extra["least_radius"] if planner == planning.ROUNDED else math.nan
-    if strict and answer.path and not planning.keeps_radius(settings["turning_radius"], radius):
-        unit = placed.workspace.unit
-        raise planning.TightTurn(
-            f"settings: turning_radius: {settings['turning_radius']:g} {unit} asked, {radius:.6g} "
-            f"{unit} kept; expected one that can be kept, or not strict"
-        )
     return Answer(
         **judged,
         **{field: getattr(answer, field) for field in (*_PLAIN, "history")},

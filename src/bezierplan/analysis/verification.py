@@ -9,10 +9,18 @@ their difference. Bonferroni's correction over all numbers limits the probabilit
 fails by chance.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 from scipy import stats
 
+from bezierplan.places import TREE
+from bezierplan.running.inputs import tree
+
+OUTCOME = TREE / "docs" / "outcome" / "numbers_papers_size.csv"
+SHOWN = 10
+"""Numbers of which a failure tells."""
 ERROR_RATE = 0.01
 """How often a sound installation fails, at most: equal seeds make its runs more alike than
 independent ones.
@@ -80,3 +88,29 @@ def failed(found: pd.DataFrame) -> pd.DataFrame:
     probable first.
     """
     return found[found["p"] * found["p"].notna().sum() < ERROR_RATE].sort_values("p")
+
+
+def against_outcome(folder: Path) -> tuple[list[str], bool]:
+    """What is to be said of numbers beside those of docs/outcome, and whether they are sound.
+    Raises FileNotFoundError for a table that is not there.
+    """
+    outcome = pd.read_csv(OUTCOME)
+    pairs = []
+    for (study, table), rows in outcome.groupby(["study", "table"], sort=False):
+        file = folder / study / tree(table) / f"{table}.comparison.csv"
+        if not file.is_file():
+            raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
+        pair = compared(rows, pd.read_csv(file))
+        pairs.append(pair.assign(table=f"{study}/{table}"))
+    numbers = pd.concat(pairs, ignore_index=True)
+    tested, worst = numbers[numbers["p"].notna()], failed(numbers)
+    equal = int((tested["value_kept"] == tested["value_own"]).sum())
+    lines = [
+        f"{len(tested)} numbers compared, {equal} equal, {len(worst)} different by more than chance"
+    ]
+    if len(worst):
+        lines.append(worst.head(SHOWN).dropna(axis=1).to_string(index=False))
+    rate = f"with a probability of at most {ERROR_RATE:.0%}"
+    if len(tested) and worst.empty:
+        return [*lines, f"sound: a sound installation fails {rate}"], True
+    return [*lines, f"not sound: chance alone does this {rate}"], False

@@ -6,9 +6,11 @@ from typing import Any
 import pandas as pd
 
 from bezierplan.analysis import outcome
-from bezierplan.commands import replay, studies_of
+from bezierplan.commands import studies_of
+from bezierplan.figures import animation
 from bezierplan.schema.checked import Fault
 from bezierplan.study.page import settings_of
+from bezierplan.study.replays import replay
 
 PICTURES = ("song2016/paper/figure3.png", "song2016/beyond/identified.png")
 # The run of the README's animation, and its file.
@@ -29,7 +31,7 @@ def main() -> None:
             shutil.copyfile(outcome.FULL / picture, outcome.KEPT / f"{study}_{name}")
     except FileNotFoundError as error:
         raise Fault(f"{error.filename}: not there yet; `make outcome` makes it") from None
-    replay.animate(replay.replay(DRIVE, studies), outcome.KEPT / ANIMATION)
+    animation.save_run(replay(DRIVE, studies), outcome.KEPT / ANIMATION)
 
 
 def named(studies: dict[str, Any]) -> tuple[dict[str, str], dict[str, str]]:

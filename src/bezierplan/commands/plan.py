@@ -9,7 +9,6 @@ from bezierplan import api
 from bezierplan.analysis import answers
 from bezierplan.commands import arguments
 from bezierplan.commands.arguments import Place
-from bezierplan.running import planning
 from bezierplan.schema.checked import Fault
 
 PASSES_ON = (api.read_map, api.plan)
@@ -40,7 +39,7 @@ def main(
     Prints its length, its excess over the exact shortest path, its largest curvature, its clearance
     from the map's own obstacles and border, whether it is feasible and if not where it enters an
     obstacle, and the CPU time of the planner. The exit status is 0 for a feasible path, 1 if there
-    is or was found none that is as asked, and 2 for wrong input.
+    is or was found none, and 2 for wrong input.
 
     Parameters
     ----------
@@ -70,7 +69,7 @@ def main(
 
     The path of a robot with a radius of 0.4 m, which turns no tighter than 0.5 m, as points
     0.1 m apart:
-      plan gaps --start 2,10 --target 18,10 --robot-radius 0.4 --strict --step 0.1 \\
+      plan gaps --start 2,10 --target 18,10 --robot-radius 0.4 --step 0.1 \\
         --settings '{turning_radius: 0.5}' --out robot.csv
     """
     if out:
@@ -85,12 +84,9 @@ def main(
     room = api.read_map(map, **{name: options.pop(name) for name in names & options.keys()})
     problem = api.Problem("", room, start, target)
     settings = options.pop("settings", {})
-    try:
+    answer = api.plan(problem, **options, **settings)
+    if answer.cpu_s < _LONG:
         answer = api.plan(problem, **options, **settings)
-        if answer.cpu_s < _LONG:
-            answer = api.plan(problem, **options, **settings)
-    except planning.TightTurn as fault:
-        _fail(f"--{fault}")
     if out and answer.path:
         WRITERS[out.suffix](answer, out, **({} if step is None else {"step": step}))
     for name, text in answers.lines(answer).items():
@@ -104,7 +100,7 @@ def main(
 
 
 def _fail(message: str) -> NoReturn:
-    """End with status 1: the words are right, and there is no path as asked."""
+    """End with status 1: the words are right, and there is no path."""
     print(message, file=sys.stderr)
     sys.exit(1)
 

@@ -2,17 +2,12 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
 
 from bezierplan import api
-from bezierplan.analysis import answers, results
+from bezierplan.analysis import answers
+from bezierplan.analysis.run_tables import equal, stored_runs
 from bezierplan.commands import studies_of
-from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation
-from bezierplan.running import rides
-from bezierplan.running.chunk import chunk_files
 from bezierplan.study.replays import replay
 
 
@@ -42,30 +37,10 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     if reproduced.worlds:
         lines = {name: str(row[name]) for name in ("feasible", "length", "arrival", "stop")}
         picture = picture.with_suffix(".gif")
-        animate(reproduced, picture)
+        animation.save_run(reproduced, picture)
     else:
         answer = api.answer_of(reproduced, run)
         lines = answers.lines(answer)
         answer.to_picture(picture)
     for name, text in {**lines, "picture": picture}.items():
         print(f"{name:16}{text}")
-
-
-def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
-    """The rows with this name in the run tables below a folder, by file."""
-    study, experiment, _, method, _ = name.split("/")
-    files = chunk_files(folder, f"*/{study}/runs/{experiment}/{method}/*.parquet")
-    return {file: row for file in files for row in read_rows(file, name)}
-
-
-def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
-    """Whether a reproduced run equals a stored row, bit for bit."""
-    return row_text(run[list(stored)].to_dict()) == row_text(stored)
-
-
-def animate(reproduced: results.Results, file: Path) -> None:
-    """Save a reproduced drive as an animated gif."""
-    row = reproduced.runs.iloc[0]
-    problem, world = (part[row["problem"]] for part in (reproduced.problems, reproduced.worlds))
-    ride, verdict = rides.rerun(reproduced.jobs[row["method"]], row, problem, world)
-    animation.save(world, problem, ride, verdict, file)

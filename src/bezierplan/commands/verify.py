@@ -4,16 +4,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-import pandas as pd
-
 from bezierplan.analysis import verification
 from bezierplan.commands import config_of, cores, studies_of, study_named
-from bezierplan.places import TREE
-from bezierplan.running.inputs import tree
-
-OUTCOME = TREE / "docs" / "outcome" / "numbers_papers_size.csv"
-SHOWN = 10
-"""Numbers of which a failure tells."""
 
 
 def main(
@@ -51,7 +43,10 @@ def main(
     """
     if cores < 1:
         raise ValueError(f"cores: {cores}; expected a number of at least 1")
-    lines, sound = against_outcome(folder) if outcome else from_runs(folder, studies, cores, all_)
+    if outcome:
+        lines, sound = verification.against_outcome(folder)
+    else:
+        lines, sound = from_runs(folder, studies, cores, all_)
     print("\n".join(map(str, lines)))
     if not sound:
         sys.exit(1)
@@ -97,30 +92,3 @@ def from_runs(
     lines.append(f"digest {verdict.digest}; {', '.join(versions)}")
     lines.append(f"{len(faults)} values differ" if faults else "sound")
     return [*map(str, faults), *lines], not faults
-
-
-def against_outcome(folder: Path) -> tuple[list[str], bool]:
-    """What is to be said of numbers beside those of docs/outcome, and whether they are sound.
-    Raises FileNotFoundError for a table that is not there.
-    """
-    outcome = pd.read_csv(OUTCOME)
-    pairs = []
-    for (study, table), rows in outcome.groupby(["study", "table"], sort=False):
-        file = folder / study / tree(table) / f"{table}.comparison.csv"
-        if not file.is_file():
-            raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
-        pair = verification.compared(rows, pd.read_csv(file))
-        pairs.append(pair.assign(table=f"{study}/{table}"))
-    numbers = pd.concat(pairs, ignore_index=True)
-    tested, failed = numbers[numbers["p"].notna()], verification.failed(numbers)
-    equal = int((tested["value_kept"] == tested["value_own"]).sum())
-    lines = [
-        f"{len(tested)} numbers compared, {equal} equal, "
-        f"{len(failed)} different by more than chance"
-    ]
-    if len(failed):
-        lines.append(failed.head(SHOWN).dropna(axis=1).to_string(index=False))
-    rate = f"with a probability of at most {verification.ERROR_RATE:.0%}"
-    if len(tested) and failed.empty:
-        return [*lines, f"sound: a sound installation fails {rate}"], True
-    return [*lines, f"not sound: chance alone does this {rate}"], False

@@ -10,10 +10,12 @@ import numpy as np
 from bezierplan.figures import style
 from bezierplan.figures.panels import snapshot
 from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.running import rides
 
 if TYPE_CHECKING:
     from PIL import Image
 
+    from bezierplan.analysis.results import Results
     from bezierplan.running.simulation.motion_check import Verdict
     from bezierplan.running.simulation.robot import Ride
     from bezierplan.workspaces.problem import Problem
@@ -24,6 +26,14 @@ if TYPE_CHECKING:
 FRAMES = 45
 EACH, LAST = 120, 1500
 _SIDE, _DOTS, _COLOURS = 3.6, 100, 32
+
+
+def save_run(reproduced: Results, file: Path) -> None:
+    """Save the drive in the results of one run."""
+    row = reproduced.runs.iloc[0]
+    problem, world = (part[row["problem"]] for part in (reproduced.problems, reproduced.worlds))
+    ride, verdict = rides.rerun(reproduced.jobs[row["method"]], row, problem, world)
+    save(world, problem, ride, verdict, file)
 
 
 def save(world: World, problem: Problem, ride: Ride, verdict: Verdict, file: Path) -> None:

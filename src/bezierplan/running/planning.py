@@ -35,10 +35,6 @@ _STRAIGHT = 1e-8
 _SAME = 1e-9
 
 
-class TightTurn(ValueError):
-    """A path does not keep the turning radius that is asked for."""
-
-
 def preset(workspace: Workspace) -> dict[str, Any]:
     """Settings of the planner with a turning radius where none are given, the same for a map that
     has grown by a robot's radius.

@@ -1,0 +1,65 @@
+"""Run tables below a folder of results: their digests, and single rows of them."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+from bezierplan.running.chunk import chunk_files
+
+
+def run_tables(folder: Path) -> dict[str, list[Path]]:
+    """The chunk files of each run table below a folder, by `study/experiment/method`. Raises
+    FileNotFoundError if there is none.
+    """
+    tables: dict[str, list[Path]] = {}
+    for file in chunk_files(folder):
+        study, _, experiment, method, _ = file.parts[-5:]
+        tables.setdefault(f"{study}/{experiment}/{method}", []).append(file)
+    if not tables:
+        raise FileNotFoundError(
+            f"{folder}: no runs here; expected a folder of results, such as results/full"
+        )
+    return tables
+
+
+def table_digest(files: list[Path]) -> str:
+    """A hash over the rows of chunk files, sorted by id, each row once.
+
+    Neither the order of the files nor the split of repeats into chunks matters.
+    """
+    rows = {row_text(row) for file in files for row in _rows(file)}
+    return hashlib.sha256("\n".join(sorted(rows)).encode()).hexdigest()[:16]
+
+
+def row_text(row: dict[str, Any]) -> str:
+    """A row of a run table as text: columns in order of name, numbers in full precision."""
+    return json.dumps(row, sort_keys=True, default=lambda value: value.tolist())
+
+
+def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
+    """The rows with this name in the run tables below a folder, by file."""
+    study, experiment, _, method, _ = name.split("/")
+    files = chunk_files(folder, f"*/{study}/runs/{experiment}/{method}/*.parquet")
+    return {file: row for file in files for row in _rows(file, name)}
+
+
+def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
+    """Whether a reproduced run equals a stored row, bit for bit."""
+    return row_text(run[list(stored)].to_dict()) == row_text(stored)
+
+
+def _rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
+    """The rows of a chunk file, or those with one id. Raises ValueError if it has no runs."""
+    try:
+        return parquet.read_table(
+            file, filters=[("id", "=", identity)] if identity else None
+        ).to_pylist()
+    except pa.ArrowException:
+        raise ValueError(
+            f"{file}: not a whole Parquet file of runs; delete it: the workflow reproduces it"
+        ) from None
