@@ -79,11 +79,8 @@ cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, 
 archive: .cache/archive/ready ## results/full with code and environment as an RO-Crate, checked and zipped, into archive (ARGS: another scale)
 	$(<D)/bin/python workflow/archive/archive.py $(ARGS)
 
-# Pages show the alternatives that are there, so they are made again in the end.
-outcome: .venv/ready ## everything at scales full and extended, alternatives, then docs/outcome and the README's table
+outcome: .venv/ready ## everything at scales full and extended, then docs/outcome and the README's table
 	@$(UNLOCK)
-	$(SNAKEMAKE) all extended $(ARGS)
-	$(SNAKEMAKE) alternatives $(ARGS)
 	$(SNAKEMAKE) all extended $(ARGS)
 	$(RUN) -m bezierplan outcome
 

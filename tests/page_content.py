@@ -89,10 +89,8 @@ def job() -> PageJob:
             "listed": TableShown("a list", "a list.", SimpleNamespace(), {}),
         },
         figures={"figure1": FigureShown("Lengths", f"Lengths. {HOSTILE}")},
-        assumptions=[
-            AssumptionShown("O1", HOSTILE, 5, [8], "it fits", "inferred", "genes", ["C1"])
-        ],
-        files=["claims", "checks", "audit", "sensitivity"],
+        assumptions=[AssumptionShown("O1", HOSTILE, 5, [8], "it fits", "inferred", "genes")],
+        files=["claims", "checks", "audit"],
         experiments={},
         changed=[],
     )
@@ -109,18 +107,11 @@ def page(folder: Path) -> SimpleNamespace:
     checks = [CHECK | {"id": f"C{n}"} | more for n in (1, 2, 3) for more in ({}, OPEN)]
     row = {"study": "one", "baseline": "rounded", "conditions": 3, "feasible": 0.9, "cpu": 20.0}
     row |= {"feasible_baseline": 1.0, "compared": 3, "length": 1.1, "bent": 3}
-    tried = {"assumption": "O1", "alternative": 8, "claim": "C1", "verdict": "supported"}
     audited = {"item": "table1", "place": HOSTILE, "rule": "sum", "printed": 4, "limit": 3.5}
     files = {
         "one/claims": claims,
         "one/claim_checks": pd.DataFrame(checks),
         "one/audit": pd.DataFrame([audited | {"consistent": False, "arithmetic": HOSTILE}]),
-        "one/sensitivity": pd.DataFrame(
-            [
-                tried | {"verdict_alternative": "contradicted"},
-                tried | {"verdict_alternative": "contradicted", "verdict": "undecided"},
-            ]
-        ),
         "one/paper/table1.comparison": numbers[printed],
         "one/paper/table1": laid.assign(length=["10.715", "14.000"], objective=["10.715", ""]),
         "one/paper/table1.published": laid.assign(length="10.51", objective=["10.51", ""]),

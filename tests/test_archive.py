@@ -25,8 +25,7 @@ def tree(folder):
     for name in (
         "one/runs/e/m/0.parquet",
         "one/logs/page.log",
-        "one/sensitivity/O1/claims.csv",
-        "one/sensitivity.csv",
+        "one/claims.csv",
         "page.log",
     ):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
@@ -35,10 +34,10 @@ def tree(folder):
     return results
 
 
-def test_results_go_in_without_logs_and_without_runs_of_alternatives(archive, tmp_path):
+def test_results_go_in_without_logs(archive, tmp_path):
     results = tree(tmp_path)
     names = [str(file.relative_to(results)) for file in archive.result_files(results)]
-    assert names == ["index.html", "one/runs/e/m/0.parquet", "one/sensitivity.csv"]
+    assert names == ["index.html", "one/claims.csv", "one/runs/e/m/0.parquet"]
 
 
 def test_scale_without_a_page_is_one_line(tmp_path):

@@ -12,12 +12,7 @@ from studies import built, studies
 from bezierplan.geometry.region import region
 from bezierplan.running import execution
 from bezierplan.running.chunk import conditions
-from bezierplan.study.alternatives import (
-    alternatives,
-    methods_changed,
-    methods_of_claims,
-    with_alternative,
-)
+from bezierplan.study.alternatives import alternatives, concerned, with_alternative
 from bezierplan.study.jobs import job
 
 STUDIES = studies()
@@ -81,7 +76,7 @@ def test_alternative_changes_what_a_run_finds(key, name):
             else found_in_force(key, method, place)
         )
         for place in _places(study, name)
-        for method in methods_changed(study, name)
+        for method in concerned(study, alternatives(study)[name][0])
     )
 
 
@@ -93,61 +88,6 @@ def _places(study, name):
         study.problems[list(study.experiments[home(study, method)].problems)[-1]].settings.get(
             setting
         )
-        for method in methods_changed(study, name)
+        for method in concerned(study, alternatives(study)[name][0])
     }
     return [0] if value in own else [-1]
-
-
-def claims(study, *wanted):
-    return [claim for claim in study.claims if claim.id in wanted]
-
-
-@pytest.mark.parametrize(
-    ("claim", "experiment", "methods"),
-    [
-        ("C21", "maps", ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"]),
-        # `rest`: those of Table 5.
-        (
-            "C23",
-            "maps",
-            ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"],
-        ),
-        ("C36", "maps", ["cpso2_singer"]),
-        ("C35", "rivals", ["cpso1_singer", "cpso2_singer", "ferguson", "prm"]),
-        ("C38", "maps", None),  # `rest` over three tables
-    ],
-)
-def test_alternatives_run_only_what_their_claims_compare(claim, experiment, methods):
-    study = STUDIES["tharwat2018"]
-    every = [
-        name for name in study.experiments[experiment].methods if not study.methods[name].variant_of
-    ]
-    assert methods_of_claims(study, claims(study, claim), experiment) == (
-        every if methods is None else methods
-    )
-
-
-@pytest.mark.parametrize("key", STUDIES)
-def test_defaults_are_the_values_in_force(key):
-    """Of the methods that a default names, or of the study; on the problems that it names, if any,
-    which may have settings of their own.
-    """
-    study = STUDIES[key]
-    for assumption in study.assumptions:
-        if "setting" in assumption:
-            setting, default = assumption["setting"], assumption["default"]
-            for own in [study.problems[name].settings for name in assumption.problems] or [{}]:
-                if isinstance(default, dict):
-                    found = {method: (study.resolved(method) | own)[setting] for method in default}
-                else:
-                    found = (study.settings | own)[setting]
-                assert found == default, assumption["id"]
-
-
-@pytest.mark.parametrize("key", STUDIES)
-def test_what_goes_along_with_an_alternative_is_for_methods_that_it_changes(key):
-    study = STUDIES[key]
-    for assumption in study.assumptions:
-        if "with" in assumption:
-            changed = methods_changed(study, f"{assumption['id']}_{assumption['alternatives'][0]}")
-            assert set(assumption["with"]) <= set(changed), assumption["id"]

@@ -264,3 +264,31 @@ def test_orders_of_all_rows_together():
     *_, together = audit.of_orders("table1", frame, rule)
     assert (together["printed"], together["limit"], together["consistent"]) == (3, 3, True)
     assert together["arithmetic"].endswith(f"{(1 / 24) ** 3:.2g}")
+
+
+@pytest.mark.parametrize(
+    ("printed", "bound", "consistent"),
+    [
+        ("29.94", 29.9449, True),
+        ("29.94", 29.9451, False),
+        ("30", 30.49, True),
+        ("30", 30.51, False),
+        ("30.0", 30.049, True),
+        ("30.0", 30.051, False),
+        ("30.00", 30.0049, True),
+        ("30.00", 30.0051, False),
+        ("31", 30.0, True),
+    ],
+)
+def test_a_printed_length_may_lie_below_the_bound_by_half_a_unit_of_its_last_digit(
+    printed, bound, consistent, tmp_path
+):
+    file = tmp_path / "table1.csv"
+    file.write_text(
+        f"problem,method,metric,statistic,n,unit,value\nacross,plain,length,min,10,m,{printed}\nacross,plain,cpu_s,min,10,s,1\n"
+    )
+    bounds = {"table1": pd.DataFrame({"bound": [bound]}, index=["across"])}
+    (row,) = audit.below_bound({"table1": audit.read_published(str(file))}, bounds, {})
+    assert bool(row["consistent"]) == consistent
+    assert (row["printed"], row["limit"]) == (float(printed), bound)
+    assert row["place"].startswith("problem=across, method=plain")

@@ -422,16 +422,6 @@ def test_a_loaded_machine_changes_no_verdict_that_seconds_decide(
     assert verdict(key, claim, results)["verdict"] == idle
 
 
-def test_no_alternative_compares_seconds_of_runs_made_at_different_times():
-    for key in KEYS:
-        tried = {
-            identity for assumption in study(key).assumptions for identity in assumption.claims
-        }
-        for identity in tried & {identity for own, identity in BY_SECONDS if own == key}:
-            timed = [check for check in deciding(key, claim_of(key, identity)) if is_timed(check)]
-            assert all(column_of(check) != "method" for check in timed), f"{key}: {identity}"
-
-
 @pytest.mark.parametrize("truth", [True, False])
 @pytest.mark.parametrize(("key", "identity"), TIMED)
 def test_a_loaded_machine_changes_no_verdict(key, identity, truth, columns_alone):

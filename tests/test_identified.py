@@ -12,7 +12,6 @@ from studies import FOLDER, drawing
 
 from bezierplan.analysis import audit, identified, measures
 from bezierplan.analysis.claims import verdicts
-from bezierplan.analysis.sensitivity import changed
 from bezierplan.analysis.table_kinds import Identify
 from bezierplan.papers.song2016 import metrics as song2016
 from bezierplan.workspaces.grid import from_lines
@@ -131,13 +130,6 @@ def test_smooth_lengths_of_song2016_may_be_those_of_control_polygons():
 )
 def test_one_comparison_refutes_a_sentence_about_all_together(marks, verdict):
     assert verdicts.verdict(marks, marks, "together") == verdict
-
-
-def test_an_undecided_verdict_neither_agrees_nor_disagrees():
-    assert changed("undecided", "undecided") is None
-    assert changed("supported", "undecided") is None
-    assert changed("supported", "contradicted") is True
-    assert changed("no effect", "no effect") is False
 
 
 def test_signed_curvature_counts_left_turns_alone():

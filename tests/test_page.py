@@ -149,12 +149,6 @@ def test_numbers_and_claims_stand_beside_those_of_the_stored_outcome(content, fo
     assert {claim["verdict"] for claim in own.claims} == {"supported", "contradicted", "undecided"}
 
 
-def test_alternative_judged_beside_another_verdict_is_out_of_date(content):
-    first, *others = content.studies["one"].claims
-    assert [choice["changed"] for choice in first["choices"]] == [True]
-    assert not any(claim["choices"] for claim in others)
-
-
 def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last(content):
     laid = build.grid(content.studies["one"].tables[1], {})
     assert (laid.head, laid.decimals) == (["method", "length", "objective"], [2, 2])

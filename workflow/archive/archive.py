@@ -18,9 +18,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PROFILE = "https://w3id.org/ro/wfrun/{}/0.5"
-# Logs name places of the machine, and runs of alternatives are many files that
-# `snakemake alternatives` makes again.
-LEFT_OUT = ("logs", "sensitivity")
+# Logs name places of the machine.
+LEFT_OUT = ("logs",)
 MEDIA = {
     ".html": "text/html",
     ".csv": "text/csv",

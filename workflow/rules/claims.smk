@@ -55,55 +55,25 @@ rule audit:
         "../scripts/job.py"
 
 
-# One job per alternative: most of its chunks take less time than starting a process.
-rule alternative:
+# Which readings of a paper make its printed numbers likely, and what a true one would get.
+rule calibration:
     input:
-        runs=read(
-            of(jobs.alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
-        ),
-        judgements=read(
-            of(jobs.alternative), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
-        ),
-        problems=read(of(jobs.alternative), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.alternative), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        sources=sources(of(jobs.alternative)),
+        problems=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.parquet"),
+        bounds=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
+        sources=sources(of(jobs.readings)),
     output:
-        runs=directory(f"{RESULTS}/sensitivity/{{alternative}}/runs"),
-        claims=f"{RESULTS}/sensitivity/{{alternative}}/claims.csv",
-        checks=f"{RESULTS}/sensitivity/{{alternative}}/claim_checks.csv",
+        scores=f"{RESULTS}/readings/scores.csv",
+        calibration=f"{RESULTS}/readings/calibration.csv",
     log:
-        f"{RESULTS}/logs/sensitivity/{{alternative}}.log",
+        f"{RESULTS}/logs/calibration.log",
+    wildcard_constraints:
+        study=one_of(READ),
     conda:
         "../envs/bezierplan.yaml"
     resources:
         mem_mb=more(2000),
-        runtime=more(20),
+        runtime=more(60),
     params:
-        **params(jobs.alternative),
-    script:
-        "../scripts/job.py"
-
-
-rule sensitivity:
-    input:
-        claims=f"{RESULTS}/claims.csv",
-        alternatives=collect(
-            f"{RESULTS}/sensitivity/{{alternative}}/claims.csv",
-            alternative=lambda wildcards: alternatives.tried(STUDIES[wildcards.study]),
-            allow_missing=True,
-        ),
-    output:
-        report(
-            f"{RESULTS}/sensitivity.csv",
-            category="{study}",
-            labels={"item": "sensitivity", "shows": "which verdicts depend on which choice"},
-            caption="../report/claims.rst",
-        ),
-    log:
-        f"{RESULTS}/logs/sensitivity.log",
-    conda:
-        "../envs/bezierplan.yaml"
-    params:
-        **params(jobs.sensitivity),
+        **params(jobs.readings),
     script:
         "../scripts/job.py"

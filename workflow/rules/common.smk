@@ -17,7 +17,7 @@ os.environ.update(
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema import checked
-from bezierplan.study import alternatives, experiments, jobs, page, reading
+from bezierplan.study import experiments, jobs, page, reading
 
 # The directive `script` calls the function of this name: here a fork of one process with all
 # libraries takes the place of a new interpreter. Snakemake has no public way to say so; it would
@@ -121,7 +121,6 @@ wildcard_constraints:
     tree=one_of(["paper", "beyond"]),
     table=one_of(name for study in STUDIES.values() for name in study.tables),
     figure=one_of(name for study in STUDIES.values() for name in study.figures),
-    alternative=one_of(name for study in STUDIES.values() for name in alternatives.tried(study)),
 
 
 def params(make, **more):
@@ -185,7 +184,15 @@ def caption(wildcards, output):
 
 COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
 FOLLOWING = [key for key, study in STUDIES.items() if study.verdict_file()]
+READ = [key for key, study in STUDIES.items() if study.votes]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
+
+
+def calibrations(scale, studies):
+    """Files of calibrated readings, which take minutes: at scale extended alone."""
+    return [
+        f"results/{scale}/{key}/readings/calibration.csv" for key in studies if scale == "extended"
+    ]
 
 
 def shown(wildcards):
@@ -200,9 +207,6 @@ def shown(wildcards):
         "claims": CLAIMED,
         "claim_checks": CLAIMED,
         "audit": [key for key, study in STUDIES.items() if page.has_audit(study)],
-        "sensitivity": [
-            key for key, study in STUDIES.items() if page.tried(study, wildcards.scale, PREFIX)
-        ],
     }
     summary = [
         f"results/{wildcards.scale}/{name}" for name in ("summary.md", "wholes.csv") if COMPARED

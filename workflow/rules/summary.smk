@@ -8,7 +8,8 @@ rule baseline_comparison:
             f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
         ),
         judgements=read(
-            of(jobs.baseline_comparison), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"
+            of(jobs.baseline_comparison),
+            f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
         ),
         problems=read(of(jobs.baseline_comparison), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(
@@ -42,6 +43,7 @@ rule summary:
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
         audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
+        calibrations=lambda wildcards: calibrations(wildcards.scale, READ),
         sources=sources(of(jobs.summary)),
     output:
         numbers="results/{scale}/numbers.csv",
@@ -71,6 +73,7 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison")
         ],
         audit=f"{RESULTS}/audit.csv",
+        calibrations=lambda wildcards: calibrations(wildcards.scale, {wildcards.study} & {*READ}),
         sources=sources(of(jobs.verdict)),
     output:
         report(

@@ -6,7 +6,7 @@ or_exit(
     STUDIES,
     [
         *(rule.name for rule in workflow.rules),
-        *("all", "smoke", "beyond", "extended", "alternatives", "default"),
+        *("all", "smoke", "beyond", "extended", "readings", "default"),
     ],
 )
 
@@ -36,6 +36,12 @@ rule extended:
         "results/extended/index.html",
 
 
+# `extended` makes them too.
+rule readings:
+    input:
+        calibrations("extended", READ),
+
+
 # What `make verify-outcome` compares with docs/outcome.
 rule published:
     input:
@@ -45,15 +51,6 @@ rule published:
             for name, table in study.compared().items()
             if table.published
             for file in files_of("full", study, name)
-        ],
-
-
-rule alternatives:
-    input:
-        [
-            f"results/full/{key}/sensitivity.csv"
-            for key, study in STUDIES.items()
-            if alternatives.tried(study)
         ],
 
 

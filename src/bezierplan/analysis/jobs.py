@@ -14,12 +14,11 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
+from bezierplan.analysis.choices import Choice, Experiment
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Shown
-from bezierplan.analysis.sensitivity import Tried
 from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.machine.digest import content_digest, function_digest, module_of
-from bezierplan.running.chunk import Chunk
 from bezierplan.running.inputs import Shows
 
 
@@ -182,20 +181,15 @@ class Claims(Job):
         kinds = {check.test for claim in self.claims for check in claim.checks}
         return [*self.code, *(f"bezierplan.analysis.claims.kinds.{kind}" for kind in kinds)]
 
-    def files(self, input_files, output_files):
-        """Files of the results by experiment."""
-        from bezierplan.running import inputs
-
-        return inputs.experiments(self.shows, input_files)
-
     def run(self, input_files, output_files, threads):
         """Judge the claims."""
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import judge
+        from bezierplan.running import inputs
 
         judged, checks = judge.judge(
             self.claims,
-            results.read_all(self.files(input_files, output_files), self.repeats),
+            results.read_all(inputs.experiments(self.shows, input_files), self.repeats),
             results.published_tables(input_files.sources),
             self.artefacts,
             self.study,
@@ -210,46 +204,33 @@ class Claims(Job):
 
 
 @dataclass(frozen=True)
-class Alternative(Claims):
-    """Claims judged in their primary variant on runs with one alternative of an assumption, which
-    this job makes, and on the other methods' runs by default. One job, for most of its chunks take
-    less time than starting a process.
-    """
+class Readings(Job):
+    """The readings of a study, scored and calibrated."""
 
-    chunks: list[tuple[int, Chunk]]
-    """Numbers and chunks of runs that the alternative changes."""
+    study: str
+    tables: dict[str, Pivot]
+    votes: dict[str, list[str]]
+    """By table, the metrics whose printed numbers score."""
+    choices: list[Choice]
+    experiments: dict[str, Experiment]
+    folder: str
 
     def modules(self):
         """Planners as well."""
-        return [*super().modules(), *(module_of(chunk.planner) for _, chunk in self.chunks)]
-
-    def files(self, input_files, output_files):
-        """Files of the results by experiment, with the runs that are made here."""
-        from bezierplan.running import again, inputs
-
-        return again.with_chunks(
-            inputs.experiments(self.shows, input_files), self.chunks, Path(output_files.runs)
-        )
-
-
-@dataclass(frozen=True)
-class Sensitivity(Job):
-    """Verdicts under each alternative beside those under the defaults."""
-
-    described: dict[str, Tried]
+        chunks = [chunk for each in self.experiments.values() for chunk in each.scoring.values()]
+        return [*self.code, *(module_of(chunk.planner) for chunk in chunks)]
 
     def run(self, input_files, output_files, threads):
-        """Compare the verdicts."""
-        import pandas as pd
+        """Score the readings."""
+        from bezierplan.analysis import readings, study_code
+        from bezierplan.running import inputs
 
-        from bezierplan.analysis import sensitivity
-
-        tried = {
-            name: pd.read_csv(file)
-            for name, file in zip(self.described, input_files.alternatives, strict=True)
-        }
-        table = sensitivity.sensitivity(pd.read_csv(input_files.claims), tried, self.described)
-        self.write(table, output_files[0])
+        study_code.functions(self.code)
+        voting = readings.quantities(self.tables, self.votes, inputs.by_table(input_files.sources))
+        found = readings.read_problems(inputs.experiments(self.shows, input_files))
+        runner = readings.Runner(self.choices, self.experiments, Path(self.folder), found)
+        for table, file in zip(readings.of_study(self.study, voting, runner), output_files):
+            table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
 
 
 @dataclass(frozen=True)
@@ -327,6 +308,7 @@ class Summary(Job):
             input_files.baseline_comparison,
             dict(zip(self.verdicts, input_files.sources, strict=True)),
             list(input_files.audits),
+            list(input_files.calibrations),
             self.scale,
         )
         for table in ("numbers", "claims", "wholes"):
@@ -348,7 +330,8 @@ class Verdict(Job):
 
         tables = [pd.read_csv(file) for file in input_files.summary]
         files = {self.study: input_files.sources[0]}
-        texts = summary.verdicts(*tables, files, [input_files.audit])
+        calibrations = list(input_files.calibrations)
+        texts = summary.verdicts(*tables, files, [input_files.audit], calibrations)
         Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")
 
 

@@ -19,8 +19,8 @@ KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 # Between two sentences: the README has the first of a paper.
 _SENTENCE = re.compile(r"(?<=[.])\s+(?=[A-Z0-9])")
-# Of each study: what its printed numbers say alone; and its table of alternatives, if there is one.
-AUDIT, SENSITIVITY = "audit.csv", "sensitivity.csv"
+# Of each study: what its printed numbers say alone; and its readings, if they are scored.
+AUDIT, READINGS = "audit.csv", ("scores.csv", "calibration.csv")
 BASELINE_COMPARISON = "baseline_comparison.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 SCALES = {
@@ -43,10 +43,8 @@ def write(titles: Mapping[str, str], verdicts: Mapping[str, str], settings: pd.D
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:
         shutil.copyfile(RESULTS / key / AUDIT, KEPT / f"{key}_{AUDIT}")
-        kept, file = KEPT / f"{key}_{SENSITIVITY}", FULL / key / SENSITIVITY
-        kept.unlink(missing_ok=True)  # what was not made again is of another state
-        if file.is_file():
-            shutil.copyfile(file, kept)
+        for file in (RESULTS / key / "readings").glob("*.csv"):
+            shutil.copyfile(file, KEPT / f"{key}_{file.name}")
     claims.to_csv(KEPT / "claims.csv", index=False)
     settings.to_csv(KEPT / "settings.csv", index=False)
     follow = _following(KEPT, verdicts, numbers, claims, measured)
@@ -58,9 +56,10 @@ def write(titles: Mapping[str, str], verdicts: Mapping[str, str], settings: pd.D
 
 
 def _following(kept: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
-    """By study, what follows, from tables of numbers, claims and measures and a folder's audits."""
+    """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(kept / f"{key}_{AUDIT}") for key in verdicts]
-    return summary.verdicts(*tables, verdicts, audits)
+    calibrations = sorted(map(str, kept.glob(f"*_{READINGS[1]}")))
+    return summary.verdicts(*tables, verdicts, audits, calibrations)
 
 
 def table(kept: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:

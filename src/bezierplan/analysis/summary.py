@@ -35,15 +35,17 @@ def gathered(
     baseline_comparison_file: str,
     verdict_files: dict[str, str],
     audit_files: list[str],
+    calibration_files: list[str],
     scale: str,
 ) -> Summary:
     """The summary of all studies. comparison_files: by study and table. titles: of the studies.
-    verdict_files: by study. audit_files: of the same studies.
+    verdict_files: by study. audit_files: of the same studies. calibration_files: of those whose
+    readings were scored.
     """
     everything = numbers({name: pd.read_csv(file) for name, file in comparison_files.items()})
     claims = read_claims(claims_files)
     measured, whole = pd.read_csv(baseline_comparison_file), wholes.of_numbers(everything)
-    follow = verdicts(everything, claims, measured, verdict_files, audit_files)
+    follow = verdicts(everything, claims, measured, verdict_files, audit_files, calibration_files)
     text = report(everything, claims, measured, titles, follow, scale)
     return Summary(everything, claims, whole, text)
 
@@ -54,12 +56,15 @@ def verdicts(
     measured: pd.DataFrame,
     files: dict[str, str],
     audit_files: list[str],
+    calibration_files: list[str],
 ) -> dict[str, str]:
-    """By study, what follows. files: by study, that of its sentences; audit_files: their audits."""
+    """By study, what follows. files: that of its sentences; the others as in `gathered`."""
     if not files:
         return {}
     audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
     tables = {"numbers": numbers, "claims": claims, "baseline": measured, "audit": audits}
+    if calibration_files:
+        tables["calibration"] = pd.concat(map(pd.read_csv, calibration_files), ignore_index=True)
     return verdict.of_studies(files, tables | {"wholes": wholes.of_numbers(numbers)})
 
 

@@ -25,7 +25,7 @@ TAKES = {
     "count": len,
     "only": pd.Series.item,
 }
-Source = Literal["numbers", "claims", "audit", "wholes", "baseline"]
+Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "calibration"]
 
 
 class Value(Model):

@@ -76,6 +76,11 @@ def check(study: Study) -> None:
     for assumption in study.assumptions:
         with part():
             check_assumption(study, assumption, f"{location}: assumptions: {assumption.id}")
+    for table, voting in study.votes.items():
+        check_known(table, study.with_published(), f"{location}: votes")
+        for metric in voting:
+            measured = [entry.metric for entry in study.tables[table].values if entry.defined]
+            check_known(metric, measured, f"{location}: votes: {table}")
 
 
 def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], location: str) -> None:
@@ -429,15 +434,6 @@ def check_assumption(study: Study, assumption: Assumption, location: str) -> Non
     """An assumption's names are those of the study, and every alternative is a valid value of what
     it governs.
     """
-    for identity in assumption.claims:
-        check_known(identity, [claim.id for claim in study.claims], f"{location}: claims")
-        claim = next(each for each in study.claims if each.id == identity)
-        drives = [name for each in claim.checks for name in each.experiments if study.moves(name)]
-        if drives:
-            raise Fault(
-                f"{location}: claims: {identity}: is about drives ({drives[0]}), which "
-                "alternatives do not repeat"
-            )
     for name in assumption.problems:
         check_known(name, study.problems, f"{location}: problems")
     for name, key in assumption.workspace.items():

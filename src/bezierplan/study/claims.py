@@ -5,14 +5,14 @@ A claim is defined next to the code that judges it (`analysis.claims.claim`), an
 each kind of check.
 """
 
-import re
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from bezierplan.analysis.claims.claim import Claim, ClaimId
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.schema.model import (
     Line,
+    Metric,
     Model,
     Name,
     Setting,
@@ -21,7 +21,7 @@ from bezierplan.schema.model import (
     matching,
     wrong,
 )
-from bezierplan.study.experiments import PART, PART_EXPECTED, ProblemName
+from bezierplan.study.experiments import ProblemName
 
 
 class ClaimsFile(Model):
@@ -50,13 +50,18 @@ class Assumption(Model):
         description="where the default comes from: published, inferred, fitted (chosen because our "
         "numbers then come nearest to printed ones, so that these confirm nothing) or assumed"
     )
+    excluded_by: Line = Field(
+        None,
+        description="the place of the paper, in our words, that excludes the alternatives: a "
+        "reading with one is never the most likely",
+    )
     setting: Name = Field(None, description="the planner's setting that it governs")
     methods: listed(Name) = Field(
         [], description="the methods for which alone the alternatives of a setting are"
     )
     problems: listed(ProblemName) = Field(
         [],
-        description="the problems on which alone the alternatives of a setting are tried; the "
+        description="the problems on which alone the alternatives of a setting hold; the "
         "default is the value that is used on them",
     )
     workspace: dict[Name, Name] = Field(
@@ -70,11 +75,6 @@ class Assumption(Model):
         description="method → further settings that go along with every alternative",
         min_length=1,
     )
-    claims: listed(ClaimId) = Field(
-        [],
-        description="ids of the claims on which `snakemake alternatives` tries each alternative, "
-        "one at a time (`sensitivity.csv`)",
-    )
 
     @model_validator(mode="after")
     def _check_setting(self) -> "Assumption":
@@ -84,18 +84,11 @@ class Assumption(Model):
             "methods",
             "problems",
             "along",
-            "claims",
         }:
             raise wrong(
-                "setting: missing key; methods, problems, with and claims need the planner's "
+                "setting: missing key; methods, problems and with need the planner's "
                 "setting that is governed"
             )
-        for value in self.alternatives:
-            if self.setting is not None and not re.fullmatch(PART, str(value)):
-                raise wrong(
-                    f"alternatives: {value!r}: is part of a file's name; expected "
-                    f"{PART_EXPECTED}, or a number"
-                )
         return self
 
 
@@ -103,3 +96,8 @@ class AssumptionsFile(Model):
     """The file."""
 
     assumptions: list[Assumption] = Field(description="a list of assumptions", min_length=1)
+    votes: dict[Name, listed(Metric)] = Field(
+        {},
+        description="table → its metrics whose printed numbers score readings (`snakemake "
+        "readings`); those to which something was fitted have no vote",
+    )

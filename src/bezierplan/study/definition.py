@@ -56,6 +56,7 @@ class Study:
     figures: dict[str, Figure]
     claims: list[Claim]
     assumptions: list[Assumption]
+    votes: dict[str, list[str]]
 
     def accepted(self, method: str) -> dict[str, Any]:
         """Settings accepted by a method's planner, with their annotations."""

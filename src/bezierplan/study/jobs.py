@@ -8,16 +8,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.choices import Experiment
 from bezierplan.analysis.claims.material import Shown
 from bezierplan.analysis.jobs import (
-    Alternative,
     Audit,
     BaselineComparison,
     Claims,
     Job,
     Latex,
-    Sensitivity,
+    Readings,
     Summary,
     TableOfRuns,
     TableWithoutRuns,
@@ -433,42 +432,35 @@ def escaped(text: str) -> str:
 
 
 # --------------------------------------------------------------------------------------------------
-# Claims, audit, alternatives
+# Claims, readings, audit
 
 
 def claims(study: Study, scale: str) -> Claims:
     """The claims of a study."""
     claims = [claim for claim in study.claims if claim.scale in (None, scale)]
-    shows = {
-        name: chunks_of(study, name, study.experiments[name].methods, scale)
-        for name in alternatives.experiments_of_claims(claims)
-    }
-    return Claims(**_claims(study, claims, scale), shows=shows)
-
-
-def _claims(study: Study, claims: list[Claim], scale: str) -> dict[str, Any]:
-    """Fields of the job that judges some claims of a study."""
     experiments = {
         name: study.experiments[name] for name in alternatives.experiments_of_claims(claims)
     }
-    return {
-        "study": study.key,
-        "code": study.code_for("metrics", "functions"),
-        "claims": claims,
-        "artefacts": {
+    return Claims(
+        study.key,
+        claims,
+        {
             name: parts
             for name, artefact in (study.tables | study.figures).items()
             if (parts := _shown(artefact))
         },
-        "variant_of": study.variants(),
-        "paired": {name: experiment.paired for name, experiment in experiments.items()},
-        "paper_repeats": {
-            name: experiment.repeats["full"] for name, experiment in experiments.items()
+        study.variants(),
+        {name: experiment.paired for name, experiment in experiments.items()},
+        {name: experiment.repeats["full"] for name, experiment in experiments.items()},
+        study.labels,
+        {name: experiment.repeats[scale] for name, experiment in experiments.items()},
+        sources=study.published_files(),
+        code=study.code_for("metrics", "functions"),
+        shows={
+            name: chunks_of(study, name, experiment.methods, scale)
+            for name, experiment in experiments.items()
         },
-        "labels": study.labels,
-        "repeats": {name: experiment.repeats[scale] for name, experiment in experiments.items()},
-        "sources": study.published_files(),
-    }
+    )
 
 
 def _shown(artefact: Table | FigureOfStudy) -> list[Shown]:
@@ -484,34 +476,67 @@ def _shown(artefact: Table | FigureOfStudy) -> list[Shown]:
     ]
 
 
-def alternative(study: Study, scale: str, alternative: str) -> Alternative:
-    """The alternative of a name."""
-    tried = alternatives.with_alternative(study, alternative)
-    claims = alternatives.headline_claims(study, alternative)
-    changed = alternatives.methods_changed(study, alternative)
-    methods = {
-        name: alternatives.methods_of_claims(study, claims, name)
-        for name in alternatives.experiments_of_claims(claims)
+READ = 100
+"""Runs of each method on each problem that score a reading; at least two where layouts are drawn,
+of which `LAYOUTS` are for this, and the others print the numbers of hidden readings.
+"""
+LAYOUTS = 30
+
+
+def readings(study: Study, scale: str) -> Readings:
+    """The readings of a study."""
+    tables = {name: study.compared()[name] for name in study.votes}
+    experiments = {
+        name: _read_by(
+            study, name, [each for each in tables.values() if each.experiment == name], scale
+        )
+        for name in dict.fromkeys(each.experiment for each in tables.values())
     }
-    return Alternative(
-        **_claims(study, claims, scale),
-        chunks=[
-            (number, job(tried, name, method, scale, number))
-            for name, compared in methods.items()
-            for method in compared
-            if method in changed
-            for number in chunks(study, name, method, scale)
-        ],
-        shows={
-            name: chunks_of(study, name, [one for one in compared if one not in changed], scale)
-            for name, compared in methods.items()
-        },
+    methods = {method for each in experiments.values() for method in each.scoring}
+    homes = {home for each in experiments.values() for home in each.described.workspaces}
+    return Readings(
+        study.key,
+        tables,
+        study.votes,
+        alternatives.choices(study, methods),
+        experiments,
+        relative(study.folder),
+        sources=[*study.published_files(), *study.maps(homes)],
+        code=study.code_for("metrics", "worlds"),
+        shows={name: {} for name in experiments},
     )
 
 
-def sensitivity(study: Study, scale: str) -> Sensitivity:
-    """The alternatives of a study."""
-    return Sensitivity(alternatives.alternatives_described(study))
+def _read_by(study: Study, experiment: str, tables: list[Pivot], scale: str) -> Experiment:
+    """The runs of an experiment by which readings are scored: the methods of tables, in the paper's
+    interpretation of the world.
+    """
+
+    def shown(column: str, value: Any) -> bool:
+        return any(
+            value in one_or_list((table.where | table.primary).get(column, value))
+            for table in tables
+        )
+
+    size = study.experiments[experiment].repeats["full"]
+    scoring, printing = {}, {}
+    for method in study.experiments[experiment].methods:
+        if not shown("method", method):
+            continue
+        chunk = job(study, experiment, method, scale, 0)
+        vary = {key: [each for each in own if shown(key, each)] for key, own in chunk.vary.items()}
+        met = {
+            name: place
+            for name, place in chunk.problems.items()
+            if shown("problem", name) and shown("workspace", place["workspace"])
+        }
+        first = {name: place for name, place in met.items() if place.get("layout", 0) < LAYOUTS}
+        others = {name: place for name, place in met.items() if name not in first} or met
+        drawn = any("layout" in place for place in met.values())
+        last = max(2, READ // LAYOUTS) if drawn else READ
+        scoring[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
+        printing[method] = chunk._replace(vary=vary, problems=others, repeats=[last, last + size])
+    return Experiment(scoring, printing, problems_job(study, experiment, scale))
 
 
 def audit(study: Study, scale: str) -> Audit:

@@ -47,15 +47,6 @@ def shown_of(study: Study, scale: str, root: str = "") -> list[str]:
     )
 
 
-def tried(study: Study, scale: str, root: str = "") -> bool:
-    """Whether alternatives have been tried on the claims of a study: the page does not ask for
-    that.
-    """
-    return (
-        bool(study.claims) and Path(f"{root}results/{scale}/{study.key}/sensitivity.csv").is_file()
-    )
-
-
 def shows(studies: Studies, scale: str, root: str = "") -> Shows:
     """The results behind all tables, figures and claims that the page shows."""
     behind: Shows = {}
@@ -104,7 +95,6 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
         "claims": bool(study.claims),
         "checks": bool(study.claims),
         "audit": has_audit(study),
-        "sensitivity": tried(study, scale, root),
     }
     behind = {
         name: (

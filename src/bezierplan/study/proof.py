@@ -16,7 +16,7 @@ from bezierplan.running import rows
 from bezierplan.running.judge.recheck import Fault, Task, sha256
 from bezierplan.schema import checked
 from bezierplan.schema.checked import check_known
-from bezierplan.study import alternatives, jobs
+from bezierplan.study import jobs
 from bezierplan.study.experiments import SCALES
 from bezierplan.study.jobs import Studies
 
@@ -32,7 +32,7 @@ _ENDINGS = {".csv", ".tex", ".md", ".html", ".parquet"}
 """Those by which Snakemake is asked for all of them."""
 _RULES = (
     *("problems", "table", "unprinted_table", "listing", "latex", "figure", "claims", "audit"),
-    *("sensitivity", "baseline_comparison", "summary", "verdict", "page"),
+    *("baseline_comparison", "summary", "verdict", "page"),
 )
 
 
@@ -57,7 +57,7 @@ def tasks(studies: Studies, folder: Path) -> list[Task]:
     FileNotFoundError without runs.
     """
     scale = folder.resolve().name
-    listed = [*_runs(studies, folder, scale), *_alternatives(studies, folder, scale)]
+    listed = [*_runs(studies, folder, scale)]
     if not listed:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
@@ -80,15 +80,6 @@ def _runs(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
         chunks = jobs.judgement(studies[key], scale, experiment, method).chunks
         files = {str(place / f"{number}.parquet"): chunk for number, chunk in enumerate(chunks)}
         yield Task(_problems(folder, key, experiment), files)
-
-
-def _alternatives(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
-    for place in sorted(folder.glob("*/sensitivity/*/runs")):
-        key, _, name, _ = place.relative_to(folder).parts
-        check_known(name, alternatives.tried(studies[key]), f"{place}: alternative")
-        for number, chunk in jobs.alternative(studies[key], scale, name).chunks:
-            file = place / chunk.experiment / chunk.method / f"{number}.parquet"
-            yield Task(_problems(folder, key, chunk.experiment), {str(file): chunk})
 
 
 def _listed(folder: Path) -> dict[str, str]:

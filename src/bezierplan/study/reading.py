@@ -138,6 +138,7 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
         planner_settings=of_planners,
         claims=claims.claims if claims else [],
         assumptions=assumptions.assumptions if assumptions else [],
+        votes=assumptions.votes if assumptions else {},
         **declared,
     )
 

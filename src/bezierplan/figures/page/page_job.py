@@ -53,7 +53,6 @@ class AssumptionShown(NamedTuple):
     reason: str
     source: str
     setting: str | None
-    claims: list[str]
 
 
 class ExperimentShown(NamedTuple):
@@ -101,9 +100,8 @@ FILES = {
     "claims": "claims.csv",
     "checks": "claim_checks.csv",
     "audit": "audit.csv",
-    "sensitivity": "sensitivity.csv",
 }
-"""Tables of a study: claims, comparisons of claims, audit, alternatives."""
+"""Tables of a study: claims, comparisons of claims, audit."""
 
 
 class PageJob(NamedTuple):

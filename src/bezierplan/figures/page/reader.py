@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import baseline_comparison, sensitivity, tables
+from bezierplan.analysis import baseline_comparison, tables
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import why
@@ -77,9 +77,7 @@ def studies(
             tables=own_tables,
             figures=[_figure(key, name, each, folder) for name, each in described.figures.items()],
             methods=[_method(key, name, each) for name, each in described.methods.items()],
-            assumptions=[
-                _assumption(key, each._asdict(), claims) for each in described.assumptions
-            ],
+            assumptions=[_assumption(key, each._asdict()) for each in described.assumptions],
             audit=records(files.get("audit", pd.DataFrame())),
             baseline=records(baseline.assign(cornered=np.isinf(baseline["curvature"])))
             if len(baseline)
@@ -241,27 +239,19 @@ def _claims(
     study: str, described: StudyShown, files: dict[str, pd.DataFrame], stored: pd.DataFrame
 ) -> list[Row]:
     """Claims in their primary variant. Added: address, rule (what its count means), why,
-    comparisons, interpretations (its other variants), choices (alternatives that were tried),
-    shown_in, stored (the row of the README's outcome).
+    comparisons, interpretations (its other variants), shown_in, stored (the row of the README's
+    outcome).
     """
     if "claims" not in files:
         return []
     compared: dict[tuple, list[Row]] = {}
     for row in records(files.get("checks", pd.DataFrame())):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
-    tried = records(files.get("sensitivity", pd.DataFrame()))
     others = {row["id"]: row for row in records(stored) if row["primary"]}
     claims, there = [], described.tables.keys() | described.figures.keys()
     for _, rows in files["claims"].groupby("id", sort=False):
         every = records(rows)
         claim = next(row for row in every if row["primary"])
-        # Alternatives that were judged beside another verdict than today's are out of date.
-        choices = [
-            row
-            | {"changed": sensitivity.changed(row["verdict"], row["verdict_alternative"]) is True}
-            for row in tried
-            if row["claim"] == claim["id"] and row["verdict"] == claim["verdict"]
-        ]
         comparisons = compared.get((claim["id"], claim["variant"]), [])
         checks = described.checks.get(claim["id"], [])
         for each in comparisons:
@@ -287,7 +277,6 @@ def _claims(
                     for row in every
                     if not row["primary"]
                 ],
-                "choices": choices,
                 "shown_in": [
                     name
                     for name in (claim["artefact"] or "").replace(",", " ").split()
@@ -340,14 +329,9 @@ def labelled(words: str, labels: dict[str, str]) -> str:
     return ", ".join(parts)
 
 
-def _assumption(study: str, row: Row, claims: list[Row]) -> Row:
-    """A detail that the paper leaves open, with the alternatives that were tried on claims."""
+def _assumption(study: str, row: Row) -> Row:
+    """A detail that the paper leaves open."""
     default = row["default"]
     if isinstance(default, dict):
         default = ", ".join(f"{name}: {value}" for name, value in default.items())
-    tried = [each for claim in claims for each in claim["choices"]]
-    return row | {
-        "address": address(study, row["id"]),
-        "default": default,
-        "choices": [each for each in tried if each["assumption"] == row["id"]],
-    }
+    return row | {"address": address(study, row["id"]), "default": default}

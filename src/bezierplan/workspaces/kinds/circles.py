@@ -19,6 +19,7 @@ class Options(Workspace):
     circles: list[Annotated[list[Number], of_length(3, "[x, y, radius]")]] = Field(
         description="a list of [x, y, radius]"
     )
+    radius: Number = Field(None, description="that of all circles, in the place of their own")
 
 
 def load(description: dict, folder: Path) -> Circles:
@@ -28,6 +29,7 @@ def load(description: dict, folder: Path) -> Circles:
     check_numbers(np.array(limits), "bounds")
     check_bounds(limits)
     table = np.array(description["circles"], dtype=float).reshape(-1, 3)
+    table[:, 2] = description.get("radius", table[:, 2])
     check_numbers(table, "circles")
     centres, radii = table[:, :2], table[:, 2]
     inside = np.clip(centres, limits[::2], limits[1::2])

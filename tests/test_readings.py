@@ -1,0 +1,104 @@
+"""Readings of a paper: what they change, how they score, whether the search finds a true one."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from studies import built, studies
+
+from bezierplan.analysis import readings
+from bezierplan.analysis.choices import Choice
+from bezierplan.running import problems
+from bezierplan.study import jobs
+
+STUDIES = studies()
+
+
+def job(key):
+    made = jobs.readings(STUDIES[key], "full")
+    files = {name: f"{STUDIES[key].folder}/published/{name}.csv" for name in made.tables}
+    return made, readings.quantities(made.tables, made.votes, files)
+
+
+def test_a_reading_changes_its_settings_on_its_problems_and_what_goes_along():
+    made, _ = job("meledje")
+    chunk = made.experiments["operators"].scoring["random"]
+    second = readings.under(chunk, {"M15b": 50}, made.choices)
+    assert second.settings == chunk.settings
+    assert "generations" not in second.problems["env1_initial"]["settings"]
+    changed = second.problems["env2_initial"]["settings"].items()
+    assert changed >= {"generations": 50, "stall": 100, "population": 80}.items()
+    both = readings.under(chunk, {"M10": 10, "M15": 200}, made.choices).settings
+    assert (both["generations"], both["stall"]) == (200, 10)
+
+
+def quantity(counted, sizes, decimals=2):
+    printed = pd.DataFrame({"n": sizes, "value": 0.0})
+    return readings.Quantity("", {}, {}, "", counted, decimals, None, [], printed)
+
+
+def test_densities_are_densities_of_relative_errors_and_of_counts():
+    counts = [quantity(True, [100] * 101, 0)]
+    ours = np.tile([0.3, 0.0, 0.0], (101, 1))
+    assert np.exp(readings._densities(counts, np.arange(101.0), ours)).sum() == pytest.approx(1)
+    errors = np.linspace(-20, 20, 400_001)
+    means = [quantity(False, [1] * len(errors))]
+    ours = np.column_stack([10 * (1 - errors), *2 * [np.full(len(errors), 0.5)]])
+    found = np.exp(readings._densities(means, np.full(len(errors), 10.0), ours))
+    assert np.trapezoid(found, errors) == pytest.approx(1, abs=1e-4)
+
+
+def test_a_score_hardly_depends_on_seeds_or_on_how_many_runs_are_ours():
+    """Less than a tenth of the distance to the default's."""
+    made, voting = job("tharwat2018")
+    voting = [each for each in voting if each.experiment == "maps" and each.metric == "objective"]
+    methods = ["cpso1_singer", "cpso2_singer"]
+    voting = [
+        each._replace(printed=each.printed[each.printed["method"].isin(methods)]) for each in voting
+    ]
+    maps = made.experiments["maps"]
+    problem = {"equal": built(STUDIES["tharwat2018"], "maps", "equal")}
+    found = {"maps": (problem, problems.bounds_of(problem).to_pandas())}
+    printed = readings._theirs(voting)
+
+    def score(reading, first, last):
+        chunks = {name: maps.scoring[name]._replace(repeats=[first, last]) for name in methods}
+        runner = readings.Runner(made.choices, {"maps": maps._replace(scoring=chunks)}, "", found)
+        return readings.scored(voting, printed, readings.measured(voting, runner.results(reading)))
+
+    reading = {"O21b": "control_points"}
+    (one, error), (other, _), (many, _) = (
+        score(reading, *runs) for runs in ([0, 100], [100, 200], [200, 1200])
+    )
+    distance = abs(one - score({}, 0, 100)[0])
+    assert max(abs(one - other), abs(one - many), error) < distance / 10
+
+
+def test_the_search_finds_a_hidden_reading_and_no_excluded_one(monkeypatch):
+    """Every choice moves one of three means; the paper's numbers are those of an excluded one."""
+    choices = [
+        Choice(name, [1, 2], "tries", {"mine": {}}, [], {}, "Section 1" if name == "O3" else "")
+        for name in ("O1", "O2", "O3")
+    ]
+    voting = [quantity(False, [10.0] * 3)]
+    voting[0].printed["value"] = [10.0, 10.0, 14.0]
+
+    class Runner:
+        def __init__(self):
+            self.choices = choices
+
+        def results(self, reading, hidden=None):
+            return None if reading == {"O1": 1, "O2": 1} else reading
+
+    def measured(voting, reading):
+        means = [10.0 + 2 * reading.get(name, 0) for name in ("O1", "O2", "O3")]
+        return np.tile(np.column_stack([means, *2 * [np.full(3, 0.01)]]), (6, 1, 1))
+
+    monkeypatch.setattr(readings, "measured", measured)
+    scores, calibration = readings.of_study("walks", voting, Runner())
+    assert scores["reading"][0] == "O3=2"
+    assert scores["excluded_by"][0] == "Section 1"
+    assert "O1=1, O2=1" not in [*scores["reading"]]
+    paper, hidden = calibration.iloc[0], calibration[calibration["hidden"]]
+    assert (paper["found"], paper["best"] < paper["default"] + 1) == ("default", True)
+    assert [*hidden["place"]] == [1] * len(hidden)
+    assert paper["best"] < hidden["score"].min()
