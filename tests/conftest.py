@@ -52,7 +52,6 @@ LONGEST = (
     "test_readme.py",
     "test_truth.py",
     "test_figures.py",
-    "test_hostile_faults.py",
     "test_claims_each_way.py",
     "test_bounds.py",
     "test_docs_site.py",

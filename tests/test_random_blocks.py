@@ -120,7 +120,7 @@ def test_maps_without_a_block_are_empty():
         (
             {},
             {"target": [21, 20]},
-            "target: \\[21, 20\\]: outside the map; expected x and y from 0 to 20",
+            "target: \\[21, 20\\]: outside the map; expected x from 0 to 20, y from 0 to 20",
         ),
     ],
 )

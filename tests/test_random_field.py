@@ -113,6 +113,6 @@ def test_fields_that_cut_off_the_target_are_drawn_again():
 
 def test_ends_outside_are_told():
     with pytest.raises(
-        ValueError, match=r"target: \[101, 100\]: outside the field; expected x and y from 0 to 100"
+        ValueError, match=r"target: \[101, 100\]: outside the map; expected x from -0.5 to 100.5"
     ):
         random_field.field(FIELD, PROBLEM | {"target": [101, 100]}, "study/dense")

@@ -381,7 +381,7 @@ def test_problems_in_random_circles_have_free_ends():
 
 
 def test_layout_that_cannot_be_drawn_is_given_up():
-    with pytest.raises(ValueError, match="no circle leaves start and target free"):
+    with pytest.raises(ValueError, match="radius: no circle keeps 40 away from start and target"):
         random_circles.layout(RANDOM | {"radius": 40.0}, "study/random", 0, [(0, 0), (4, 6)])
 
 

@@ -38,20 +38,13 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     square = 0.0, side, 0.0, side
     empty = from_circles(Circles(square, np.empty((0, 2)), np.empty(0), description["unit"]))
     ends = np.array([problem["start"], problem["target"]], dtype=float)
-    cells = []
-    for key, end in zip(("start", "target"), ends):
-        cell = empty.cell_of(*end)
-        if cell is None:
-            raise ValueError(
-                f"{key}: {problem[key]}: outside the field; expected x and y from 0 to {side}"
-            )
-        cells.append(cell)
+    cells = end_cells(empty, problem)
     measure = description.get("radius_side", "own")
     radius = description["radius"] * (side if measure == "own" else measure)
     for _ in range(MOST_FIELDS):
         # Each draw of a nested field begins anew, however many numbers the last one took.
         draw = rng.spawn(1)[0] if nested else rng
-        centres = drawn_centres(
+        centres = random_centres(
             draw, problem["obstacles"], square, ends, radius + description["clear_ends"]
         )
         radii = np.full(len(centres), radius)
@@ -64,7 +57,24 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     )
 
 
-def drawn_centres(
+def end_cells(grid: Grid, problem: dict) -> list[tuple[int, int]]:
+    """Cells (row, column) of a problem's start and target. Raises ValueError, naming the key, if
+    one of them is not on the map.
+    """
+    cells = []
+    for key in ("start", "target"):
+        cell = grid.cell_of(*map(float, problem[key]))
+        if cell is None:
+            left, right, bottom, top = grid.bounds
+            raise ValueError(
+                f"{key}: {problem[key]}: outside the map; expected x from {left:g} to {right:g}, "
+                f"y from {bottom:g} to {top:g}"
+            )
+        cells.append(cell)
+    return cells
+
+
+def random_centres(
     rng: np.random.Generator,
     count: int,
     bounds: tuple[float, float, float, float],

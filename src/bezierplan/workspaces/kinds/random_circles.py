@@ -2,7 +2,6 @@
 all methods and experiments.
 """
 
-import math
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from bezierplan.schema.model import NotNegative, is_number, value
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
 from bezierplan.workspaces.limits import SMALLEST_FEATURE, check_bounds
-from bezierplan.workspaces.random_field import MOST_DRAWS
+from bezierplan.workspaces.random_field import random_centres
 from bezierplan.workspaces.seeds import generator
 
 RADIUS = (
@@ -44,8 +43,7 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
     """The first so many circles of a layout. Raises ValueError for bounds without room, and if no
     free place is found.
     """
-    x_low, x_high, y_low, y_high = map(float, description["bounds"])
-    check_bounds((x_low, x_high, y_low, y_high))
+    check_bounds(_bounds(description))
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
     return first(layout(description, name, problem["layout"], ends), problem["obstacles"])
 
@@ -58,27 +56,19 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
     Circles may overlap each other. Raises ValueError if no free place is found.
     """
     rng = generator(name, number)
-    x_low, x_high, y_low, y_high = map(float, description["bounds"])
+    bounds = _bounds(description)
     given, gap = description["radius"], description.get("gap", 0)
     centres, radii = [], []
     for _ in range(description["circles"]):
         radius = float(rng.uniform(*given) if isinstance(given, list) else given)
-        for _ in range(MOST_DRAWS):
-            centre = rng.uniform((x_low, y_low), (x_high, y_high))
-            if all(math.dist(centre, end) > radius + gap for end in ends):
-                break
-        else:
-            raise ValueError(
-                f"radius: {radius:g}: no circle leaves start and target free in {MOST_DRAWS} draws"
-            )
-        centres.append(centre)
+        centres.append(random_centres(rng, 1, bounds, np.array(ends), radius + gap)[0])
         radii.append(radius)
-    return Circles(
-        (x_low, x_high, y_low, y_high),
-        np.array(centres),
-        np.array(radii),
-        description["unit"],
-    )
+    return Circles(bounds, np.array(centres), np.array(radii), description["unit"])
+
+
+def _bounds(description: dict) -> tuple[float, float, float, float]:
+    x_low, x_high, y_low, y_high = map(float, description["bounds"])
+    return x_low, x_high, y_low, y_high
 
 
 def first(circles: Circles, count: int) -> Circles:

@@ -10,6 +10,7 @@ from pydantic import Field
 from bezierplan.schema.model import Count, Positive
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import Workspace
+from bezierplan.workspaces.random_field import end_cells
 from bezierplan.workspaces.seeds import generator
 
 # Number of maps drawn before giving up, and number of blocks tried for one map.
@@ -54,12 +55,7 @@ def candidates(description: dict, problem: dict, name: str) -> Iterator[Grid]:
     side = problem["side"]
     empty = Grid(np.zeros((side, side), dtype=bool), 1.0, description["unit"])
     ends = np.zeros((side, side), dtype=bool)
-    for key in ("start", "target"):
-        cell = empty.cell_of(*problem[key])
-        if cell is None:
-            raise ValueError(
-                f"{key}: {problem[key]}: outside the map; expected x and y from 0 to {side}"
-            )
+    for cell in end_cells(empty, problem):
         ends |= (
             np.abs(np.indices(ends.shape) - np.reshape(cell, (2, 1, 1))).max(axis=0)
             < description["clear_ends"]
@@ -72,8 +68,8 @@ def candidates(description: dict, problem: dict, name: str) -> Iterator[Grid]:
             yield Grid(occupied, 1.0, description["unit"])
 
 
-def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: int) -> np.ndarray:
-    """Occupied cells (side, side), `wanted` of them, or fewer if the blocks run out. ends: bool
+def _blocks(rng: np.random.Generator, ends: np.ndarray, most: int, largest: int) -> np.ndarray:
+    """Occupied cells (side, side), `most` of them, or fewer if the blocks run out. ends: bool
     (side, side), cells to leave free.
     """
     side = len(ends)
@@ -88,10 +84,10 @@ def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: in
         1 << ((row + 1) * stride + column + 1) for row, column in np.argwhere(ends).tolist()
     )
     for (height, width), (row, column) in zip(sizes.tolist(), corners.tolist()):
-        if count == wanted:
+        if count == most:
             break
         block = _rectangle(height, width, stride) << ((row + 1) * stride + column + 1)
-        if count + height * width <= wanted and not taken & block:
+        if count + height * width <= most and not taken & block:
             taken |= _rectangle(height + 2, width + 2, stride) << (row * stride + column)
             occupied[row : row + height, column : column + width] = True
             count += height * width

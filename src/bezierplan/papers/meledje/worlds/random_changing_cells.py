@@ -41,9 +41,7 @@ def world(description: dict, problem: dict, name: str, folder: Path, length: Any
     from bezierplan.workspaces.worlds import ChangingCells
 
     first = grid.load({key: description[key] for key in ("unit", "cell", "file")}, folder)
-    start, target = (first.cell_of(*map(float, problem[end])) for end in ("start", "target"))
-    if start is None or target is None:
-        raise ValueError("start or target lies outside the map")
+    start, target = random_field.end_cells(first, problem)
     moments = np.arange(
         description["every"], description["steps"], description["every"], dtype=float
     )
