@@ -54,8 +54,9 @@ lint: .venv/ready-dev ## code style, import layers and types
 	$(RUN) .venv/bin/lint-imports --no-logo --cache-dir .cache/import-linter
 	$(RUN) -m mypy
 
-docs: .venv/ready-dev ## the documentation as a site, into .cache/docs/html; every example is run
-	$(RUN) -m sphinx --quiet --fail-on-warning --builder html --doctree-dir .cache/docs/doctrees docs .cache/docs/html
+docs: .venv/ready-dev ## the documentation with the results as a site, into .cache/docs/html; without results, of scale smoke
+	@ls results/*/index.html >/dev/null 2>&1 || $(SNAKEMAKE) smoke
+	$(RUN) -m sphinx --fresh-env --quiet --fail-on-warning --builder html --doctree-dir .cache/docs/doctrees docs .cache/docs/html
 	@echo 'Documentation: .cache/docs/html/index.html'
 
 wheel: .venv/ready-dev ## a wheel for pip, into dist

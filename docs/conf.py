@@ -19,10 +19,9 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.doctest",
-    "sphinx.ext.mathjax",
     "sphinx.ext.viewcode",
 ]
-exclude_patterns = ["outcome/*.md", "python.md", "*.in.md"]
+exclude_patterns = ["outcome/*.md", "prose", "python.md", "*.in.md"]
 suppress_warnings = ["myst.header"]
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence", "attrs_inline"]
 myst_heading_anchors = 3
@@ -47,6 +46,21 @@ html_theme_options = {
 }
 html_context = {"default_mode": "auto"}
 # Pages without pages below them.
-html_sidebars = {name: [] for name in ("start", "verdicts", "glossary", "faq", "cite", "changelog")}
-html_static_path = []
+html_sidebars = {
+    name: []
+    for name in (
+        "index",
+        "use",
+        "gallery",
+        "start",
+        "verdicts",
+        "glossary",
+        "faq",
+        "cite",
+        "changelog",
+    )
+}
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_math_renderer = "mathml"
 html_show_sourcelink = False

@@ -1,7 +1,8 @@
-"""Pages of the documentation that follow from the code, the studies' files and the kept outcome:
-one a method, one a paper; and the examples of all pages, which are run.
+"""A Sphinx extension: before a build it writes the pages of the site that follow from code, studies
+and results, into files that git ignores, and runs the examples of all pages.
 
-A Sphinx extension: the pages are written when a build begins, into folders that git ignores.
+A page is a template: `templates/method.md.jinja` for a planner, `templates/paper.md.jinja` for a
+paper, and every `*.in.md`. What is said of a planner or paper by hand stands in `prose`.
 """
 
 from __future__ import annotations
@@ -10,51 +11,111 @@ import contextlib
 import doctest
 import inspect
 import re
+import shutil
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import content
 import pandas as pd
+from docutils.utils.math import latex2mathml
+
+from bezierplan.figures.page import answer, build
+from bezierplan.planners import known_planners, planner_module, planner_settings
+from bezierplan.study.alternatives import default_of
 
 HERE = Path(__file__).parent
-OUTCOME = HERE / "outcome"
 MOST_NAMED = 4
 """Methods named beside a value; of more, their number."""
+RESULTS = ("*.csv", "*.svg", "*.pdf", "*.tex", "*.html", "*.json", "summary.md")
+"""Files of results that the site holds: what the page of results links to."""
 
 
 def setup(app: Any) -> dict[str, bool]:
     """Sphinx calls it once."""
     app.connect("builder-inited", lambda app: write(Path(app.srcdir)))
     app.connect("builder-inited", lambda app: try_examples(Path(app.srcdir)))
+    app.connect("build-finished", lambda app, fault: fault or copy_results(Path(app.outdir)))
+    # MathML, which browsers draw by themselves.
+    app.add_html_math_renderer("mathml", (inline_math, None), (block_math, None))
     return {"parallel_read_safe": True}
+
+
+def inline_math(writer: Any, node: Any) -> None:
+    """Write a formula of a sentence."""
+    writer.body.append(latex2mathml.tex2mathml(node.astext()))
+    raise_skip()
+
+
+def block_math(writer: Any, node: Any) -> None:
+    """Write a formula of its own."""
+    formula = latex2mathml.tex2mathml(node.astext(), as_block=True)
+    writer.body.append(f'<div class="equation" tabindex="0" role="group">{formula}</div>')
+    raise_skip()
+
+
+def raise_skip() -> None:
+    """Tell Sphinx that nothing is left of a node."""
+    from docutils.nodes import SkipNode
+
+    raise SkipNode
+
+
+def copy_results(site: Path) -> None:
+    """Put the page of results into the site, with the files that it links to."""
+    _, folder = content.results()
+    shutil.rmtree(site / "results", ignore_errors=True)
+    for depth in ("", "*/", "*/*/"):
+        for file in (file for pattern in RESULTS for file in folder.glob(depth + pattern)):
+            place = site / "results" / file.relative_to(folder)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, place)
 
 
 def write(folder: Path) -> None:
     """Write all generated pages below a folder."""
-    from bezierplan.commands import studies_of
-    from bezierplan.planners import known_planners
-
-    studies = studies_of()
-    claims, baseline_comparison = (
-        pd.read_csv(OUTCOME / "claims.csv"),
-        pd.read_csv(OUTCOME / "baseline_comparison.csv"),
-    )
-    numbers = pd.read_csv(OUTCOME / "numbers.csv")
+    page, results = content.content()
+    environment = build.environment(page, results, HERE / "templates", HERE)
+    environment.filters |= {"cell": escaped, "prose": prose, "demoted": demoted, "words": in_words}
+    references = {entry["key"]: entry for entry in content.citations()}
+    environment.globals |= {
+        "page": page,
+        "papers": page.studies,
+        "planners": {name: planner(name, page) for name in known_planners()},
+        "references": references,
+        "number_example": number_example,
+        "claim_example": claim_example,
+        "numbers": pd.read_csv(content.OUTCOME / "numbers.csv"),
+        "table": table,
+        "by_map": [of_map(row) for row in answer.by_map(page.studies, page.data)],
+        "maze": in_mazes(page.studies["elhoseny2017"]),
+        "relative": lambda figure: f"../../results/{page.scale}/{figure['stem']}.svg",
+        "root": "../results/",
+        "methods_shown": {},
+        "scale_words": scale_words(page),
+        "about": content.about,
+        "first_sentence": content.first_sentence,
+        "kinds_of_maps": kinds_of_maps,
+        "origin_of_maps": origin_of_maps,
+        "achieved": achieved,
+    }
     pages = {
-        f"methods/{name}.md": method_page(name, studies, claims, baseline_comparison)
-        for name in known_planners()
-    }
-    pages["methods/index.md"] = methods_index(studies)
-    pages |= {
-        f"papers/{key}.md": paper_page(study, claims, numbers) for key, study in studies.items()
+        f"methods/{name}.md": ("method.md.jinja", {"planner": own})
+        for name, own in environment.globals["planners"].items()
     }
     pages |= {
-        "papers/index.md": papers_index(studies),
-        "verdicts.md": verdicts_page(claims, numbers),
+        f"papers/{key}.md": ("paper.md.jinja", {"study": study, "key": key})
+        for key, study in page.studies.items()
     }
-    for name, text in pages.items():
-        file = folder / name
+    pages |= {
+        str(file.relative_to(HERE)).replace(".in.md", ".md"): (str(file.relative_to(HERE)), {})
+        for file in HERE.rglob("*.in.md")
+    }
+    pages |= {f"{kind}/index.md": (f"{kind}.md.jinja", {}) for kind in ("papers", "methods")}
+    for name, (template, values) in pages.items():
+        text, file = environment.get_template(template).render(values), folder / name
         file.parent.mkdir(exist_ok=True)
         if not file.is_file() or file.read_text(encoding="utf-8") != text:
             file.write_text(text, encoding="utf-8")
@@ -93,16 +154,14 @@ def failures(page: Path) -> str:
 
 
 def table(heads: list[str], rows: Iterable[Iterable[Any]]) -> str:
-    """A table in Markdown; a bar in a cell would end it."""
+    """A table in Markdown."""
     lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
     lines += ["| " + " | ".join(escaped(cell) for cell in row) + " |" for row in rows]
     return "\n".join(lines) + "\n"
 
 
 def escaped(value: Any) -> str:
-    """A value as the text of a cell."""
-    if isinstance(value, float):
-        return "" if pd.isna(value) else f"{value:.4g}"
+    """A value as the text of a cell; a bar would end it."""
     return " ".join(str(value).replace("|", "\\|").split())
 
 
@@ -111,350 +170,238 @@ def prose(docstring: str | None) -> str:
     return inspect.cleandoc(docstring or "").replace("<", "&lt;")
 
 
+def demoted(text: str) -> str:
+    """A document without its title, whose headings are a level lower, and whose relative links are
+    words only.
+    """
+    lowered = re.sub(r"^(#+) ", r"#\1 ", re.sub(r"^# .*\n", "", text), flags=re.M)
+    return re.sub(r"!?\[([^]]*)\]\((?!https?:)[^)]*\)", r"\1", lowered)
+
+
+def in_words(value: Any) -> str:
+    """The value of a setting.
+
+    >>> in_words({"smooth": "piecewise_quadratic"}), in_words(True), in_words(0.5)
+    ('piecewise quadratic (smooth)', 'yes', '0.5')
+    """
+    if isinstance(value, dict):
+        return ", ".join(f"{in_words(each)} ({name})" for name, each in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(map(in_words, value))
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return "none" if value is None else str(value).replace("_", " ")
+
+
 # --------------------------------------------------------------------------------------------------
 # Methods
 
 
-def method_page(
-    name: str, studies: dict, claims: pd.DataFrame, baseline_comparison: pd.DataFrame
-) -> str:
-    """The page of a planner: what it is, its settings, what it leaves open, what it achieves, and
-    which claims rest on it.
-    """
-    from bezierplan.planners import planner_module
+def planner(name: str, page: SimpleNamespace) -> SimpleNamespace:
+    """What the page of a planner shows.
 
-    module = planner_module(name)
+    title, lead: what is said of it by hand. users: study -> its methods. run: that of the picture,
+    with problem and workspace, if there is one. settings, achieved, open, resting: rows.
+    """
+    module, about = planner_module(name), content.about(name)
     users = {
-        key: [m for m in study.methods if study.planner(m) == name]
-        for key, study in studies.items()
+        key: [m for m in study.definition.methods if study.definition.planner(m) == name]
+        for key, study in page.studies.items()
     }
     users = {key: methods for key, methods in users.items() if methods}
-    title, _, rest = prose(module.__doc__).partition("\n\n")
-    served = getattr(module, "workspaces", None)
-    parts = [
-        f"# {name}\n",
-        f"{title}\n",
-        f"{rest}\n",
-        f"*Maps:* {', '.join(served) if served else 'every kind'}.\n",
-    ]
-    parts += [algorithm(name, studies)]
-    parts += ["## Call it\n", call(name, users, studies)]
-    parts += ["## Settings\n", settings_table(name, module, users, studies)]
-    parts += [
-        left_open(name, users, studies),
-        achieved(users, studies, baseline_comparison),
-        resting(users, studies, claims),
-    ]
-    parts += [
-        "## Code\n",
-        f"`src/bezierplan/planners/{name}.py`: {{py:func}}`bezierplan.planners.{name}.plan`\n",
-    ]
-    parts += [f"```{{eval-rst}}\n.. autofunction:: bezierplan.planners.{name}.plan\n```\n"]
-    return "\n".join(part for part in parts if part)
-
-
-def algorithm(name: str, studies: dict) -> str:
-    """The algorithms of `docs/algorithms` that a planner's kernels compute."""
-    shown = ""
-    for key, study in studies.items():
-        file = HERE / "algorithms" / f"{key}.py"
-        method = re.search(rf'^METHOD = "{key}/(\w+)"$', file.read_text(encoding="utf-8"), re.M)
-        if study.planner(method[1]) == name:
-            shown += (
-                "## The algorithm on one page\n\nThe default reading of the paper in plain Python; "
-                f"a test compares its paths with those of `{key}/{method[1]}`, bit for bit.\n\n"
-                f"```{{literalinclude}} ../algorithms/{key}.py\n:language: python\n```\n"
-            )
-    return shown
-
-
-def call(name: str, users: dict[str, list[str]], studies: dict) -> str:
-    """How to run a planner from Python and at the command line."""
-    if not users:
-        method = name
-    else:
-        key = next(iter(users))
-        method = f"{key}/{users[key][0]}"
-    return (
-        f"```python\nimport bezierplan as bp\n\nanswer = bp.plan(problem, {method!r}, "
-        "seed=1)\n```\n\n"
-        f"```sh\nbezierplan plan map.yaml --start 1,1 --target 9,9 --method {method}\n```\n"
+    return SimpleNamespace(
+        name=name,
+        title=about.partition("\n")[0].removeprefix("# "),
+        lead=about,
+        details=prose(module.__doc__),
+        maps=getattr(module, "workspaces", None),
+        users=users,
+        algorithms=[key for key in users if algorithm_of(key, users[key])],
+        run=typical_run(users, page),
+        settings=[
+            [
+                f"`{setting}`",
+                f"{declared.meaning} ({declared})",
+                "; ".join(value_in(page.studies[key], users[key], setting) for key in users),
+            ]
+            for setting, declared in planner_settings(module).items()
+        ],
+        open=[
+            (key, entry, in_words(default_of(page.studies[key].definition, entry)))
+            for key in users
+            for entry in page.studies[key].definition.assumptions
+            if entry.setting in planner_settings(module)
+            and (not entry.methods or set(entry.methods) & set(users[key]))
+        ],
+        achieved=[
+            (key, row)
+            for key in users
+            for row in page.studies[key].baseline
+            if row["method"] in users[key]
+        ],
+        resting=[(key, claim) for key in users for claim in resting(page.studies[key], users[key])],
     )
 
 
-def settings_table(name: str, module: Any, users: dict[str, list[str]], studies: dict) -> str:
-    """Each setting with its meaning, range, unit and source, and its value in each study."""
-    from bezierplan.planners import planner_settings
-
-    accepted = planner_settings(module)
-    if not accepted:
-        return "It has none.\n"
-    heads = ["setting", "meaning", "values", *(f"in {key}" for key in users)]
-    rows = [
-        [
-            f"`{name}`",
-            declared.meaning,
-            str(declared),
-            *(value_in(studies[key], users[key], name) for key in users),
-        ]
-        for name, declared in accepted.items()
-    ]
-    return table(heads, rows)
+def algorithm_of(key: str, methods: list[str]) -> bool:
+    """Whether `algorithms` has the plain Python of one of some methods of a study."""
+    file = HERE / "algorithms" / f"{key}.py"
+    found = re.search(rf'^METHOD = "{key}/(\w+)"$', file.read_text(encoding="utf-8"), re.M)
+    return found[1] in methods
 
 
-def value_in(study: Any, methods: list[str], setting: str) -> str:
+def typical_run(users: dict[str, list[str]], page: SimpleNamespace) -> SimpleNamespace | None:
+    """The median run of the first method that has one on a world that does not move."""
+    for key, methods in users.items():
+        for each in page.studies[key].shown:
+            name = each["median"]
+            if name and each["problem"] and each["method"] in methods:
+                run = page.data["runs"][name]
+                problem = page.data["problems"][run["problem"]]
+                if problem["world"] is None and run["path"]:
+                    label = page.studies[key].job.labels.get(each["method"], each["method"])
+                    workspace = page.data["workspaces"][problem["workspace"]]
+                    return SimpleNamespace(
+                        name=name, label=label, run=run, problem=problem, workspace=workspace
+                    )
+    return None
+
+
+def value_in(study: SimpleNamespace, methods: list[str], setting: str) -> str:
     """The values of a setting in the methods of a study: one for all of them, or each with its
     methods.
     """
     given: dict[str, list[str]] = {}
     for method in methods:
-        value = study.resolved(method).get(setting)
-        if value is not None:
-            given.setdefault(f"`{value}`", []).append(method)
-    if len(given) == 1:
-        return next(iter(given))
+        resolved = study.definition.resolved(method)
+        if setting in resolved:
+            given.setdefault(in_words(resolved[setting]), []).append(method)
     commonest = sorted(given.items(), key=lambda item: -len(item[1]))
-    return "; ".join(
-        f"{value} ({', '.join(of) if len(of) <= MOST_NAMED else f'{len(of)} methods'})"
+    values = ", ".join(
+        value
+        if len(given) == 1
+        else f"{value} ({', '.join(of) if len(of) <= MOST_NAMED else f'{len(of)} methods'})"
         for value, of in commonest
     )
+    return f"{study.name}: {values}" if values else ""
 
 
-def left_open(name: str, users: dict[str, list[str]], studies: dict) -> str:
-    """The entries of `assumptions.yaml` about settings of a planner."""
-    from bezierplan.planners import planner_module, planner_settings
+def achieved(planner: SimpleNamespace) -> list[list[str]]:
+    """How the methods of a planner compare with the rounded shortest path, in words."""
 
-    accepted = planner_settings(planner_module(name))
-    rows = [
+    def times(value: float | None) -> str:
+        return "" if value is None else f"{value:.3g}"
+
+    return [
         [
-            key,
-            entry.id,
-            entry.detail,
-            f"`{entry.default}`",
-            ", ".join(f"`{value}`" for value in entry.alternatives),
-            entry.reason,
+            content.name_of(key),
+            f"`{row['method']}`",
+            f"{100 * row['feasible']:.1f} %",
+            times(row["length"]),
+            "corners" if row["cornered"] else times(row["curvature"]),
+            times(row["cpu"]),
         ]
-        for key in users
-        for entry in studies[key].assumptions
-        if entry.setting in accepted
+        for key, row in planner.achieved
     ]
-    if not rows:
-        return ""
-    heads = ["study", "entry", "detail", "default", "alternatives", "reason"]
-    return "## What the paper leaves open\n\n" + table(heads, rows)
 
 
-def achieved(users: dict[str, list[str]], studies: dict, baseline_comparison: pd.DataFrame) -> str:
-    """How the methods of a planner compare with the rounded shortest path."""
-    mine = baseline_comparison[
-        [row.method in users.get(row.study, []) for row in baseline_comparison.itertuples()]
+def resting(study: SimpleNamespace, methods: list[str]) -> list[dict[str, Any]]:
+    """The claims of a study whose checks name one of some methods."""
+    checks = {claim.id: claim.checks for claim in study.definition.claims}
+    return [
+        claim
+        for claim in study.claims
+        if set(re.findall(r"\w+", repr(checks[claim["id"]]))) & set(methods)
     ]
-    if mine.empty:
-        return ""
-    rows = [
-        [row.study, row.method, row.feasible, row.length, row.curvature, row.cpu]
-        for row in mine.itertuples()
-    ]
-    heads = ["study", "method", "feasible runs", "length", "largest curvature", "CPU time"]
-    return (
-        "## What it achieves\n\nLength, curvature and CPU time are ratios to those of the "
-        "baseline, the exact shortest path with rounded "
-        "corners, in the median condition of its study.\n\n" + table(heads, rows)
-    )
-
-
-def resting(users: dict[str, list[str]], studies: dict, claims: pd.DataFrame) -> str:
-    """The claims whose checks name a method of a planner."""
-    rows = []
-    for key, methods in users.items():
-        verdicts = claims[(claims.study == key) & claims.primary].set_index("id")
-        for claim in studies[key].claims:
-            named = set(re.findall(r"\w+", repr(claim.checks)))
-            if named & set(methods) and claim.id in verdicts.index:
-                rows.append([key, claim.id, claim.statement, verdicts.loc[claim.id, "verdict"]])
-    return (
-        "## Claims about it\n\n" + table(["study", "claim", "sentence", "verdict"], rows)
-        if rows
-        else ""
-    )
-
-
-def methods_index(studies: dict) -> str:
-    """The list of all planners, by what they are for."""
-    from bezierplan.planners import known_planners, planner_module
-
-    rows = []
-    for name in known_planners():
-        summary = prose(planner_module(name).__doc__).partition("\n\n")[0]
-        used = [
-            key
-            for key, study in studies.items()
-            if any(study.planner(m) == name for m in study.methods)
-        ]
-        rows.append(
-            [
-                f"[{name}]({name}.md)",
-                summary,
-                ", ".join(f"[{key}](../papers/{key}.md)" for key in used),
-            ]
-        )
-    hidden = "\n".join(known_planners())
-    return (
-        "# Methods\n\nEach planner is one file of `src/bezierplan/planners`. A study's method is "
-        "a planner with settings.\n\n"
-        + table(["planner", "what it is", "used in"], rows)
-        + f"\n```{{toctree}}\n:hidden:\n\n{hidden}\n```\n"
-    )
 
 
 # --------------------------------------------------------------------------------------------------
-# Papers
+# Papers and maps
 
 
-def paper_page(study: Any, claims: pd.DataFrame, numbers: pd.DataFrame) -> str:
-    """The page of a paper: its citation, its claims and numbers with their verdicts, and what it
-    leaves open.
-    """
-    own = claims[(claims.study == study.key) & claims.primary]
-    counted = numbers[(numbers.study == study.key) & numbers.counted]
-    counts = counted.verdict.value_counts()
-    parts = [f"# {study.key}\n", f"{study.title}.\n", citation(study.key)]
-    parts += [
-        "## Published numbers\n",
-        "Compared at scale `extended`.\n",
-        table(["verdict", "numbers"], counts.items()),
-    ]
-    rows = [
-        [row.id, row.place, row.statement, row.verdict, row.holds]
-        for row in own[~own.finding].itertuples()
-    ]
-    parts += [
-        "## Claims\n",
-        table(
-            ["claim", "place", "sentence, in our words", "verdict", "comparisons that agree"], rows
-        ),
-    ]
-    found = [[row.id, row.statement, row.verdict] for row in own[own.finding].itertuples()]
-    if found:
-        parts += ["## Findings of our own\n", table(["finding", "sentence", "verdict"], found)]
-    open_details = [
-        [e.id, e.detail, f"`{e.default}`", ", ".join(f"`{v}`" for v in e.alternatives), e.source]
-        for e in study.assumptions
-    ]
-    parts += [
-        "## What the paper leaves open\n",
-        table(["entry", "detail", "default", "alternatives", "source"], open_details),
-    ]
-    parts += [
-        "## Tables and figures\n",
-        artefacts(study),
-        "## Maps\n",
-        maps(study),
-    ]
-    return "\n".join(parts)
-
-
-def artefacts(study: Any) -> str:
-    """Every table and figure with its target."""
-    rows = [
-        [f"`snakemake {study.key}_{name}`", item.title]
-        for kind in (study.tables, study.figures)
-        for name, item in kind.items()
-    ]
-    return table(["target", "title"], rows)
-
-
-def maps(study: Any) -> str:
-    """A study's workspaces, and the text on where they come from, if it has one."""
-    text = table(
-        ["workspace", "kind"],
-        [[name, workspace.kind] for name, workspace in study.workspaces.items()],
-    )
-    origin = study.folder / "workspaces" / "README.md"
-    return text + ("\n" + demoted(origin.read_text(encoding="utf-8")) if origin.is_file() else "")
-
-
-def demoted(text: str) -> str:
-    """A document whose headings are two levels lower, and whose relative links are words only."""
-    lowered = re.sub(r"^(#+) ", r"##\1 ", text, flags=re.M)
-    return re.sub(r"!?\[([^]]*)\]\((?!https?:)[^)]*\)", r"\1", lowered)
-
-
-def citation(key: str) -> str:
-    """A paper as CITATION.cff lists it."""
-    import yaml
-
-    content = yaml.safe_load((HERE.parent / "CITATION.cff").read_text(encoding="utf-8"))
-    entry = next(
-        (each for each in content["references"] if each.get("notes", "").startswith(key)), None
-    )
-    if entry is None:
-        return ""
-    names = ", ".join(
-        f"{author['given-names']} {author['family-names']}" for author in entry["authors"]
-    )
-    where = "".join(f", {entry[name]}" for name in ("journal", "year") if name in entry)
-    doi = f", [doi:{entry['doi']}](https://doi.org/{entry['doi']})" if "doi" in entry else ""
-    return f"{names}: *{entry['title']}*{where}{doi}.\n"
-
-
-def papers_index(studies: dict) -> str:
-    """The list of the papers."""
-    rows = [[f"[{key}]({key}.md)", study.title] for key, study in studies.items()]
-    hidden = "\n".join(studies)
+def scale_words(page: SimpleNamespace) -> str:
+    """Which runs stand behind what a paper's page shows."""
+    if page.scale == content.SCALES[0]:
+        return "Everything here is of scale extended, many runs of each method."
     return (
-        "# Papers\n\n"
-        + table(["study", "paper"], rows)
-        + f"\n```{{toctree}}\n:hidden:\n\n{hidden}\n```\n"
+        "Numbers and verdicts are of scale extended, many runs of each method; figures, and why a "
+        f"claim fails, of scale {page.scale}, with fewer."
     )
+
+
+def kinds_of_maps(study: SimpleNamespace) -> list[list[str]]:
+    """The workspaces of a study, each with its kind."""
+    spaces = study.definition.workspaces
+    return [[name, in_words(workspace.kind)] for name, workspace in spaces.items()]
+
+
+def origin_of_maps(study: SimpleNamespace) -> str:
+    """The text on where the maps of a study come from, if it has one."""
+    origin = study.definition.folder / "workspaces" / "README.md"
+    return demoted(origin.read_text(encoding="utf-8")) if origin.is_file() else ""
+
+
+def of_map(row: dict[str, Any]) -> list[str]:
+    """What to use on a kind of map (`answer.by_map`), in words."""
+    best = row["best"]
+    study, method = best["study"], best["method"]
+    page = study.definition.planner(method)
+    label = study.job.labels.get(method, method)
+    return [
+        f"{row['map']} ({', '.join(map(content.name_of, row['studies']))})",
+        f"[{label}](methods/{page}.md), {study.name}",
+        f"{100 * best['feasible']:.0f} %",
+        "no free path" if best["gap"] > 1e9 else f"{100 * best['gap']:.1f} % above",
+        "" if best["cpu"] is None else f"{best['cpu']:.2g} times",
+    ]
+
+
+def in_mazes(study: SimpleNamespace) -> str:
+    """On how many of its six maps the proposed method of Elhoseny 2017 finds a free path."""
+    rows = [
+        row
+        for row in study.shown
+        if row["method"] == "mga" and row["experiment"] == "maps" and row["problem"]
+    ]
+    found = sum(row["feasible"] > 0 for row in rows)
+    return f"MGA, for one, finds a free path on {found} of {len(rows)} of them"
 
 
 # --------------------------------------------------------------------------------------------------
 # Verdicts
 
 
-def numbers_example(numbers: pd.DataFrame, verdict: str) -> str:
-    """A worked example of a verdict on a number: the first one counted whose interval is finite."""
+def number_example(numbers: pd.DataFrame, verdict: str) -> str:
+    """A verdict on a real number: the first one counted whose interval is finite."""
     chosen = numbers[numbers.counted & (numbers.verdict == verdict)]
     chosen = chosen[chosen.low95_predicted.abs().lt(1e9) & chosen.high95_predicted.abs().lt(1e9)]
     if chosen.empty:
-        return ""
+        return "No number has this verdict."
     row = chosen.iloc[0]
     inside = row.low95_predicted <= row.value_published <= row.high95_predicted
     runs = "an unstated number of runs" if pd.isna(row.n_published) else f"{row.n_published:g} runs"
     return (
-        f"*{row.study}, {row.table}, {row.method}, {row.metric} ({row.statistic}).* The paper "
-        f"prints {row.value_published:g}, from {runs}. "
+        f"*{content.name_of(row.study)}, {row.table}, {row.method}, {row.metric} "
+        f"({row.statistic}).* The paper prints {row.value_published:g}, from {runs}. "
         f"Ours is {row.value_ours:.6g}, from {row.n_ours:g} runs. Experiments of the paper's size "
-        f"would print {row.low95_predicted:.6g} to "
-        f"{row.high95_predicted:.6g}: the printed number lies "
-        f"{'inside' if inside else 'outside'}.\n"
+        f"would print {row.low95_predicted:.6g} to {row.high95_predicted:.6g}: the printed number "
+        f"lies {'inside' if inside else 'outside'}."
     )
 
 
-def claims_example(claims: pd.DataFrame, verdict: str) -> str:
-    """A worked example of a verdict on a claim: the first one of a paper."""
-    chosen = claims[claims.primary & ~claims.finding & (claims.verdict == verdict)]
-    if chosen.empty:
-        return ""
-    row = chosen.iloc[0]
-    effect = ""
-    if not pd.isna(row.low95):
-        effect = (
-            f" The deciding comparison has an effect of {row.effect:.4g}, with a 95 % "
-            f"interval from {row.low95:.4g} to {row.high95:.4g}."
-        )
-    holds = (
-        f" {row.holds} comparisons "
-        f"agree{'' if pd.isna(row.where_it_holds) else f': {row.where_it_holds}'}."
-        if isinstance(row.holds, str)
-        else ""
+def claim_example(papers: dict[str, SimpleNamespace], verdict: str) -> str:
+    """A verdict on a real claim: the first one of a paper, if possible one that says why."""
+    chosen = [
+        (study, claim)
+        for study in papers.values()
+        for claim in answer.sentences_of_paper(study)
+        if claim["verdict"] == verdict
+    ]
+    if not chosen:
+        return "No claim has this verdict."
+    study, claim = min(chosen, key=lambda each: not each[1]["why"])
+    told = " ".join(filter(None, [claim["why"], claim["reason"]]))
+    return (
+        f"*[{study.name} {claim['id']}](papers/{study.key}.md): {claim['statement']}* "
+        f"{claim['rule'] or ''}. {told}"
     )
-    return f"*{row.study} {row.id}: {row.statement}*{holds}{effect}\n"
-
-
-def verdicts_page(claims: pd.DataFrame, numbers: pd.DataFrame) -> str:
-    """How verdicts are reached, each with an example from the kept outcome."""
-    text = (HERE / "verdicts.in.md").read_text(encoding="utf-8")
-    text = re.sub(r"\{number: ([^}]*)\}", lambda found: numbers_example(numbers, found[1]), text)
-    return re.sub(r"\{claim: ([^}]*)\}", lambda found: claims_example(claims, found[1]), text)

@@ -1,36 +1,37 @@
-"""The documentation as a site: `make docs` builds it without a warning, and every method and every
-paper has its page.
+"""The site: `make docs` builds it without a warning from the results that are there, every method
+and every paper has its page, and a reader finds an answer within two clicks or one search.
 """
 
+import re
 import subprocess
 import sys
+import threading
+from functools import partial
+from html.parser import HTMLParser
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from urllib.parse import unquote, urldefrag
 
 import pytest
+from playwright.sync_api import expect
+from test_page_browser import CHROMIUM, browser  # noqa: F401
 
 from bezierplan.places import STUDIES
 from bezierplan.planners import known_planners
 
 ROOT = Path(__file__).parents[1]
+in_browser = pytest.mark.skipif(CHROMIUM is None, reason="no browser here, and PyPI has none")
+WIDTHS = [1400, 390]
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """The built site."""
     folder = tmp_path_factory.mktemp("site")
-    command = [
-        sys.executable,
-        "-m",
-        "sphinx",
-        "--quiet",
-        "--fail-on-warning",
-        "--builder",
-        "html",
-        "--doctree-dir",
-        str(folder / "trees"),
-    ]
+    options = ["--quiet", "--fail-on-warning", "--builder", "html"]
+    options += ["--doctree-dir", str(folder / "trees")]
     built = subprocess.run(
-        [*command, "docs", str(folder / "html")],
+        [sys.executable, "-m", "sphinx", *options, "docs", str(folder / "html")],
         cwd=ROOT,
         capture_output=True,
         text=True,
@@ -40,35 +41,161 @@ def site(tmp_path_factory):
     return folder / "html"
 
 
-def test_every_method_and_every_paper_has_its_page(site):
+def test_every_method_has_a_page_with_equations_settings_and_a_run(site):
     for name in known_planners():
         page = (site / "methods" / f"{name}.html").read_text(encoding="utf-8")
-        assert "Settings" in page
+        assert "<math" in page
         assert f"bezierplan.planners.{name}.plan" in page
+    page = (site / "methods" / "modified_genetic.html").read_text(encoding="utf-8")
+    assert "<title>MGA (Elhoseny 2017)" in page
+    for part in ("a-run", "the-algorithm-on-one-page", "settings", "what-it-achieves"):
+        assert f'id="{part}"' in page
+    assert "{'" not in page.partition('id="settings"')[2].partition('id="code"')[0]
+
+
+def test_every_paper_has_a_page_with_its_tables_figures_and_claims(site):
     for study in STUDIES.glob("*/experiments.yaml"):
-        page = (site / "papers" / f"{study.parent.name}.html").read_text(encoding="utf-8")
-        assert "Published numbers" in page
-        assert "What the paper leaves open" in page
-
-
-def test_search_finds_a_method_by_its_name(site):
-    index = (site / "searchindex.js").read_text(encoding="utf-8")
-    assert '"methods/binary_genetic"' in index
-    assert "binary_genetic" in index
+        key = study.parent.name
+        page = (site / "papers" / f"{key}.html").read_text(encoding="utf-8")
+        assert page.count(f'id="{key}/C') >= 10
+        assert all(f'id="{key}/{name}"' in page for name in ("table1", "figure1"))
+        assert "What we found" in page
 
 
 def test_verdicts_come_with_examples_on_real_numbers(site):
     page = (site / "verdicts.html").read_text(encoding="utf-8")
     assert page.count("The paper prints") >= 3
-    assert "{number:" not in page
-    assert "{claim:" not in page
 
 
-def test_links_between_pages_lead_somewhere(site):
-    import re
+class Links(HTMLParser):
+    """Where the links of a page lead, and its anchors."""
 
-    for page in site.rglob("*.html"):
-        for target in re.findall(
-            r'href="([^"#:?]+\.html)(?:#[^"]*)?"', page.read_text(encoding="utf-8")
-        ):
-            assert (page.parent / target).is_file(), f"{page.name}: {target}"
+    def __init__(self, page: Path):
+        super().__init__()
+        self.targets, self.anchors = set(), set()
+        self.feed(page.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        self.targets |= {attributes.get("href"), attributes.get("src")} - {None}
+        self.anchors |= {attributes.get("id"), attributes.get("name")} - {None}
+
+
+def test_every_link_leads_somewhere(site):
+    pages = {page: Links(page) for page in site.rglob("*.html") if page.parts[-2][0] != "_"}
+    broken = []
+    for page, links in pages.items():
+        for target in links.targets:
+            path, anchor = urldefrag(target)
+            if target.startswith(("http", "data:", "mailto:", "blob:")) or "${" in target:
+                continue
+            file = (page.parent / unquote(path.partition("?")[0])).resolve() if path else page
+            there = file.is_file() and (
+                not anchor or file not in pages or unquote(anchor) in pages[file].anchors
+            )
+            if not there:
+                broken.append(f"{page.relative_to(site)}: {target}")
+    assert broken == []
+
+
+# --------------------------------------------------------------------------------------------------
+# In a browser
+
+
+@pytest.fixture(scope="module")
+def address(site):
+    """Where the site is served; its search needs that."""
+
+    class Silent(SimpleHTTPRequestHandler):
+        def log_message(self, *_):
+            pass
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Silent, directory=site))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+
+
+@pytest.fixture(params=WIDTHS)
+def tab(request, browser, address):  # noqa: F811
+    """The site's home in a window of each width; at the end no complaint."""
+    context = browser.new_context(
+        base_url=address, viewport={"width": request.param, "height": 900}
+    )
+    context.set_default_timeout(60_000)
+    tab, complaints = context.new_page(), []
+    tab.on(
+        "console",
+        lambda message: (
+            complaints.append(message.text) if message.type in ("error", "warning") else None
+        ),
+    )
+    tab.on("pageerror", lambda error: complaints.append(str(error)))
+    tab.on(
+        "request",
+        lambda asked: None if asked.url.startswith(address) else complaints.append(asked.url),
+    )
+    tab.goto("/index.html")
+    yield tab
+    context.close()
+    assert complaints == []
+
+
+# A question, what a reader clicks on from the site's home, and what is then in sight.
+CLICKS = [
+    ("overall answer", [], "published numbers:"),
+    ("what did you find about Tharwat 2018", ["Tharwat 2018"], "mean ranks show no difference"),
+    ("may I cite it and how", ["May I cite it, and how?"], "@misc{bezierplan"),
+    ("Table 2 of Elhoseny beside yours", ["Elhoseny 2017", "Table 2"], "Proposed Method"),
+    ("which planner for a maze", ["Which method should I use?"], "A maze"),
+    ("what for a grid", ["Which method should I use?"], "grid of 20 × 20 cells"),
+    ("CPSO-I in Table 3", ["Tharwat 2018", "Table 3"], "Singer"),
+    ("what inconclusive means", ["What do the verdicts mean?"], "Inconclusive"),
+]
+# A question, the first page that the search finds.
+SEARCHES = {
+    "MGA": "methods/modified_genetic.html",
+    "BCA": "methods/bca.html",
+    "which method should I use": "use.html",
+    "Tharwat 2018": "papers/tharwat2018.html",
+    "how to cite": "cite.html",
+}
+
+
+@in_browser
+def test_answers_are_two_clicks_or_one_search_from_home(tab, subtests):
+    for question, clicks, answer in CLICKS:
+        with subtests.test(question=question):
+            tab.goto("/index.html")
+            for words in clicks:
+                tab.locator("main").get_by_role("link", name=words, exact=True).first.click()
+            expect(tab.locator("main").get_by_text(answer).first).to_be_visible()
+    for question, page in SEARCHES.items():
+        with subtests.test(question=question):
+            tab.goto(f"/search.html?q={question}")
+            first = tab.locator("#search-results li a").first
+            expect(first).to_have_attribute("href", re.compile(f"^{page}(#.*)?$"))
+
+
+PAGES = [
+    *("index", "use", "gallery", "cite", "verdicts", "start", "papers/song2016"),
+    *("methods/ant_colony", "methods/index"),
+]
+
+
+@in_browser
+def test_pages_fit_their_width_and_pass_axe(tab, subtests):
+    from axe_playwright_python.sync_playwright import Axe
+
+    rules = ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"]
+    for page in PAGES:
+        with subtests.test(page=page):
+            tab.goto(f"/{page}.html")
+            width = tab.viewport_size["width"]
+            assert tab.evaluate("document.documentElement.scrollWidth") <= width
+            found = (
+                Axe().run(tab, options={"runOnly": rules, "preload": False}).response["violations"]
+            )
+            assert [
+                (each["id"], [node["html"][:200] for node in each["nodes"][:3]]) for each in found
+            ] == []

@@ -136,15 +136,24 @@ def _made_by() -> str:
     return f"{version}, commit {found.stdout.strip()}"
 
 
-def html(page: SimpleNamespace, folder: Path) -> str:
-    """The page as one html text that needs no other file. folder: where the pictures of its figures
-    are.
+def html(page: SimpleNamespace, folder: Path, template: str = "page.html.jinja") -> str:
+    """The page, or what another template shows of it, as one html text that needs no other file.
+    folder: where the pictures of its figures are.
     """
+    text = environment(page, folder).get_template(template).render(page=page)
+    return "".join(
+        part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
+        for part in _AS_WRITTEN.split(text)
+    )
+
+
+def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
+    """What templates can use, those of this folder and of more folders: a `jinja2.Environment`."""
     import jinja2
     from markupsafe import Markup
 
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([HERE / "templates", HERE / "static"]),
+        loader=jinja2.FileSystemLoader([*more, HERE / "templates", HERE / "static"]),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -168,17 +177,14 @@ def html(page: SimpleNamespace, folder: Path) -> str:
         "drawing": lambda figure: (folder / f"{figure['stem']}.svg").read_text(encoding="utf-8"),
         "grid": grid,
         "marks": MARKS,
+        "root": "",  # before the paths of files of results
         "meaning": lambda metric: meaning(metric or ""),
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": size,
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
         "words": glossary.WORDS,
     }
-    text = environment.get_template("page.html.jinja").render(page=page)
-    return "".join(
-        part if _AS_WRITTEN.fullmatch(part) else re.sub(r"\s*\n\s*", "\n", part)
-        for part in _AS_WRITTEN.split(text)
-    )
+    return environment
 
 
 def packed(value: Any) -> str:

@@ -201,20 +201,24 @@ def _numbers(
     for cell, position, name in zip(
         cells, positions, of_cells(table, positions, spec.primary), strict=True
     ):
-        scaled, number = cell["value_ours_scaled"], cell["value_published"]
-        beside = cell["value_ours"] if scaled is None else scaled
-        apart = beside / number - 1 if number and beside is not None else None
         cell |= {
             "keys": {key: position[key] for key in keys},
             "row": ", ".join(printed_key(key, position[key], labels) for key in keys),
             "column": _heading(cell["metric"], cell["statistic"], spec, labels),
             "address": name,
-            "beside": beside,
-            "apart": apart,
-            "near": apart is not None and abs(apart) <= NEAR + 1e-9,
             "stored": others.get(address(*position.values())),
+            **nearness(cell),
         }
     return cells
+
+
+def nearness(cell: Row) -> Row:
+    """Of a number: beside, apart and near (`_numbers`)."""
+    scaled, number = cell["value_ours_scaled"], cell["value_published"]
+    beside = cell["value_ours"] if scaled is None else scaled
+    apart = beside / number - 1 if number and beside is not None else None
+    near = apart is not None and abs(apart) <= NEAR + 1e-9
+    return {"beside": beside, "apart": apart, "near": near}
 
 
 def printed_key(column: str, value: Any, labels: dict[str, str]) -> str:

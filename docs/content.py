@@ -1,0 +1,166 @@
+"""What the site and the report show: the results of a scale as the page reads them, with numbers
+and verdicts of the stored outcome, which rests on the most runs, in place of those of fewer runs.
+"""
+
+import base64
+import contextlib
+import json
+import re
+import zlib
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pandas as pd
+import yaml
+
+from bezierplan.analysis import summary
+from bezierplan.commands import studies_of
+from bezierplan.figures.page import build, reader, why
+from bezierplan.schema.checked import Fault
+from bezierplan.study import page as page_jobs
+
+ROOT = Path(__file__).parents[1]
+OUTCOME = ROOT / "docs" / "outcome"
+SCALES = ("extended", "full", "smoke")
+SUMMARY = ("numbers", "claims", "baseline_comparison")
+# What the stored outcome says of a claim.
+_OF_CLAIM = ("verdict", "holds", "where_it_holds", "reason", "published", "n", "effect")
+
+
+def results() -> tuple[str, Path]:
+    """The scale with the most runs that there is, and the folder of its results. Raises Fault."""
+    for scale in SCALES:
+        if (ROOT / "results" / scale / "index.html").is_file():
+            return scale, ROOT / "results" / scale
+    raise Fault("no results to show: `snakemake smoke` or `make reproduce` makes them")
+
+
+def content() -> tuple[SimpleNamespace, Path]:
+    """What `build.page` gives for the results that there are, and their folder. Added to a study:
+    name, as people search for it; definition; outcome, its row of the headline. Raises Fault.
+    """
+    scale, folder = results()
+    with contextlib.chdir(ROOT):
+        studies = studies_of()
+        job = page_jobs.Page.of(studies, scale).page
+        shown = {key: own._replace(experiments={}) for key, own in job.studies.items()}
+        page = build.page(
+            job._replace(studies=shown), folder, [str(folder / f"{name}.csv") for name in SUMMARY]
+        )
+        tables = [pd.read_csv(OUTCOME / f"{name}.csv") for name in SUMMARY]
+        files = {key: study.verdict_file() for key, study in studies.items()}
+        audits = [str(OUTCOME / f"{key}_audit.csv") for key in files]
+        following = summary.verdicts(*tables, files, audits)
+    page.folder = folder
+    page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
+    for key, study in page.studies.items():
+        study.name, study.definition = name_of(key), studies[key]
+        study.shown = page.data["studies"][key]["shown"]
+        study.verdict = following[key]
+        study.baseline = [row for row in reader.records(tables[2]) if row["study"] == key]
+        for row in study.baseline:
+            row["cornered"] = row["curvature"] is None
+        study.outcome = page.headline.table.loc[key]
+        if scale != SCALES[0]:
+            _as_stored(study)
+    return page, folder
+
+
+def about(key: str) -> str:
+    """What a paper is, or a planner does, in prose."""
+    return (ROOT / "docs" / "prose" / f"{key}.md").read_text(encoding="utf-8")
+
+
+def first_sentence(study: SimpleNamespace) -> str:
+    """What was found about a paper, in one sentence."""
+    return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", study.verdict)[0]
+
+
+def data_of(page: str) -> dict[str, Any]:
+    """The runs, problems and workspaces that a page of results holds for its viewer."""
+    packed = re.search(r'id="page-data">([^<]*)', page)[1]
+    return json.loads(zlib.decompress(base64.b64decode(packed)))
+
+
+def name_of(key: str) -> str:
+    """The name of a study in a sentence.
+
+    >>> name_of("song2016"), name_of("meledje")
+    ('Song 2016', 'Meledje')
+    """
+    return re.sub(r"(?<=[a-z])(?=[0-9])", " ", key).capitalize()
+
+
+def _as_stored(study: SimpleNamespace) -> None:
+    """Put the stored numbers and verdicts of a study in place of those of a scale with fewer runs.
+    Why a claim has its verdict is told by that scale, if it has the same verdict.
+    """
+    for table in study.tables:
+        for cell in table["numbers"]:
+            if stored := cell["stored"]:
+                cell |= {name: value for name, value in stored.items() if name in cell}
+                cell |= reader.nearness(cell) | {"stored": None}
+        for _, cells in (table["laid"] or {"rows": []})["rows"]:
+            cells[:] = [(printed, _like(own, cell), cell) for printed, own, cell in cells]
+    for claim in study.claims:
+        if stored := claim["stored"]:
+            if stored["verdict"] != claim["verdict"]:
+                claim["why"] = ""
+            claim |= {name: stored[name] for name in _OF_CLAIM} | {"stored": None}
+            claim["rule"] = why.rule(
+                study.job.holds.get(claim["id"]), claim["verdict"], claim["holds"]
+            )
+
+
+def _like(text: str, cell: dict[str, Any] | None) -> str:
+    """A number of ours with as many decimals as a text of it has."""
+    value = cell and cell["beside"]
+    if value is None or not re.fullmatch(r"[\d.]+", text):
+        return text
+    return f"{value:.{len(text.partition('.')[2])}f}"
+
+
+# --------------------------------------------------------------------------------------------------
+# Citations
+
+
+def citations() -> list[dict[str, Any]]:
+    """This software, then the papers, as CITATION.cff lists them. Added: key; names, of the
+    authors; where, journal, version and year; doi, maybe none; bibtex.
+    """
+    content = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    year = content["date-released"].year
+    first = content | {"notes": "bezierplan", "year": year, "type": "software"}
+    return [
+        {"doi": None}
+        | entry
+        | {
+            "key": entry["notes"],
+            "names": names(entry, ", "),
+            "where": "".join(
+                f", {entry[name]}" for name in ("journal", "version", "year") if name in entry
+            ),
+            "bibtex": bibtex(entry),
+        }
+        for entry in (first, *content["references"])
+    ]
+
+
+def names(entry: dict[str, Any], between: str) -> str:
+    """The authors of an entry of CITATION.cff."""
+    return between.join(
+        each.get("name") or f"{each['given-names']} {each['family-names']}"
+        for each in entry["authors"]
+    )
+
+
+def bibtex(entry: dict[str, Any]) -> str:
+    """An entry of CITATION.cff for BibTeX."""
+    kind = {"article": "article" if "journal" in entry else "unpublished"}
+    authors = names(entry, " and ")
+    fields = {"author": f"{{{authors}}}" if entry["type"] == "software" else authors}
+    fields |= {name: entry.get(name) for name in ("title", "journal", "year", "version", "doi")}
+    fields["url"] = entry.get("repository-code")
+    lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
+    return "\n".join([f"@{kind.get(entry['type'], 'misc')}{{{entry['notes']},", *lines, "}"])

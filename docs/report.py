@@ -1,0 +1,60 @@
+"""Print the report on the papers as a PDF: `snakemake report_pdf`."""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+from types import SimpleNamespace
+
+import content
+
+from bezierplan.figures.page import build, reader
+
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
+
+
+def main(file: str) -> None:
+    """Write the report to a file."""
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser is None:
+        sys.exit("report_pdf: needs Chromium; Debian: apt install chromium-headless-shell")
+    options = ["--headless", "--no-pdf-header-footer", "--virtual-time-budget=10000"]
+    # The sandbox of the browser does not start for root, as in a container.
+    options += ["--no-sandbox"] if os.geteuid() == 0 else []
+    with tempfile.TemporaryDirectory() as place:
+        source = Path(place) / "report.html"
+        source.write_text(html(), encoding="utf-8")
+        printed = f"--print-to-pdf={Path(file).resolve()}"
+        subprocess.run(
+            [browser, *options, printed, source.as_uri()], check=True, capture_output=True
+        )
+
+
+def html() -> str:
+    """The report."""
+    page, folder = content.content()
+    environment = build.environment(page, folder, Path(__file__).parent / "templates")
+    software, *references = content.citations()
+    return environment.get_template("report.html.jinja").render(
+        page=page,
+        folder=folder.as_uri(),
+        software=software,
+        references=references,
+        about=content.about,
+        first_sentence=content.first_sentence,
+        chosen_figure=chosen_figure,
+    )
+
+
+def chosen_figure(study: SimpleNamespace) -> reader.Row:
+    """The figure of the paper that most of its claims are about."""
+    named = Counter(name for claim in study.claims for name in claim["shown_in"])
+    own = [figure for figure in study.figures if figure["of_paper"]]
+    return max(own, key=lambda figure: named[figure["name"]])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
