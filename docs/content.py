@@ -14,7 +14,7 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from bezierplan.analysis import summary
+from bezierplan.analysis import outcome
 from bezierplan.commands import studies_of
 from bezierplan.figures.page import build, reader, why
 from bezierplan.schema.checked import Fault
@@ -23,7 +23,6 @@ from bezierplan.study import page as page_jobs
 ROOT = Path(__file__).parents[1]
 OUTCOME = ROOT / "docs" / "outcome"
 SCALES = ("extended", "full", "smoke")
-SUMMARY = ("numbers", "claims", "baseline_comparison")
 # What the stored outcome says of a claim.
 _OF_CLAIM = ("verdict", "holds", "where_it_holds", "reason", "published", "n", "effect")
 
@@ -43,15 +42,14 @@ def content() -> tuple[SimpleNamespace, Path]:
     scale, folder = results()
     with contextlib.chdir(ROOT):
         studies = studies_of()
-        job = page_jobs.Page.of(studies, scale).page
+        job = page_jobs.page(studies, scale).page
         shown = {key: own._replace(experiments={}) for key, own in job.studies.items()}
         page = build.page(
-            job._replace(studies=shown), folder, [str(folder / f"{name}.csv") for name in SUMMARY]
+            job._replace(studies=shown), folder, [str(folder / name) for name in outcome.TABLES]
         )
-        tables = [pd.read_csv(OUTCOME / f"{name}.csv") for name in SUMMARY]
+        tables = [pd.read_csv(OUTCOME / name) for name in outcome.TABLES]
         files = {key: study.verdict_file() for key, study in studies.items()}
-        audits = [str(OUTCOME / f"{key}_audit.csv") for key in files]
-        following = summary.verdicts(*tables, files, audits)
+        following = outcome.following(OUTCOME, files, *tables)
     page.folder = folder
     page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():

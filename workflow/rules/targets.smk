@@ -54,6 +54,22 @@ rule published:
         ],
 
 
+# The report on the papers, for print: a page each, by the browser that the tests use.
+rule report_pdf:
+    input:
+        "results/full/index.html",
+    output:
+        "results/full/report.pdf",
+    log:
+        "results/full/report.log",
+    conda:
+        "../envs/bezierplan.yaml"
+    params:
+        script=str(Path(SOURCE).with_name("docs") / "report.py"),
+    shell:
+        "{sys.executable} {params.script:q} {output:q} 2> {log:q} || (cat {log:q} >&2; false)"
+
+
 for study in STUDIES:
 
     rule:

@@ -47,7 +47,7 @@ def write(titles: Mapping[str, str], verdicts: Mapping[str, str], settings: pd.D
             shutil.copyfile(file, KEPT / f"{key}_{file.name}")
     claims.to_csv(KEPT / "claims.csv", index=False)
     settings.to_csv(KEPT / "settings.csv", index=False)
-    follow = _following(KEPT, verdicts, numbers, claims, measured)
+    follow = following(KEPT, verdicts, numbers, claims, measured)
     report = summary.report(numbers, claims, measured, titles, follow, RESULTS.name)
     (KEPT / "summary.md").write_text(report, encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
@@ -55,7 +55,7 @@ def write(titles: Mapping[str, str], verdicts: Mapping[str, str], settings: pd.D
     README.write_text(readme, encoding="utf-8")
 
 
-def _following(kept: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
+def following(kept: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(kept / f"{key}_{AUDIT}") for key in verdicts]
     calibrations = sorted(map(str, kept.glob(f"*_{READINGS[1]}")))
@@ -69,7 +69,7 @@ def table(kept: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) ->
     tables = [pd.read_csv(kept / name) for name in TABLES]
     follow = "\n".join(
         f"- {titles[key].partition(':')[0]}: {_SENTENCE.split(text)[0]}"
-        for key, text in _following(kept, verdicts, *tables).items()
+        for key, text in following(kept, verdicts, *tables).items()
     )
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
