@@ -33,9 +33,7 @@ DATA = checked.read(Path(__file__).parent / "data" / "claims.yaml")
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("first", "second")}
 UNITS = 40
-Z = stats.norm.ppf
 # By how much more units a power of 0.8 needs than one of a half.
-POWER_OF_HALF = ((Z(0.975) + Z(0.8)) / Z(0.975)) ** 2
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -150,10 +148,6 @@ def test_a_superlative_is_one_comparison_at_a_place_and_its_pairs_are_details():
     assert checks.loc[~checks["primary"], "mark"].to_list() == ["+", "+", "+", "-", "+", "+"]
     del check["every"]
     assert judged(check, third)["verdict"] == "contradicted"
-    # By chance alone, experiments of the paper's size find a the best nearly always, or nearly
-    # never.
-    assert judged(check, best)["replication_probability"] > 0.6
-    assert judged(check, third)["replication_probability"] < 0.1
 
 
 def test_a_superlative_that_fails_by_the_closest_alone_says_against_which_it_holds():
@@ -225,8 +219,6 @@ def test_a_case_is_supported_and_its_contrary_contradicted(name):
         row = judged(check, runs)
         holds, of = row["holds"].split(" of ")
         assert (row["verdict"], holds) == (verdict, of if verdict == "supported" else "0")
-        chance = row["replication_probability"]
-        assert math.isnan(chance) or (chance > 0.5) == (verdict == "supported")
 
 
 @pytest.mark.parametrize("paired", [True, False])
@@ -330,7 +322,6 @@ def test_a_chance_that_enough_runs_tell_is_not_undecided():
     ]
     assert [row["verdict"] for row in found] == ["undecided", "depends"]
     assert found[1]["reason"].startswith("holds in ")
-    assert math.isnan(found[1]["replication_probability"])
 
 
 def test_what_is_computed_of_runs_selects_them():
@@ -400,47 +391,6 @@ def test_extremes_need_the_size_of_the_papers_experiment():
     assert judged(check, runs, repeats={})["reason"] == "the paper's number of runs is unknown"
     assert judged(check, ALIKE)["verdict"] == "undecided"
     assert judged(WITHIN | {"statistic": "min", "margin": 9}, ALIKE)["verdict"] == "supported"
-
-
-@pytest.mark.parametrize("paired", [True, False])
-@pytest.mark.parametrize(
-    ("shift", "verdict"),
-    [(-0.4, "supported"), (0.0, "no effect"), (0.1, "no effect"), (0.4, "contradicted")],
-)
-def test_units_that_would_decide(shift, verdict, paired, monkeypatch):
-    """The margin is 0.3, and samples of any size have the same mean and deviation."""
-    monkeypatch.setattr(judging, "MOST_TIMES", 100)
-
-    def judged_with(n):
-        runs = table({"a": sample("a", shift, n=n), "b": sample("b", n=n)})
-        return judge({"checks": [LOWER | {"statistic": "mean"}]}, runs, paired={"tried": paired})[
-            0
-        ].iloc[0]
-
-    few = judged_with(20)
-    assert few["verdict"] == "undecided"
-    assert judged_with(math.ceil(1.3 * few["units_to_decide"]))[
-        ["verdict", "units_to_decide"]
-    ].to_list() == [verdict, pd.NA]
-    # So few decide in every other experiment.
-    half = few["units_to_decide"] / POWER_OF_HALF
-    assert judged_with(math.floor(0.5 * half))["verdict"] == "undecided"
-    assert judged_with(math.ceil(1.3 * half))["verdict"] == verdict
-
-
-@pytest.mark.parametrize(("finding", "mark", "p", "units"), DATA["units"])
-def test_units_needed_are_known_or_not(finding, mark, p, units):
-    found = verdicts.units_needed(Finding(**finding, n=10), mark, p)
-    assert math.isnan(found) if units == "none" else found == pytest.approx(units * POWER_OF_HALF)
-
-
-def test_no_number_of_units_decides_an_effect_as_large_as_the_margin_or_one_without_interval():
-    claim = judge(
-        {"checks": [LOWER]},
-        table({"a": sample("a", LOWER["margin"] * (1 - 1e-12)), "b": sample("b")}),
-    )[0].iloc[0]
-    assert (claim["verdict"], claim["units_to_decide"] is pd.NA) == ("undecided", True)
-    assert judged(LOWER | {"statistic": "range"}, ALIKE)["units_to_decide"] is pd.NA
 
 
 # From marks to a verdict.
@@ -984,30 +934,6 @@ def test_function_of_the_study():
     assert judged(check, functions={"counted": counted})["verdict"] == "untestable"
 
 
-# Experiments of the paper's size.
-
-
-def test_chance_of_a_small_experiment():
-    # The difference of two means of n units is normal with variance 2 / n; it is negative with
-    # probability Phi(0.5 sqrt(n / 2)).
-    runs = table({"a": sample("a", n=2000), "b": sample("b", 0.5, n=2000)})
-    for n, expected in [(2, 0.691), (10, 0.868), (50, 0.994)]:
-        assert judged(LOWER, runs, repeats={"tried": n})[
-            "replication_probability"
-        ] == pytest.approx(expected, abs=0.04)
-    assert math.isnan(judged(LOWER, runs, repeats={})["replication_probability"])
-    assert with_printed(LOWER, repeats={})[0]["replication_probability"] > 0.9
-
-
-def test_chance_of_several_comparisons_is_that_all_hold():
-    same = table({name: sample(name) for name in "abcd"})
-    row = judged(LOWER | {"than": ["b", "c", "d"]}, same)
-    # The first of four equal methods is the best of them one time in four.
-    assert row["replication_probability"] == pytest.approx(0.25, abs=0.06)
-    anyone = judge({"checks": [LOWER | {"than": ["b", "c", "d"]}], "holds": "any"}, same)[0].iloc[0]
-    assert anyone["replication_probability"] == pytest.approx(0.75, abs=0.06)
-
-
 # Times.
 
 
@@ -1099,7 +1025,6 @@ def test_degenerate_values_give_no_fault(n, value):
 def test_missing_group_is_undecided(kind):
     row = judged(ANY_KIND[kind], table({"a": sample("a")}))
     assert (row["verdict"], row["reason"]) == ("undecided", "no run of b counts")
-    assert math.isnan(row["replication_probability"])
 
 
 def test_without_runs_a_claim_is_untestable():

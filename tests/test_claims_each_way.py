@@ -676,18 +676,6 @@ def test_a_claim_that_fails_by_a_criterion_of_ours_says_so_first(columns_alone):
     assert row["reason"].startswith("fails by our criterion alone")
 
 
-def test_a_picked_run_has_the_chance_of_a_typical_one(columns_alone):
-    """Of every two runs of a pair of cells one bends too much; the picked ones do not."""
-    claim = claim_of("song2016", "C4")
-    results = made("song2016", claim, truth=True)
-    runs = results["routes"].runs
-    runs["objective"] = runs["repeat"].astype(float)
-    runs["max_curvature"] = np.where(runs["repeat"] % 2, 0.2, 0.05)
-    row = verdict("song2016", claim, results)
-    assert row["verdict"] == "supported"
-    assert row["replication_probability"] == pytest.approx(0.25)
-
-
 def test_no_effect_says_below_what_size(columns_alone):
     claim = claim_of("tharwat2018", "C6")
     results = made("tharwat2018", claim, truth=True)

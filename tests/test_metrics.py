@@ -240,23 +240,6 @@ def test_equal_objectives_share_the_mean_of_their_ranks():
     assert values("rank", **table, feasible=[True, False] * 4) == [4, 1.5, 1.5, 3, 3, 3, 3, 1]
 
 
-@pytest.mark.parametrize("end", ["low", "high"])
-@pytest.mark.parametrize(("beyond", "outlier"), [(0.0, 0.0), (0.01, 1.0)])
-def test_an_outlier_lies_more_than_one_and_a_half_ranges_beyond_a_quartile(end, beyond, outlier):
-    """Of nine values with 1 to 7 in the middle the quartiles are 2 and 6, so the fences stand at -4
-    and 12.
-    """
-    objective = [0.0, *map(float, range(1, 8)), 8.0]
-    if end == "low":
-        objective[0] = -4.0 - beyond
-    else:
-        objective[8] = 12.0 + beyond
-    columns = {"condition": ["a"] * 18, "method": ["m"] * 9 + ["other"] * 9}
-    expected = [0.0] * 18
-    expected[0 if end == "low" else 8] = outlier
-    assert values("outlier", objective=objective + [1000.0] * 9, **columns) == expected
-
-
 def rounded_corner(radius):
     """A leg of length 5, a quarter of a circle as one cubic piece, a leg of length 5."""
     k = 4 / 3 * math.tan(math.pi / 8) * radius

@@ -57,7 +57,7 @@ def test_values_that_are_not_there_take_the_sentence_away(kept):
 
 
 def test_a_study_without_sentences_has_no_verdict(kept):
-    assert summary.verdicts(kept["numbers"], kept["claims"], kept["baseline"], {}, []) == {}
+    assert summary.verdicts(kept["numbers"], kept["claims"], kept["baseline"], {}, [], []) == {}
 
 
 # Columns as wholes

@@ -162,8 +162,7 @@ def report(
         "A published number counts if it can be tested and is not derivable from other published "
         "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
         "identified numbers. `verdict_papers_size`: the verdict from as many runs as the paper "
-        "made; `replication_probability`: how often an experiment of that size shows what it "
-        "claims. Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: "
+        "made. Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: "
         "it bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
         "gives one. Here each claim has its verdict under the default interpretation; "
@@ -183,13 +182,12 @@ def report(
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
     columns = [
-        *("statement", "verdict", "verdict_papers_size", "replication_probability"),
-        *("holds", "where_it_holds", "units_to_decide", "published", "effect", "n"),
+        *("statement", "verdict", "verdict_papers_size"),
+        *("holds", "where_it_holds", "published", "effect", "n"),
     ]
     shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
     # Read from a file with gaps, whole numbers are floats.
-    whole = dict.fromkeys(("units_to_decide", "n"), ".0f")
-    digits = whole | dict.fromkeys(("effect", "replication_probability"), ".3g")
+    digits = {"n": ".0f", "effect": ".3g"}
     for column in shown.columns.intersection(list(digits)):
         shown[column] = [
             format(value, digits[column]) if isinstance(value, float) else value

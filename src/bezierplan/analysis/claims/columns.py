@@ -99,21 +99,6 @@ class Effect(NamedTuple):
 class Judged(NamedTuple):
     """How sure a claim's verdict is, and what shows it."""
 
-    units_to_decide: Annotated[
-        int,
-        Column(
-            "of an undecided claim: approximate sample size (units) that decides every comparison "
-            "marked ? with a power of 0.8, if our effects are the true ones; empty if unknown"
-        ),
-    ]
-    replication_probability: Annotated[
-        float,
-        Column(
-            "share of simulated experiments of the paper's size, drawn from our runs, in which the "
-            "point estimates agree with the claim; if the claim is about one picked run of each "
-            "condition, the probability that randomly drawn runs agree with it instead"
-        ),
-    ]
     artefact: Annotated[str, Column("the tables and figures that show it")]
 
 

@@ -3,7 +3,6 @@ the same cells.
 """
 
 import itertools
-import math
 from collections.abc import Iterator
 from pathlib import PurePath
 
@@ -107,7 +106,6 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     _refuse_mixtures(check, claim, runs, [*told_apart, unit])
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
-    typical = _typical(check, claim, material)
     paired = check.paired
     if paired is None:
         paired = _shares_draws(check, material)
@@ -145,20 +143,9 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                     paired=paired,
                     note=_note(check, rows, column, cells),
                     factors=tuple((key, rows[key].iloc[0]) for key in every),
-                    typical=typical.get((condition, name), math.nan),
                 )
             )
     return made
-
-
-def _typical(check: OfRuns, claim: Claim, material: Material) -> dict[tuple[str, str], float]:
-    """Of a check that picks runs: by place and name, the share of all runs that count in which the
-    event happens; else nothing.
-    """
-    if not check.pick:
-        return {}
-    every = comparisons(check.but(pick=None), claim, material)
-    return {(each.place, each.name): float(effects.points(each, "mean")[0]) for each in every}
 
 
 def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFrame:

@@ -49,8 +49,7 @@ class Comparison(NamedTuple):
     values say whether the event happened. printed: the published numbers of the cells (k,), NaN
     unless all are printed. paper_units: number of units in the paper. boolean: whether the metric
     is true or false. paired: whether equal units of the cells belong together. note: for the reader
-    of the row. factors: the values of `every` at the place, by column. typical: where runs are
-    picked, the share of all that count in which the event happens.
+    of the row. factors: the values of `every` at the place, by column.
     """
 
     place: str
@@ -63,7 +62,6 @@ class Comparison(NamedTuple):
     paired: bool
     note: str = ""
     factors: tuple[tuple[str, object], ...] = ()
-    typical: float = math.nan
 
     @property
     def counted(self) -> str:

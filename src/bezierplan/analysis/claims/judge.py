@@ -46,7 +46,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, verdicts
 from bezierplan.analysis.claims.check import Check, OfRuns
 from bezierplan.analysis.claims.claim import Claim
@@ -57,9 +57,6 @@ from bezierplan.analysis.claims.material import Material, Shown, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
-
-# Where more times as many units as we have are needed, the effect lies at the margin.
-MOST_TIMES = 10
 
 
 class _Judged(NamedTuple):
@@ -80,11 +77,6 @@ class _Judged(NamedTuple):
     mark_family: str = ""
     p_family: float = math.nan
     parts: tuple[Comparison, ...] = ()
-
-    @property
-    def units_needed(self) -> float:
-        """`verdicts.units_needed`, of its mark in the family."""
-        return verdicts.units_needed(self.finding, self.mark_family, self.p_family)
 
 
 def judge(
@@ -118,9 +110,9 @@ def judge(
             rows.append(row | {"primary": assignment is first})
             check_rows += details
         claim_rows += [rows[0] | _by_reading(claim, rows), *rows[1:]]
-    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype(
-        {"n": "Int64", "units_to_decide": "Int64"}
-    ), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
+    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"}), pd.DataFrame(
+        check_rows, columns=CHECK_COLUMNS
+    )
 
 
 # From comparisons to a verdict.
@@ -212,8 +204,6 @@ def _judge_variant(
         "high95": finding.high,
         "counted": shown.comparison.counted if shown.comparison else "",
         "p_family": shown.p_family,
-        "units_to_decide": _units_to_decide(deciding) if verdict == "undecided" else pd.NA,
-        "replication_probability": _replication_probability(deciding, holds, f"{name}/replication"),
         "reason": "; ".join(filter(None, reasons)),
     }
     return described | summary, rows
@@ -437,52 +427,6 @@ def _printed(judged: _Judged) -> tuple[float, bool | None]:
 def _published(deciding: list[_Judged]) -> str:
     held = [held for _, held in map(_printed, deciding) if held is not None]
     return f"{sum(held)} of {len(held)}" if held else "not printed"
-
-
-def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> float:
-    """Share of experiments of the paper's size, drawn from our runs, in which the claim holds by
-    point values.
-
-    If runs are picked, the chance that runs drawn at random among those that count, one of each
-    condition, do in their place. NaN if a cell is empty, if the paper's size is unknown, and of
-    extremes, which draws from our runs repeat.
-    """
-    picked = [
-        isinstance(judged.check, OfRuns) and judged.check.pick is not None for judged in deciding
-    ]
-    if any(picked):
-        return math.prod(
-            judged.comparison.typical if of_one else math.nan
-            for judged, of_one in zip(deciding, picked)
-        )
-    held = []
-    for judged in deciding:
-        every = judged.parts or (judged.comparison,)
-        statistic = effects.point_statistic(judged.check) if judged.comparison else None
-        if not statistic or statistic in statistics.WITHOUT_INTERVAL:
-            return math.nan
-        if any(part.paper_units is None for part in every):
-            return math.nan
-        claimed = []
-        for part in every:
-            points = effects.drawn_points(part, statistic, name, part.paper_units)
-            drawn = effects.effect(judged.check, points, part.cells)
-            if np.isnan(drawn).any():
-                return math.nan
-            claimed.append(effects.claimed(judged.check, drawn, judged.finding.margin))
-        held.append(np.all(claimed, axis=0))
-    together = np.any(held, axis=0) if holds == "any" else np.all(held, axis=0)
-    return float(together.mean())
-
-
-def _units_to_decide(deciding: list[_Judged]) -> int | Any:
-    """Units with which every comparison marked ? would be decided: more than there are, but not
-    beyond `MOST_TIMES` as many; missing where that cannot be known.
-    """
-    open_ones = [judged for judged in deciding if judged.mark_family == "?"]
-    if not all(each.units_needed <= MOST_TIMES * each.finding.n for each in open_ones):
-        return pd.NA
-    return max(math.ceil(max(each.units_needed, each.finding.n + 1)) for each in open_ones)
 
 
 # Rows.

@@ -32,7 +32,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.analysis.claims.effects import ALPHA, LEAST_WITHOUT_EXAMPLE, Finding
+from bezierplan.analysis.claims.effects import ALPHA, Finding
 
 VERDICTS = (
     *("supported", "partly", "contradicted", "no effect"),
@@ -43,8 +43,6 @@ VERDICTS = (
 DECIDED, HOLDING = 0.5, 0.75
 # Up to this many names are listed, otherwise only counted.
 MOST_LISTED = 4
-# Share of experiments in which `units_needed` units decide.
-POWER = 0.8
 
 
 def family(p: np.ndarray) -> np.ndarray:
@@ -61,33 +59,6 @@ def mark(finding: Finding, p: float) -> str:
     if finding.toward and p < ALPHA:
         return "+" if finding.toward > 0 else "-"
     return "0" if finding.negligible else "?"
-
-
-def units_needed(finding: Finding, mark: str, p: float) -> float:
-    """Units that decide a comparison with a power of `POWER`, if its effect is the true one; NaN or
-    infinite if that cannot be known.
-
-    mark, p: in the family, empty and NaN for what does not belong to it. Errors shrink with the
-    square root of the number of units. A difference is decided by a p below `ALPHA`: the effect has
-    to be so many standard errors large that p is that low in most experiments, not in every other
-    one. An effect smaller than the margin is decided by an interval within the margin: half of the
-    interval has to fit beside the effect, and with it what most experiments differ by.
-    """
-    from scipy.special import ndtri
-
-    certain, mostly = ndtri(1 - ALPHA / 2), ndtri(POWER)
-    by_p = mark in ("+", "-") or (mark == "?" and finding.toward)
-    # A p of 0 lies below what draws can tell.
-    if by_p and p > 0:
-        errors = -ndtri(p / 2)  # of the upper tail, 1 - p / 2 is 1 for a small p
-        return float(finding.n * ((certain + mostly) / errors) ** 2) if errors else math.inf
-    room = finding.margin - abs(finding.effect)
-    half = max(finding.high - finding.effect, finding.effect - finding.low)
-    if not mark or not room > 0 or math.isnan(half):
-        return math.nan
-    if not half:
-        return LEAST_WITHOUT_EXAMPLE
-    return float(finding.n * (half * (1 + mostly / certain) / room) ** 2)
 
 
 def conjunction(findings: Sequence[Finding]) -> tuple[Finding, int]:

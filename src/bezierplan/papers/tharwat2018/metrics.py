@@ -22,24 +22,8 @@ if TYPE_CHECKING:
 
     from bezierplan.workspaces.problem import Path, Problem, Workspace
 
-# A value this many interquartile ranges beyond its quartile is an outlier in a box plot.
-_OUTLIER_REACH = 1.5
 # Samples of a path that determine its way round the circles.
 CLASS_SAMPLES = 2001
-
-
-@metric("-", "whether the objective lies beyond the whiskers of its method's box", step=1.0)
-def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a run's objective lies beyond the whiskers of the box of its method under its
-    condition.
-    """
-    grouped = runs.groupby(["condition", "method"], dropna=False)["objective"]
-    first, third = (
-        grouped.transform(lambda each: each.quantile(0.25)),
-        grouped.transform(lambda each: each.quantile(0.75)),
-    )
-    reach = _OUTLIER_REACH * (third - first)
-    return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
 
 
 def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
