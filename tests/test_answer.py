@@ -12,6 +12,7 @@ from bezierplan.planners import Plan
 from bezierplan.running import execution, planning, problems
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import TAKEN
+from bezierplan.running.guard import plain
 from bezierplan.running.judge import answer
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
@@ -198,9 +199,9 @@ def test_the_row_holds_what_was_judged():
 
 @pytest.mark.parametrize("plan", [PLAN, PLAN._replace(path=None, claimed_feasible=False)])
 def test_text_holds_all_bits_of_a_plan(plan):
-    plain = answer.plain(plan._replace(objective=0.1 + 0.2, history=np.array([np.inf, -0.0])))
-    again = answer.unpacked(json.loads(json.dumps(answer.packed(plain))))
-    assert repr(again) == repr(plain)
+    given = answer.plain(plan._replace(objective=0.1 + 0.2, history=np.array([np.inf, -0.0])))
+    again = plain.unpacked(json.loads(json.dumps(plain.packed(given))))
+    assert repr(again) == repr(given)
 
 
 def test_a_region_shares_no_memory_with_its_workspace():

@@ -63,77 +63,78 @@ def plan(problem, rng, *, evaluations: Annotated[int, Range(1)]):
     return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history,
                 stop="evaluations", extra={"tries": 1})
 """
-# Planners with several faults, each on another problem: what stands in WALK, and what stands there
-# instead.
-BAD = {
-    "answers": [
-        (
-            "    return Plan(",
-            """    title = problem.name.partition(": ")[2]
-    if title == "open":
-        path = Path("polyline", np.array([np.add(start, 1e-9), target]))
-    if title == "obstacle in the way":
-        raise RuntimeError("no\\nway")
-    if title == "start is target":
-        history = np.sort(lengths)[::1]
-    if title == "target beside start":
-        evaluations += 1
-    if title == "narrow":
-        history = history.tolist()
-    if title == "no obstacles":
-        history[-1] -= 1
-    return Plan(""",
-        ),
-        ("history[-1], claimed", "lengths.min(), claimed"),
-        ("KEPT =", "exact = True\nKEPT ="),
-    ],
-    "randomness": [
-        (
-            "    return Plan(",
-            """    title = problem.name.partition(": ")[2]
-    if title == "open":
-        path.points[1] += np.random.random()
-    if title == "obstacle in the way":
-        path.points[1] += random.random()
-    if title == "start is target":
-        path.points[1] += KEPT.random()
-    if title == "target beside start":
-        path.points[1] += njit(lambda: np.random.random())()
-    if title == "narrow":
-        path.points[1] += sum(n * int(word) for n, word in enumerate({*map(str, range(64))}))
-    if title == "no obstacles":
-        object.__setattr__(problem.workspace, "bounds", (0.0, 9.0, 0.0, 9.0))
-    return Plan(""",
-        ),
-    ],
-    "columns": [('{"tries": 1}', '{"length": 1} if start == target else {"tries": 1}')],
-    "generators": [
-        ("    start, target", "    rng = np.random.default_rng(5)\n    start, target"),
-    ],
+TITLED = """    title = problem.name.partition(": ")[2]
+    if title == {title!r}:
+        {fault}
+    return Plan("""
+# What a planner does on a problem, the fact that finds it, and what is said of it.
+FAULTS_OF_RUNS = {
+    "another start": (
+        "open",
+        'path = Path("polyline", np.array([np.add(start, 1e-9), target]))',
+        "plan",
+        "path: start: ",
+    ),
+    "a history that rises": (
+        "start is target",
+        "history = np.sort(lengths)[::1]",
+        "history",
+        "rises; expected the best objective so far",
+    ),
+    "a budget": (
+        "target beside start",
+        "evaluations += 1",
+        "budget",
+        "21 evaluations; expected at most 20",
+    ),
+    "an end of the history": ("no obstacles", "history[-1] -= 1", "history", "ends with "),
+    **{
+        f"random numbers of {name}": (
+            "open",
+            f"path.points[1] += {other}",
+            "random numbers",
+            "path: another value from the same generator; all random numbers come from rng, and",
+        )
+        for name, other in {
+            "numpy": "np.random.random()",
+            "python": "random.random()",
+            "its own": "KEPT.random()",
+            "a kernel": "njit(lambda: np.random.random())()",
+        }.items()
+    },
+    "an order": (
+        "narrow",
+        "path.points[1] += sum(n * int(word) for n, word in enumerate({*map(str, range(64))}))",
+        "random numbers",
+        "another plan in another process; hash()",
+    ),
+    "a column of another": (
+        "start is target",
+        "return Plan(path, history[-1], True, evaluations, history, '', {'length': 1})",
+        "plan",
+        "extra: length: a column or setting has this name",
+    ),
+}
+# What ends all runs: the whole line follows the name of the planner.
+ENDS = {
+    "an exception": (
+        'raise RuntimeError("no\\nway")',
+        "circles: open: RuntimeError: no way",
+    ),
+    "another type": (
+        "history = history.tolist()",
+        "circles: open: its answer: history: expected an array",
+    ),
+    "another problem": (
+        'object.__setattr__(problem.workspace, "bounds", (0.0, 9.0, 0.0, 9.0))',
+        "problem: circles: open: is another after the run",
+    ),
+    "processes": (
+        "import subprocess; subprocess.Popen(['sleep', '60'])",
+        f"circles: open: {watchdog.LEFT}",
+    ),
 }
 EXACT = "4 paths claimed feasible, 0 by the checker"
-GLOBAL = "path: another value from the same generator; all random numbers come from rng, and"
-TOLD = {
-    "answers": [
-        ("open", "plan", "path: start: "),
-        ("obstacle in the way", "plan", "raises RuntimeError: no way"),
-        ("start is target", "history", "rises; expected the best objective so far"),
-        ("target beside start", "budget", "21 evaluations; expected at most 20"),
-        ("narrow", "plan", "history: expected an array"),
-        ("no obstacles", "history", "ends with "),
-        ("sealed target", "claims", EXACT),
-    ],
-    "randomness": [
-        *(
-            (title, "random numbers", GLOBAL)
-            for title in ("open", "obstacle in the way", "start is target", "target beside start")
-        ),
-        ("narrow", "random numbers", "another plan in another process; hash()"),
-        ("no obstacles", "problem unchanged", "the problem is another after the run"),
-    ],
-    "columns": [("start is target", "plan", "extra: length: a column or setting has this name")],
-    "generators": [("all problems", "random numbers", "the same plans from every generator; draw")],
-}
 
 
 def written(folder, source, workspaces=("circles",)):
@@ -166,27 +167,40 @@ def test_a_planner_in_a_file_passes_on_every_kind_of_workspace(tmp_path):
     assert contract.Finding("grid: open", "budget", True, "20 evaluations") in findings
 
 
-@pytest.mark.parametrize("fault", BAD, ids=str)
-def test_bad_planner_fails_for_its_faults(fault, tmp_path):
-    source = WALK
-    for old, new in BAD[fault]:
-        assert old in source
-        source = source.replace(old, new, 1)
-    found = failed(written(tmp_path, source), {"evaluations": 20})
-    for title, fact, told in TOLD[fault]:
-        named = [each for each in found if each.problem.endswith(title) and each.fact == fact]
-        assert [each.detail.startswith(told) for each in named] == [True], (title, found)
-    assert {each.fact for each in found} <= {fact for _, fact, _ in TOLD[fault]}
-
-
-def test_planner_that_keeps_processes_is_told(tmp_path):
-    source = WALK.replace(
-        "    return Plan(",
-        "    import subprocess; subprocess.Popen(['sleep', '60'])\n    return Plan(",
-    )
+@pytest.mark.parametrize("case", FAULTS_OF_RUNS)
+def test_a_bad_planner_fails_for_its_fault(case, tmp_path):
+    title, deed, fact, told = FAULTS_OF_RUNS[case]
+    source = WALK.replace("    return Plan(", TITLED.format(title=title, fault=deed), 1)
+    source = source.replace("history[-1], claimed", "lengths.min(), claimed")
     (found,) = failed(written(tmp_path, source), {"evaluations": 20})
-    assert found.detail.endswith(watchdog.LEFT)
-    assert "circles: open" in found.detail
+    assert found.problem.endswith(title)
+    assert (found.fact, found.detail[: len(told)]) == (fact, told)
+
+
+@pytest.mark.parametrize("case", ENDS)
+def test_what_ends_the_runs_is_one_fault(case, tmp_path):
+    deed, told = ENDS[case]
+    source = WALK.replace("    return Plan(", TITLED.format(title="open", fault=deed), 1)
+    (found,) = failed(written(tmp_path, source), {"evaluations": 20})
+    assert told in found.detail
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fact", "told"),
+    [
+        ("KEPT =", "exact = True\nKEPT =", "claims", EXACT),
+        (
+            "    start, target",
+            "    rng = np.random.default_rng(5)\n    start, target",
+            "random numbers",
+            "the same plans from every generator; draw",
+        ),
+    ],
+)
+def test_a_planner_is_not_what_it_says(old, new, fact, told, tmp_path):
+    found = failed(written(tmp_path, WALK.replace(old, new, 1)), {"evaluations": 20})
+    assert {each.fact for each in found} == {fact}
+    assert found[-1].detail.startswith(told)
 
 
 def test_wrong_claims_of_a_planner_that_is_not_exact_are_counted():

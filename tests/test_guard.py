@@ -118,10 +118,9 @@ def test_runs_are_those_of_this_process_and_print_into_the_log(tmp_path, monkeyp
 
 def test_a_track_comes_from_the_same_process(tmp_path):
     given = chunk(tmp_path)
-    (points,) = execution.track(given, given.conditions()[0], 1, PROBLEM)
-    assert np.array_equal(
-        points, execution.run(given, given.conditions()[0], 1, PROBLEM).path.points
-    )
+    run = given, given.conditions()[0], 1, PROBLEM
+    (points,) = execution.run(*run, function="track")
+    assert np.array_equal(points, execution.run(*run).path.points)
 
 
 @pytest.mark.parametrize(

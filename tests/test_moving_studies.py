@@ -14,8 +14,7 @@ from bezierplan.analysis.run_tables import equal
 from bezierplan.commands import replay
 from bezierplan.figures import animation
 from bezierplan.geometry import shortest_paths
-from bezierplan.running import problems, rides, worlds
-from bezierplan.running.chunk import Condition
+from bezierplan.running import execution, problems, rides, worlds
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import Planned, Ride
 from bezierplan.schema.checked import Fault
@@ -97,7 +96,7 @@ def written(folder, old="", new=""):
 
 def chunk(study):
     made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
-    return rides.run_chunk(made, found, job(study, "drives", "mine", "smoke", 0))
+    return execution.run_chunk(made, job(study, "drives", "mine", "smoke", 0), found)
 
 
 def test_a_reader_s_planner_drives_by_one_line_of_config(tmp_path):
@@ -150,10 +149,10 @@ def test_a_drive_that_is_made_again_has_the_path_of_its_row(tmp_path):
     made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     described = job(study, "drives", "mine", "smoke", 0)
     run = chunk(study)[0].to_pylist()[1]
-    ride, _ = rides.rerun(described, run, made["across"], found["across"])
+    ride, _ = execution.redriven(described, run, made["across"], found["across"])
     assert ride.motion.points[-1].tolist() == run["path_points"][-2:]
     with pytest.raises(ValueError, match="its rerun ends in another path"):
-        rides.rerun(described, run | {"repeat": 0}, made["across"], found["across"])
+        execution.redriven(described, run | {"repeat": 0}, made["across"], found["across"])
 
 
 def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path):
@@ -181,7 +180,7 @@ def test_files_of_problems_keep_the_world(tmp_path):
     worlds.write(made, described.homes, found, file)
     assert worlds.read(file)["across"].workspace(3).occupied[2, 3]
     assert not problems.read(file)["across"].workspace.occupied[2, 3]
-    bounds = rides.bounds_of(made, found).to_pylist()[0]
+    bounds = worlds.bounds_of(made, found).to_pylist()[0]
     assert bounds["bound"] == 6.0
     later = made["across"]._replace(workspace=found["across"].maps[1])
     assert bounds["least_arrival"] == shortest_paths.shortest_path(later).length > 6.0
@@ -245,8 +244,7 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_pat
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
     plan = Planned(0.0, None, float(times[-1]), 0.0, 0.0, 1)
     ride = Ride(Motion(around, times), True, 0.0, [plan])
-    described = job(study, "drives", "mine", "smoke", 0)
-    row, _ = rides.row(described, Condition("across", {}), 0, ride, made["across"], found["across"])
+    row, _ = rides.judged(ride, made["across"], found["across"])
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
 
 
@@ -263,14 +261,7 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     ride = Ride(Motion(points, np.arange(4.0)), True, 0.0, [Planned(0.0, None, 10.0, 0.0, 0.0, 1)])
     verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
-    row, _ = rides.row(
-        job(study, "drives", "mine", "smoke", 0),
-        Condition("across", {}),
-        0,
-        ride,
-        made["across"],
-        found["across"],
-    )
+    row, _ = rides.judged(ride, made["across"], found["across"])
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
 
 
@@ -284,10 +275,7 @@ def a_row(tmp_path, points, times, arrived=True):
         0.0,
         [Planned(0.0, None, 6.0, 0.0, 0.0, 1)],
     )
-    described = job(study, "drives", "mine", "smoke", 0)
-    return rides.row(described, Condition("across", {}), 0, ride, made["across"], found["across"])[
-        0
-    ]
+    return rides.judged(ride, made["across"], found["across"])[0]
 
 
 # The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.

@@ -17,7 +17,7 @@ import starts
 
 from bezierplan.__main__ import main
 from bezierplan.places import TREE
-from bezierplan.running import execution, problems, rides, rows, worlds
+from bezierplan.running import execution, problems, rows, worlds
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.judge import recheck
 from bezierplan.study import proof
@@ -341,10 +341,10 @@ def tasks(tmp_path_factory):
     files = {name: str(folder / f"{name}.parquet") for name in ("e", "d")}
     problems.write(MADE, dict.fromkeys(MADE, "field"), files["e"])
     worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, files["d"])
-    bounds = {"e": problems.bounds_of(MADE), "d": rides.bounds_of(MET, WORLDS)}
+    bounds = {"e": problems.bounds_of(MADE), "d": worlds.bounds_of(MET, WORLDS)}
     runs = {
         "e": (CHUNK, execution.run_chunk(MADE, CHUNK)[0]),
-        "d": (DRIVES, rides.run_chunk(MET, WORLDS, DRIVES)[0]),
+        "d": (DRIVES, execution.run_chunk(MET, DRIVES, WORLDS)[0]),
     }
     made = {}
     for name, (chunk, table) in runs.items():

@@ -10,7 +10,7 @@ import numpy as np
 from bezierplan.figures import style
 from bezierplan.figures.panels import snapshot
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.running import rides
+from bezierplan.running import execution
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -32,7 +32,7 @@ def save_run(reproduced: Results, file: Path) -> None:
     """Save the drive in the results of one run."""
     row = reproduced.runs.iloc[0]
     problem, world = (part[row["problem"]] for part in (reproduced.problems, reproduced.worlds))
-    ride, verdict = rides.rerun(reproduced.jobs[row["method"]], row, problem, world)
+    ride, verdict = execution.redriven(reproduced.jobs[row["method"]], row, problem, world)
     save(world, problem, ride, verdict, file)
 
 

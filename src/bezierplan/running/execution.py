@@ -1,25 +1,36 @@
-"""One chunk of runs: one method on every condition of an experiment, for a block of repeats."""
+"""One chunk of runs: one method on every condition of an experiment, for a block of repeats. In a
+world that moves, a run is a drive.
+"""
 
 import itertools
 import logging
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
-from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
-from bezierplan.planners import Plan, is_file, planner_module
-from bezierplan.running import rows
+from bezierplan.planners import is_file
+from bezierplan.running import rides, rows
 from bezierplan.running.chunk import Chunk, Condition
-from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
+from bezierplan.running.columns import (
+    TAKEN,
+    DriveOutcome,
+    DriveTimes,
+    Outcome,
+    Planned,
+    Times,
+)
 from bezierplan.running.guard import interface, process, worker
-from bezierplan.running.jobs.watchdog import PlannerFailure, begin, executing
+from bezierplan.running.jobs.watchdog import PlannerFailure, begin
 from bezierplan.running.judge import answer
+from bezierplan.running.simulation import motion_check
+from bezierplan.running.simulation.robot import Ride
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.worlds import World
 
 logger = logging.getLogger(__name__)
 
@@ -74,64 +85,64 @@ def told_chunk(chunk: Chunk) -> str:
     return f"run {chunk.name}: planner {chunk.planner}"
 
 
-def plans(
+def made(
     chunk: Chunk,
     problems: dict[str, Problem],
     tasks: Iterable[worker.Task],
     again: worker.Task | None = None,
+    worlds: dict[str, World] | None = None,
+    function: str = "plan",
 ) -> Iterator[worker.Made]:
-    """`worker.plans` of a chunk's planner. Raises PlannerFailure, naming the run."""
-    if not is_file(chunk.planner):
-        begins = partial(begin, chunk.time_limit)
-        return worker.plans(chunk.planner, problems, tasks, again, begins)
-    return process.plans(chunk.planner, problems, tasks, again, told_chunk(chunk), chunk.time_limit)
+    """`worker.made` of a chunk's planner. Raises PlannerFailure, naming the run."""
+    work = worker.Work(chunk.planner, problems, function, worlds, chunk.policy)
+    if is_file(chunk.planner):
+        yield from process.made(work, tasks, again, told_chunk(chunk), chunk.time_limit)
+        return
+    yield from worker.made(work, tasks, again, partial(begin, chunk.time_limit))
+    begin(None, told_chunk(chunk))
 
 
-def run(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> Plan:
-    """The plan of one run."""
-    (made,) = plans(chunk, {condition.problem: problem}, [task(chunk, condition, repeat)])
-    return made.plan
-
-
-def track(chunk: Chunk, condition: Condition, repeat: int, problem: Problem) -> list[np.ndarray]:
-    """The control points (n, 2) of the best path after each iteration of a run."""
-    run_task = task(chunk, condition, repeat)
-    if not is_file(chunk.planner):
-        with executing(run_task.name):
-            made = planner_module(chunk.planner).track(
-                problem, run_task.generator(), **run_task.settings
-            )
-            return list(made)
-    arguments = {
-        "planner": str(File(chunk.planner).resolve()),
-        "problem": worker.packed_problems({condition.problem: problem}),
-        "task": run_task,
-    }
-    return list(
-        map(
-            np.array,
-            process.answers("guard.worker.tracked", arguments, run_task.name, chunk.time_limit),
-        )
-    )
-
-
-def accepted(plan: Any, problem: Problem, chunk: Chunk, condition: Condition, repeat: int) -> Plan:
-    """A planner's answer as plain values. Raises PlannerFailure if it is not valid for the
-    problem.
+def run(
+    chunk: Chunk,
+    condition: Condition,
+    repeat: int,
+    problem: Problem,
+    world: World | None = None,
+    function: str = "plan",
+) -> Any:
+    """The plan of one run; its track: the control points (n, 2) of the best path after each
+    iteration; or, in a world, its ride.
     """
-    run = task(chunk, condition, repeat)
-    try:
-        return answer.accepted(plan, problem, taken(run, condition))
-    except answer.Unfit as fault:
-        raise PlannerFailure(f"{run.name}: its answer: {fault}") from None
+    name, tasks = condition.problem, [task(chunk, condition, repeat)]
+    worlds = {name: world} if world else None
+    (only,) = made(chunk, {name: problem}, tasks, worlds=worlds, function=function)
+    return only.found
 
 
-def taken(run: worker.Task, condition: Condition) -> list[str]:
-    """Names that no extra column of a run may have."""
-    return [*TAKEN, *run.settings, *condition.values]
+def tracked(chunk: Chunk, row: Mapping[str, Any], problem: Problem) -> list[np.ndarray]:
+    """The track of a run, by its row. Raises ValueError if it has another path than the row."""
+    track = run(chunk, *_named(chunk, row), problem, function="track")
+    _refuse_other_path(row, track[-1])
+    return track
 
 
-def refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
+def redriven(
+    chunk: Chunk, row: Mapping[str, Any], problem: Problem, world: World
+) -> tuple[Ride, motion_check.Verdict]:
+    """The drive of a run, by its row, and the verdict on it: for what no table keeps. Raises
+    ValueError if it has another path than the row.
+    """
+    ride = run(chunk, *_named(chunk, row), problem, world)
+    _refuse_other_path(row, rides.driven(ride).points)
+    return ride, motion_check.check(ride.motion, world)
+
+
+def _named(chunk: Chunk, row: Mapping[str, Any]) -> tuple[Condition, int]:
+    """The condition and the repeat of a row."""
+    return {each.name: each for each in chunk.conditions()}[row["condition"]], int(row["repeat"])
+
+
+def _refuse_other_path(run: Mapping[str, Any], points: np.ndarray) -> None:
     """Raise ValueError unless a run that was made again has the points (n, 2) of its row's path."""
     if not np.array_equal(points.ravel(), run["path_points"]):
         raise ValueError(
@@ -171,7 +182,9 @@ def row(
     answer is not valid for this problem: for example, if its path begins or ends elsewhere, or a
     column would overwrite another.
     """
-    plan = accepted(plan, problem, chunk, condition, repeat)
+    run = task(chunk, condition, repeat)
+    with answer.of(run.name):
+        plan = answer.accepted(plan, problem, [*TAKEN, *run.settings, *condition.values])
     curve, points = answer.stored(plan.path)
     length, check = answer.verdict(answer.restored(curve, points), blocked)
     outcome = Outcome(
@@ -193,52 +206,86 @@ def row(
     return identity(chunk, condition, repeat) | outcome._asdict() | plan.extra
 
 
-def run_chunk(problems: dict[str, Problem], chunk: Chunk) -> tuple[pa.Table, pa.Table]:
-    """The runs of a chunk (columns as in `columns`) and, in a separate table because they are never
-    reproducible, their times.
+def rows_again(
+    chunk: Chunk,
+    runs: list[tuple[Condition, int]],
+    problems: dict[str, Problem],
+    worlds: dict[str, World],
+) -> list[dict[str, Any]]:
+    """The rows of some runs, which are made again."""
+    tasks = [task(chunk, *run) for run in runs]
+    met = {condition.problem: problems[condition.problem] for condition, _ in runs}
+    judged = _judge(chunk, met, worlds)
+    return [
+        judged(*run, each.found)[0]
+        for run, each in zip(runs, made(chunk, met, tasks, worlds=worlds))
+    ]
+
+
+def _judge(
+    chunk: Chunk, problems: dict[str, Problem], worlds: dict[str, World]
+) -> Callable[[Condition, int, Any], tuple[dict[str, Any], dict[str, Any]]]:
+    """A function that makes, of what a run has found, a row, and of a drive its trace."""
+    regions = {} if worlds else {name: region(each.workspace) for name, each in problems.items()}
+
+    def judged(condition: Condition, repeat: int, found: Any) -> tuple[dict, dict]:
+        name = condition.problem
+        if not worlds:
+            return row(chunk, condition, repeat, found, problems[name], regions[name]), {}
+        known = identity(chunk, condition, repeat)
+        outcome, trace = rides.judged(found, problems[name], worlds[name])
+        return known | outcome, {"id": known["id"]} | trace
+
+    return judged
+
+
+def run_chunk(
+    problems: dict[str, Problem], chunk: Chunk, worlds: dict[str, World] | None = None
+) -> tuple[pa.Table, ...]:
+    """The runs of a chunk (columns as in `columns`); in a separate table because they are never
+    reproducible, their times; and, of drives in worlds, their traces (`rides.judged`).
 
     A warm-up makes times comparable, and its runs must repeat themselves. Raises PlannerFailure,
     naming the run, if a planner fails, does not return a valid plan for the problem (`row`),
-    changes a problem, or gives another plan when its first run is repeated.
+    changes a problem or a world, or gives another plan when its first run is repeated.
     """
-    met = {name: problem for name, problem in problems.items() if name in chunk.problems}
-    blocked = {name: region(problem.workspace) for name, problem in met.items()}
-    planned = chunk.conditions()
+    met = {name: problems[name] for name in chunk.problems}
+    moving = {name: worlds[name] for name in met} if worlds else {}
+    planned, judged = chunk.conditions(), _judge(chunk, met, moving)
     deterministic = interface.traits(chunk.planner).deterministic
     first, last = chunk.repeats
     order = _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
+    tasks = [task(chunk, planned[k], repeat) for k, repeat in order]
     # What needs no random numbers must not be changed by others.
     warm_up = task(chunk, planned[order[0][0]], order[0][1] + deterministic)
-    warm, outcomes, times = [], {}, {}
-    for number, plan, cpu, wall in plans(
-        chunk,
-        met,
-        [task(chunk, planned[k], repeat) for k, repeat in order],
-        warm_up,
-    ):
+    warm, done = [], {}
+    for number, found, cpu, wall in made(chunk, met, tasks, warm_up, moving):
         k, repeat = order[max(number, 0)]
-        problem = planned[k].problem
-        made = row(chunk, planned[k], repeat, plan, met[problem], blocked[problem])
+        outcome, trace = judged(planned[k], repeat, found)
         if number < 0:
-            warm.append(made)
+            warm.append(outcome)
             continue
         if number == 0:
-            refuse_unrepeatable(warm, made, chunk, deterministic)
-        outcomes[k, repeat], times[k, repeat] = made, Times(made["id"], cpu, wall)._asdict()
+            refuse_unrepeatable(warm, outcome, chunk, deterministic)
+        times = Times(outcome["id"], cpu, wall)._asdict()
+        if moving:
+            times |= rides.replan_times(found, chunk.policy["step_seconds"])._asdict()
+        done[k, repeat] = outcome, times, trace
         if (number + 1) % _LOGGED == 0:
             logger.info("%d runs done", number + 1)
-    begin(None, told_chunk(chunk))
     if deterministic:
         for k, repeat in itertools.product(range(len(planned)), range(first + 1, last)):
-            outcomes[k, repeat] = outcomes[k, first] | {
-                "id": run_id(chunk, planned[k], repeat),
-                "repeat": repeat,
-            }
-            times[k, repeat] = times[k, first] | {"id": outcomes[k, repeat]["id"]}
-    logger.info("all %d runs done", len(outcomes))
-    ordered = sorted(outcomes)
-    return rows.table([outcomes[key] for key in ordered], Planned, Outcome), rows.table(
-        [times[key] for key in ordered], Times
+            outcome, *others = done[k, first]
+            own = {"id": run_id(chunk, planned[k], repeat)}
+            done[k, repeat] = outcome | own | {"repeat": repeat}, *(each | own for each in others)
+    logger.info("all %d runs done", len(done))
+    runs, times, traces = zip(*(done[key] for key in sorted(done)))
+    if not moving:
+        return rows.table(runs, Planned, Outcome), rows.table(times, Times)
+    return (
+        rows.table(runs, Planned, Outcome, DriveOutcome),
+        rows.table(times, Times, DriveTimes),
+        pa.Table.from_pylist(traces),
     )
 
 

@@ -14,7 +14,6 @@ from bezierplan.planners import Plan
 from bezierplan.running import problems
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.guard import process, worker
-from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.running.judge import answer
 from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.problem import Path, Problem, Workspace
@@ -87,17 +86,15 @@ def planned(
     if file:
         problems = {str(number): part for number, part in enumerate(parts)}
         tasks = [worker.Task(name, each, seed, settings) for each in problems]
-        made = [*process.plans(file, problems, tasks, None, name)]
-        answers, seconds = [each.plan for each in made], sum(each.cpu for each in made)
+        made = [*process.made(worker.Work(file, problems), tasks, None, name)]
+        answers, seconds = [each.found for each in made], sum(each.cpu for each in made)
     else:
         answers, seconds, _ = worker.timed(
             lambda: [plan(part, np.random.default_rng(seed), **settings) for part in parts]
         )
     taken = {*TAKEN, *settings}
-    try:
+    with answer.of(name):
         accepted = [answer.accepted(plan, part, taken) for plan, part in zip(answers, parts)]
-    except answer.Unfit as unfit:
-        raise PlannerFailure(f"{name}: its answer: {unfit}") from None
     return joined(accepted), seconds
 
 

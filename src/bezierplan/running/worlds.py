@@ -3,6 +3,7 @@ like those of `problems`, with one more column: world, as JSON (`workspaces.worl
 of such a problem is what planners see at the beginning.
 """
 
+import math
 from pathlib import Path
 
 import pyarrow as pa
@@ -11,7 +12,9 @@ import pyarrow.parquet as parquet
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows
+from bezierplan.running.columns import Bound, DriveBound
 from bezierplan.running.descriptions import Descriptions
+from bezierplan.running.simulation import bounds
 from bezierplan.workspaces import worlds
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import kind_of
@@ -20,10 +23,13 @@ from bezierplan.workspaces.worlds import World
 
 
 def build_all(described: Descriptions, folder: Path) -> tuple[dict[str, Problem], dict[str, World]]:
-    """Problems and their worlds, both by the problem's name, from their descriptions.
+    """Problems and their worlds, both by the problem's name, from their descriptions; no worlds
+    where nothing moves.
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
+    if not all(hasattr(kind_of(each), "world") for each in described.workspaces.values()):
+        return problem_files.build_all(described, folder), {}
     made, moving = {}, {}
     for name, problem in described.problems.items():
         home = problem["workspace"]
@@ -53,11 +59,12 @@ def build(description: dict, problem: dict, name: str, folder: Path) -> World:
 def write(
     problems: dict[str, Problem], workspaces: dict[str, str], found: dict[str, World], file: str
 ) -> None:
-    """Write problems, with the names of their workspaces and their worlds."""
+    """Write problems, with the names of their workspaces and their worlds, if there are any."""
     problem_files.write(problems, workspaces, file)
-    table = parquet.read_table(file)
-    column = pa.array([worlds.to_json(found[name]) for name in table["problem"].to_pylist()])
-    parquet.write_table(table.append_column("world", column), file)
+    if found:
+        table = parquet.read_table(file)
+        column = pa.array([worlds.to_json(found[name]) for name in table["problem"].to_pylist()])
+        parquet.write_table(table.append_column("world", column), file)
 
 
 def read(file: str) -> dict[str, World]:
@@ -67,3 +74,19 @@ def read(file: str) -> dict[str, World]:
         return {}
     made = zip(table["problem"].to_pylist(), table["world"].to_pylist())
     return {name: worlds.from_json(text) for name, text in made}
+
+
+def bounds_of(problems: dict[str, Problem], moving: dict[str, World]) -> pa.Table:
+    """`problems.bounds_of`; in worlds a row for each problem with columns of `columns.Bound`,
+    without an octile bound, and of `columns.DriveBound`.
+    """
+    if not moving:
+        return problem_files.bounds_of(problems)
+    made = []
+    for name, problem in problems.items():
+        least = bounds.least_way(moving[name], problem)
+        arrival = DriveBound(bounds.least_arrival(moving[name], problem))
+        made.append(
+            problem_files.bound_row(name, problem, least, math.nan)._asdict() | arrival._asdict()
+        )
+    return rows.table(made, Bound, DriveBound)

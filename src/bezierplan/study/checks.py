@@ -17,7 +17,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
-from bezierplan.running import columns, problems, worlds
+from bezierplan.running import columns, worlds
 from bezierplan.running.chunk import conditions
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
@@ -229,10 +229,7 @@ def _built(study: Study, name: str) -> Problem:
         {name: problem.plain("settings", "layouts") | drawn},
         {problem.workspace: study.described(problem.workspace)},
     )
-    if home.moves:
-        made, _ = worlds.build_all(described, study.folder)
-        return made[name]
-    return problems.build_all(described, study.folder)[name]
+    return worlds.build_all(described, study.folder)[0][name]
 
 
 def _check_experiment(

@@ -68,19 +68,7 @@ class Problems(Job):
         return modules_of(self.descriptions.workspaces)
 
     def run(self, input_files, output_files, threads):
-        """Build the problems."""
-        from bezierplan.running import problems
-
-        built = problems.build_all(self.descriptions, Path(self.folder))
-        problems.write(built, self.descriptions.homes, output_files[0])
-
-
-@dataclass(frozen=True)
-class Worlds(Problems):
-    """The problems of an experiment of drives, with the worlds that move."""
-
-    def run(self, input_files, output_files, threads):
-        """Build the problems and worlds."""
+        """Build the problems, with the worlds of those that move."""
         from bezierplan.running import worlds
 
         built, moving = worlds.build_all(self.descriptions, Path(self.folder))
@@ -88,47 +76,32 @@ class Worlds(Problems):
 
 
 def problems(study: Study, scale: str, experiment: str) -> Problems:
-    """Problems; of an experiment of drives, with their worlds."""
-    kind = Worlds if study.moves(experiment) else Problems
+    """The problems of an experiment."""
     described = problems_job(study, experiment, scale)
     maps = study.maps(described.workspaces)
-    return kind(described, relative(study.folder), sources=maps)
+    return Problems(described, relative(study.folder), sources=maps)
 
 
 @dataclass(frozen=True)
 class Bounds(Job):
-    """The exact shortest path of each problem of an experiment."""
+    """The exact shortest path of each problem of an experiment; of drives, what no robot can
+    beat.
+    """
 
     def run(self, input_files, output_files, threads):
         """Compute the bounds."""
         import pyarrow.parquet as parquet
 
-        from bezierplan.running import problems
-
-        parquet.write_table(
-            problems.bounds_of(problems.read(input_files.problems)), output_files[0]
-        )
-
-
-@dataclass(frozen=True)
-class BoundsOfDrives(Bounds):
-    """For each problem what no robot can beat."""
-
-    def run(self, input_files, output_files, threads):
-        """Compute the bounds."""
-        import pyarrow.parquet as parquet
-
-        from bezierplan.running import problems, rides, worlds
+        from bezierplan.running import problems, worlds
 
         file = input_files.problems
-        parquet.write_table(
-            rides.bounds_of(problems.read(file), worlds.read(file)), output_files[0]
-        )
+        bounds = worlds.bounds_of(problems.read(file), worlds.read(file))
+        parquet.write_table(bounds, output_files[0])
 
 
 def bounds(study: Study, scale: str, experiment: str) -> Bounds:
-    """Bounds; of an experiment of drives, what no robot can beat."""
-    return (BoundsOfDrives if study.moves(experiment) else Bounds)()
+    """The bounds of an experiment."""
+    return Bounds()
 
 
 def job(study: Study, experiment: str, method: str, scale: str, number: int) -> Chunk:
@@ -205,38 +178,22 @@ class Runs(Job):
         return [module_of(self.chunk.planner)]
 
     def run(self, input_files, output_files, threads):
-        """Run the method."""
+        """Run the method, or let the robot drive."""
         import pyarrow.parquet as parquet
 
-        from bezierplan.running import execution, problems, rows
+        from bezierplan.running import execution, problems, rows, worlds
 
-        runs, times = execution.run_chunk(problems.read(input_files.problems), self.chunk)
-        rows.write(runs, output_files.runs)
-        parquet.write_table(times, output_files.times)
-
-
-@dataclass(frozen=True)
-class Drives(Runs):
-    """A robot that drives under every condition of an experiment, one block of repeats."""
-
-    def run(self, input_files, output_files, threads):
-        """Let the robot drive."""
-        import pyarrow.parquet as parquet
-
-        from bezierplan.running import problems, rides, rows, worlds
-
-        runs, times, traces = rides.run_chunk(
-            problems.read(input_files.problems), worlds.read(input_files.problems), self.chunk
-        )
-        rows.write(runs, output_files.runs)
-        parquet.write_table(times, output_files.times)
-        parquet.write_table(traces, output_files.traces, compression="zstd")
+        file = input_files.problems
+        tables = execution.run_chunk(problems.read(file), self.chunk, worlds.read(file))
+        rows.write(tables[0], output_files.runs)
+        parquet.write_table(tables[1], output_files.times)
+        for traces in tables[2:]:
+            parquet.write_table(traces, output_files.traces, compression="zstd")
 
 
 def runs(study: Study, scale: str, experiment: str, method: str, chunk: str) -> Runs:
-    """Runs; of an experiment of drives, drives."""
-    kind = Drives if study.moves(experiment) else Runs
-    return kind(job(study, experiment, method, scale, int(chunk)))
+    """A chunk of runs."""
+    return Runs(job(study, experiment, method, scale, int(chunk)))
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@
 import pandas as pd
 
 from bezierplan.analysis import results
-from bezierplan.geometry.region import region
-from bezierplan.running import execution, problems, rides, worlds
+from bezierplan.running import execution, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known
@@ -37,29 +36,17 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
-    again = _redriven if study.moves(experiment) else _rerun
     try:
-        return again(chunk, condition, int(repeat), study)
+        return _again(chunk, condition, int(repeat), study)
     except PlannerFailure as error:
         raise Fault(str(error)) from None
 
 
-def _rerun(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
-    """A run where nothing moves."""
-    made = problems.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
-    problem = made[condition.problem]
-    named = {condition.problem: problem}
-    plan = execution.run(chunk, condition, repeat, problem)
-    row = execution.row(chunk, condition, repeat, plan, problem, region(problem.workspace))
-    return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())
-
-
-def _redriven(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
-    """A run in a world that moves."""
-    made, found = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
-    problem, world = made[condition.problem], found[condition.problem]
-    named, moving = {condition.problem: problem}, {condition.problem: world}
-    ((ride, *_),) = rides.run(chunk, [(condition, repeat)], named, moving)
-    row, _ = rides.row(chunk, condition, repeat, ride, problem, world)
-    joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving).to_pandas())
-    return joined._replace(worlds=moving, jobs={chunk.method: chunk})
+def _again(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
+    """A run, or a drive in a world that moves."""
+    made, moving = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
+    name = condition.problem
+    named, met = {name: made[name]}, {name: moving[name]} if moving else {}
+    table = pd.DataFrame(execution.rows_again(chunk, [(condition, repeat)], named, met))
+    joined = results.joined(table, named, worlds.bounds_of(named, met).to_pandas())
+    return joined._replace(worlds=met, jobs={chunk.method: chunk})

@@ -37,13 +37,13 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     """
     import pandas as pd
 
-    from bezierplan.running import rides
+    from bezierplan.running import execution
 
     problem = only(results.runs, "problem")
     place = results.problems[problem], results.worlds[problem]
     parts = []
     for _, run in results.runs[results.runs["repeat"] == options.repeat].iterrows():
-        ride, verdict = rides.rerun(results.jobs[run["method"]], run, *place)
+        ride, verdict = execution.redriven(results.jobs[run["method"]], run, *place)
         columns = {
             "problem": problem,
             "method": run["method"],

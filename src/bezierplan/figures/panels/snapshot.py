@@ -70,7 +70,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     Raises ValueError for runs of several problems or methods, and if no run is found.
     """
     from bezierplan.analysis.results import pick as picked
-    from bezierplan.running import rides
+    from bezierplan.running import execution
 
     for column in ("problem", "method"):
         only(results.runs, column)
@@ -78,7 +78,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
-    ride, verdict = rides.rerun(results.jobs[run["method"]], run, problem, world)
+    ride, verdict = execution.redriven(results.jobs[run["method"]], run, problem, world)
     frame = moment(world, problem, ride, verdict, options.at)
     return frame.assign(
         problem=run["problem"],

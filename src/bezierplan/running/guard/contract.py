@@ -1,15 +1,13 @@
 """Contract tests for a planner, from this package or your own: the requirements of `planners`, as
-six facts on eight small and degenerate problems.
+five facts on eight small and degenerate problems.
 
 Every setting of a planner needs a value. The planner counts its own budget: the tests check its
 count, not its actual work.
 """
 
 import math
-import random
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from itertools import cycle
-from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -17,14 +15,12 @@ import numpy as np
 
 from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import region
-from bezierplan.kernels import allocation_free
-from bezierplan.planners import Plan, is_file, known_planners, planner_module
+from bezierplan.planners import Plan, is_file, known_planners
 from bezierplan.running.columns import TAKEN
-from bezierplan.running.guard import interface, process, worker
+from bezierplan.running.guard import interface, plain, process, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.running.judge import answer
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.schema.words import told
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -34,7 +30,7 @@ LIMIT = 600.0
 """Seconds that one plan may take, compilation included."""
 
 SEEDS = (0, 0, 1, 2)
-"""Of the generators of a problem's runs. Before each, the global generators get another state."""
+"""Of the generators of a problem's runs."""
 
 SEALED = "sealed target"
 
@@ -123,115 +119,71 @@ def drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
 
 
 # --------------------------------------------------------------------------------------------------
-# Runs
-
-
-def answered(
-    begin: Callable[[str], None], planner: str, settings: dict[str, Any], seeds: list[int]
-) -> Iterator[list[Any]]:
-    """For each problem: its runs, or what is wrong with one of them, and whether the problem is
-    another afterwards. A run is a plan as plain values, and the state of its generator if that was
-    drawn from or split.
-    """
-    module = planner_module(planner)
-    for problem in problems(module):
-        before, runs = worker.packed_problems({"": problem}), []
-        for surroundings, seed in enumerate(seeds):
-            begin(f"planner {planner}: {problem.name}")
-            _seed(surroundings)
-            rng = np.random.default_rng(seed)
-            fresh = _state(rng)
-            try:
-                plan = answer.plain(module.plan(problem, rng, **settings))
-            except answer.Unfit as fault:
-                runs = str(fault)
-                break
-            except Exception as error:
-                runs = f"raises {told(error)}"
-                break
-            state = _state(rng)
-            runs.append([answer.packed(plan), None if state == fresh else state])
-        yield [runs, worker.packed_problems({"": problem}) != before]
-
-
-def _state(rng: np.random.Generator) -> str:
-    return f"{rng.bit_generator.state} {rng.bit_generator.seed_seq.n_children_spawned}"
-
-
-def _seed(seed: int) -> None:
-    """Seed the global generators, those of compiled code too, which numba keeps apart."""
-    np.random.seed(seed)  # noqa: NPY002
-    random.seed(seed)
-    _seed_compiled(seed)
-
-
-@allocation_free
-def _seed_compiled(seed: int) -> None:
-    np.random.seed(seed)  # noqa: NPY002
-    random.seed(seed)
-
-
-def _elsewhere(
-    planner: str, settings: dict[str, Any], seeds: tuple[int, ...], hashing: int
-) -> list[list[Any]]:
-    """`answered` in a process of its own. Raises PlannerFailure."""
-    file = str(Path(planner).resolve()) if is_file(planner) else planner
-    given = {"planner": file, "settings": settings, "seeds": seeds}
-    return process.answers("guard.contract.answered", given, f"planner {planner}", LIMIT, hashing)
-
-
-# --------------------------------------------------------------------------------------------------
 # Facts
 
 
 def _findings(
     planner: str, module: ModuleType, settings: dict[str, Any], elsewhere: bool
 ) -> Iterator[Finding]:
+    met = {problem.name: problem for problem in problems(module)}
+    hashing = 0 if is_file(planner) else None
     try:
-        cases = (
-            _elsewhere(planner, settings, SEEDS, 0)
-            if is_file(planner)
-            else answered(lambda name: None, planner, settings, list(SEEDS))
-        )
-        again = _elsewhere(planner, settings, SEEDS[:1], 1) if elsewhere else []
+        made = _made(planner, settings, met, SEEDS, hashing)
+        again = _made(planner, settings, met, SEEDS[:1], 1) if elsewhere else {}
+        differ = any(len({*map(repr, plans[1:])}) > 1 for plans in made.values())
+        # Plans may all be the same because the problems are easy.
+        left = _made(planner, settings, met, SEEDS[1:], hashing, "left")
     except PlannerFailure as failure:
         yield Finding("all problems", "plan", False, str(failure))
         return
-    columns, differ, drawn = None, False, False
-    for number, (problem, (runs, changed)) in enumerate(zip(problems(module), cases)):
-        yield Finding(
-            problem.name,
-            "problem unchanged",
-            not changed,
-            "the problem is another after the run; copy what is to be changed" if changed else "",
-        )
-        if isinstance(runs, str):
-            yield Finding(problem.name, "plan", False, runs)
-            continue
-        plans = [answer.unpacked(plan) for plan, _ in runs]
-        columns = plans[0].extra.keys() if columns is None else columns
+    columns = next(iter(made.values()))[0].extra.keys()
+    fresh = {str([np.random.default_rng(seed).random(), 0]) for seed in SEEDS}
+    states = [{*map(str, each)} for each in left.values()]
+    drawn = differ or any(len(each) > 1 and each.isdisjoint(fresh) for each in states)
+    for name, plans in made.items():
         for fact, detail, fault in (
-            ("plan", *_is_valid(plans, problem, {*TAKEN, *settings}, columns)),
+            ("plan", *_is_valid(plans, met[name], {*TAKEN, *settings}, columns)),
             ("history", "", _history_fault(plans, getattr(module, "keeps_best", True))),
             ("budget", *_budget(plans, settings.get("evaluations", math.inf))),
-            ("claims", *_claims(plans, problem, getattr(module, "exact", False))),
-            ("random numbers", "", _repeats(runs, again[number : number + 1])),
+            ("claims", *_claims(plans, met[name], getattr(module, "exact", False))),
+            ("random numbers", "", _repeats(plans, again.get(name, ()))),
         ):
-            yield Finding(problem.name, fact, not fault, fault or detail)
-        bits, states = [repr(plan) for plan, _ in runs[1:]], [state for _, state in runs[1:]]
-        differ = differ or len({*bits}) > 1
-        # If all are left in different states, the plans may be the same because all are easy.
-        drawn = drawn or (None not in states and len({*states}) == len(states))
-    if columns is not None:
-        fault = (
-            ""
-            if differ or drawn
-            else "the same plans from every generator; draw from rng as it "
-            "comes, or say deterministic = True"
-        )
-        if getattr(module, "deterministic", False):
-            fault = "other plans from other generators, but deterministic = True" if differ else ""
-        yield Finding("all problems", "random numbers", not fault, fault)
+            yield Finding(name, fact, not fault, fault or detail)
+    fault = (
+        ""
+        if drawn
+        else "the same plans from every generator; draw from rng as it comes, or say "
+        "deterministic = True"
+    )
+    if getattr(module, "deterministic", False):
+        fault = "other plans from other generators, but deterministic = True" if differ else ""
+    yield Finding("all problems", "random numbers", not fault, fault)
+
+
+def _made(
+    planner: str,
+    settings: dict[str, Any],
+    met: dict[str, Problem],
+    seeds: tuple[int, ...],
+    hashing: int | None,
+    function: str = "plan",
+) -> dict[str, list[Any]]:
+    """Plans by problem, one from each generator; in a process of its own with a seed of `hash`, if
+    there is one. function: as in `worker.Work`. Raises PlannerFailure.
+    """
+    name, work = f"planner {planner}", worker.Work(planner, met, function)
+    tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in met for seed in seeds]
+    by_problem: dict[str, list[Any]] = {}
+    for each in (
+        worker.made(work, tasks)
+        if hashing is None
+        else process.made(work, tasks, None, name, LIMIT, hashing)
+    ):
+        task = tasks[each.number]
+        with answer.of(task.name):
+            found = answer.plain(each.found) if function == "plan" else each.found
+            by_problem.setdefault(task.problem, []).append(found)
+    return by_problem
 
 
 def _is_valid(
@@ -293,16 +245,16 @@ def _claims(plans: list[Plan], problem: Problem, exact: bool) -> tuple[str, str]
     return detail, detail if exact and not all(claims) else ""
 
 
-def _repeats(runs: list[list[Any]], elsewhere: list[list[Any]]) -> str:
+def _repeats(plans: list[Plan], elsewhere: Sequence[Plan]) -> str:
     """What is wrong if runs with the same generator do not have the same bits."""
-    (plan, _), (again, _), *_ = runs
-    if repr(again) != repr(plan):
-        field = next(name for name in plan if repr(plan[name]) != repr(again[name]))
+    first, again, *_ = ([*map(repr, plain.packed(plan)["Plan"])] for plan in plans)
+    if again != first:
+        field = next(name for name, *two in zip(Plan._fields, first, again) if two[0] != two[1])
         return (
             f"{field}: another value from the same generator; all random numbers come from rng, "
             "and nothing from a clock or an earlier run"
         )
-    for there, _ in elsewhere:
-        if isinstance(there, str) or repr(there[0][0]) != repr(plan):
+    for there in elsewhere:
+        if [*map(repr, plain.packed(there)["Plan"])] != first:
             return "another plan in another process; hash(), id() and the order of a set differ"
     return ""

@@ -22,10 +22,10 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.places import PACKAGE
-from bezierplan.running.guard import worker
+from bezierplan.planners import is_file
+from bezierplan.running.guard import plain, worker
 from bezierplan.running.jobs.watchdog import PlannerFailure, how_ended
-from bezierplan.running.judge import answer
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.worlds import to_json
 
 logger = logging.getLogger(__name__)
 
@@ -39,32 +39,32 @@ _LOOK = 0.05
 _CLOCKS = 0.1, 1.0
 
 
-def plans(
-    planner: str,
-    problems: dict[str, Problem],
+def made(
+    work: worker.Work,
     tasks: Iterable[worker.Task],
     again: worker.Task | None,
     name: str,
     limit: float | None = None,
+    hashing: int = 0,
 ) -> Iterator[worker.Made]:
-    """`worker.plans` in a process of its own, with plain plans; before them that of `again` in a
-    process with another seed of `hash`, which must not count. Raises PlannerFailure as `answers`
-    does.
+    """`worker.made` in a process of its own, with plain values; before them that of `again` in a
+    process with another seed of `hash`, which must not count. hashing: that seed. Raises
+    PlannerFailure as `answers` does.
     """
-    arguments = {
-        "planner": str(Path(planner).resolve()) if planner.endswith(".py") else planner,
-        "problems": worker.packed_problems(problems),
+    given = work._asdict() | {
+        "planner": str(Path(work.planner).resolve()) if is_file(work.planner) else work.planner,
+        "problems": worker.packed_problems(work.problems),
+        "worlds": {key: to_json(world) for key, world in (work.worlds or {}).items()},
     }
-    runs = [([again], None, 1)] if again else []
-    for own, warm, hashing in [*runs, (list(tasks), again, 0)]:
-        parts = arguments | {"tasks": own, "again": warm}
-        for number, plan, cpu, wall in answers(
-            "guard.worker.plain_plans", parts, name, limit, hashing
-        ):
-            with plain_values(name):
-                yield worker.Made(
-                    -1 if hashing else number, answer.unpacked(plan), seconds(cpu), seconds(wall)
-                )
+    if again:
+        for each in made(work, [again], None, name, limit, hashing + 1):
+            yield each._replace(number=-1)
+    parts = given | {"tasks": list(tasks), "again": again}
+    for number, found, cpu, wall in answers(
+        "guard.worker.plain_answers", parts, name, limit, hashing
+    ):
+        with plain_values(name):
+            yield worker.Made(number, plain.unpacked(found), seconds(cpu), seconds(wall))
 
 
 def answers(

@@ -11,24 +11,29 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from bezierplan.planners import planner_module
+from bezierplan.planners import Plan, planner_module
+from bezierplan.running.guard import plain
 from bezierplan.running.jobs.log import account
 from bezierplan.running.jobs.watchdog import (
     LEFT,
     PlannerFailure,
     cpu_time,
     end_with_parent,
-    executing,
 )
 from bezierplan.running.judge import answer
+from bezierplan.running.simulation import robot
+from bezierplan.running.simulation.policy import Policy
 from bezierplan.schema.words import told
 from bezierplan.workspaces import files, seeds
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.worlds import World, from_json, to_json
 
 T = TypeVar("T")
 
@@ -65,37 +70,81 @@ class Task(NamedTuple):
         )
 
 
+class Work(NamedTuple):
+    """What a planner is for: its function `plan` or `track` on problems, by name; or `left`, how
+    its plan leaves the generator; or, with worlds of the problems, drives of a robot by its plans,
+    as a policy says.
+    """
+
+    planner: str
+    problems: dict[str, Problem]
+    function: str = "plan"
+    worlds: dict[str, World] | None = None
+    policy: dict[str, Any] | None = None
+
+    def once(self, task: Task) -> Any:
+        """A plan, a track, a ride, or how the plan leaves the generator."""
+        module, problem = planner_module(self.planner), self.problems[task.problem]
+        rng = task.generator()
+        if self.worlds:
+            rules = Policy.model_construct(**self.policy)
+            asked = partial(_planned, module, rng, task.settings, rules.warm)
+            return robot.drive(self.worlds[task.problem], problem, rules, asked)
+        if self.function == "left":
+            module.plan(problem, rng, **task.settings)
+            return [rng.random(), rng.bit_generator.seed_seq.n_children_spawned]
+        return getattr(module, self.function)(problem, rng, **task.settings)
+
+
+def _planned(
+    module: ModuleType,
+    rng: np.random.Generator,
+    settings: dict[str, Any],
+    warm: bool,
+    seen: Problem,
+    last: Any,
+) -> tuple[Plan, Any]:
+    """A plan of a robot for what it sees, as plain values, and what the next one gets as last."""
+    if not warm:
+        return answer.accepted(module.plan(seen, rng, **settings), seen), None
+    pair = module.resume(seen, rng, last, **settings)
+    if not isinstance(pair, tuple) or len(pair) != 2:
+        raise TypeError(
+            f"resume returns a {type(pair).__name__}; expected a Plan and what the next call gets "
+            "as last"
+        )
+    return answer.accepted(pair[0], seen), pair[1]
+
+
 class Made(NamedTuple):
-    """A planner's answer. number: of its task, -1 of a warm-up. cpu, wall: seconds."""
+    """What a planner has made. number: of its task, -1 of a warm-up. cpu, wall: seconds."""
 
     number: int
-    plan: Any
+    found: Any
     cpu: float
     wall: float
 
 
-def plans(
-    planner: str,
-    problems: dict[str, Problem],
+def made(
+    work: Work,
     tasks: Iterable[Task],
     again: Task | None = None,
     begin: Callable[[str], None] = lambda name: None,
 ) -> Iterator[Made]:
-    """Answers of a planner, one after the other. again: the task of warm-up runs before them, of
-    which the first and the last are yielded. begin: told the name of each run. Raises
+    """What a planner makes of tasks, one after the other. again: the task of warm-up runs before
+    them, of which the first and the last are yielded. begin: told the name of each run. Raises
     PlannerFailure, naming the run.
     """
 
-    def made(number: int, task: Task) -> Made:
+    def one(number: int, task: Task) -> Made:
         begin(task.name)
-        with executing(task.name):
-            plan, rng, problem = planner_module(planner).plan, task.generator(), task.problem
-            return Made(number, *timed(lambda: plan(problems[problem], rng, **task.settings)))
+        with answer.of(task.name):
+            return Made(number, *timed(partial(work.once, task)))
 
     if again:
-        yield from warm_up(lambda: made(-1, again))
+        yield from warm_up(partial(one, -1, again))
     for number, task in enumerate(tasks):
-        yield made(number, task)
+        yield one(number, task)
 
 
 def timed(once: Callable[[], T]) -> tuple[T, float, float]:
@@ -140,23 +189,27 @@ def unpacked_problems(packed: dict[str, list[Any]]) -> dict[str, Problem]:
     }
 
 
-def plain_plans(
+def plain_answers(
     begin: Callable[[str], None],
     planner: str,
     problems: dict[str, list[Any]],
+    function: str,
+    worlds: dict[str, str],
+    policy: dict[str, Any] | None,
     tasks: list[list[Any]],
     again: list[Any] | None,
 ) -> Iterator[list[Any]]:
-    """`plans` as plain values."""
-    met, name = unpacked_problems(problems), ""
-    of_tasks = [Task(*each) for each in tasks]
-    for number, plan, cpu, wall in plans(planner, met, of_tasks, again and Task(*again), begin):
+    """`made` as plain values."""
+    met, of_tasks = unpacked_problems(problems), [Task(*each) for each in tasks]
+    moving = {name: from_json(text) for name, text in worlds.items()}
+    work, name = Work(planner, met, function, moving, policy), ""
+    for number, found, cpu, wall in made(work, of_tasks, again and Task(*again), begin):
         name = of_tasks[max(number, 0)].name
-        try:
-            yield [number, answer.packed(answer.plain(plan)), cpu, wall]
-        except answer.Unfit as unfit:
-            raise PlannerFailure(f"{name}: its answer: {unfit}") from None
+        with answer.of(name):
+            found = found if moving or function != "plan" else answer.plain(found)
+        yield [number, plain.packed(found), cpu, wall]
     refuse_changed(problems, packed_problems(met), name)
+    refuse_changed(worlds, {key: to_json(world) for key, world in moving.items()}, name)
 
 
 def refuse_changed(before: dict[str, Any], after: dict[str, Any], name: str) -> None:
@@ -168,21 +221,6 @@ def refuse_changed(before: dict[str, Any], after: dict[str, Any], name: str) -> 
                 f"{name}: problem: {problem}: is another after the run; a planner copies what it "
                 "changes"
             )
-
-
-def tracked(
-    begin: Callable[[str], None],
-    planner: str,
-    problem: dict[str, list[Any]],
-    task: list[Any],
-) -> Iterator[list[Any]]:
-    """The control points after each iteration of a run (`track` of planners)."""
-    run = Task(*task)
-    begin(run.name)
-    (met,) = unpacked_problems(problem).values()
-    track = planner_module(planner).track(met, run.generator(), **run.settings)
-    for points in track:
-        yield np.asarray(points, dtype=float).tolist()
 
 
 # --------------------------------------------------------------------------------------------------

@@ -7,10 +7,6 @@ import resource
 import signal
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-
-from bezierplan.schema.words import told
 
 PR_SET_PDEATHSIG = 1
 
@@ -25,19 +21,6 @@ LEFT = "leaves a process behind, which is ended; end or join what it starts"
 
 class PlannerFailure(RuntimeError):
     """What a planner does that no result may come from; the message names planner and run."""
-
-
-@contextmanager
-def executing(name: str) -> Iterator[None]:
-    """A block that executes code of a planner. Raises PlannerFailure, beginning with a name, for
-    any exception.
-    """
-    try:
-        yield
-    except PlannerFailure:
-        raise
-    except Exception as error:
-        raise PlannerFailure(f"{name}: {told(error)}") from error
 
 
 def begin(limit: float | None, name: str) -> None:

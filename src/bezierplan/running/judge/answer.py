@@ -7,7 +7,8 @@ comes from this process or, as text, from another one.
 
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from numbers import Integral, Real
 from typing import Any
 
@@ -17,6 +18,8 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.checker.hulls import LARGEST_DEGREE
 from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
+from bezierplan.running.jobs.watchdog import PlannerFailure
+from bezierplan.schema.words import told
 from bezierplan.workspaces.problem import Path, Problem
 
 MOST_POINTS = {"bezier": LARGEST_DEGREE + 1, "polyline": 10_000, "cubic_chain": 10_000}
@@ -33,6 +36,21 @@ NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
 
 class Unfit(ValueError):
     """An answer that no row may show; the message is one line that begins with the field."""
+
+
+@contextmanager
+def of(name: str) -> Iterator[None]:
+    """A block that executes code of a planner, or reads its answer. Raises PlannerFailure,
+    beginning with a name, for any exception.
+    """
+    try:
+        yield
+    except PlannerFailure:
+        raise
+    except Unfit as fault:
+        raise PlannerFailure(f"{name}: its answer: {fault}") from None
+    except Exception as error:
+        raise PlannerFailure(f"{name}: {told(error)}") from error
 
 
 def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
@@ -58,7 +76,7 @@ def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
     return plan
 
 
-def accepted(answer: Any, problem: Problem, taken: Collection[str]) -> Plan:
+def accepted(answer: Any, problem: Problem, taken: Collection[str] = ()) -> Plan:
     """`plain`, of an answer whose path joins the problem's start and target. Raises Unfit."""
     plan = plain(answer, taken)
     check_ends(plan, problem)
@@ -89,17 +107,6 @@ def stored(path: Path | None) -> tuple[str, list[float]]:
 def restored(curve: str, points: Any) -> Path | None:
     """The path that `stored` wrote."""
     return Path(curve, np.array(points, dtype=float).reshape(-1, 2)) if curve else None
-
-
-def packed(plan: Plan) -> dict[str, Any]:
-    """A plain plan as text can hold it, with all bits of its numbers."""
-    return plan._asdict() | {"history": plan.history.tolist(), "path": [*stored(plan.path)]}
-
-
-def unpacked(fields: dict[str, Any]) -> Plan:
-    """The plan that `packed` wrote."""
-    arrays = {"history": np.array(fields["history"], float), "path": restored(*fields["path"])}
-    return Plan(**fields | arrays)
 
 
 def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:

@@ -24,7 +24,7 @@ from bezierplan.geometry import curves
 from bezierplan.geometry.region import Region, region
 from bezierplan.machine.digest import COMPUTING, library_version
 from bezierplan.planners import is_file
-from bezierplan.running import execution, problems, rides, rows, worlds
+from bezierplan.running import execution, problems, rows, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import Bound, DriveBound, DriveOutcome, Outcome, Planned
 from bezierplan.running.guard import interface
@@ -375,7 +375,7 @@ def _bounds_judged(file: str, made: dict[str, Problem], moving: dict[str, World]
     kept = rows.read(file)
     if fault := rows.fault(kept.schema, Bound, *([DriveBound] if moving else [])):
         raise rows.misplaced(file, fault)
-    again = rides.bounds_of(made, moving) if moving else problems.bounds_of(made)
+    again = worlds.bounds_of(made, moving)
     stored = {row["problem"]: row for row in kept.to_pylist()}
     faults = []
     for row in again.to_pylist():
@@ -426,20 +426,7 @@ def _again(chosen: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Fault]]:
     if not numbers:
         return 0, []
     made, moving = _problems(problem_file)
-    runs = [_runs(chunk)[n] for n in numbers]
-    if moving:
-        remade = [
-            rides.row(chunk, *run, ride, made[run[0].problem], moving[run[0].problem])[0]
-            for run, (ride, *_) in zip(runs, rides.run(chunk, runs, made, moving))
-        ]
-    else:
-        tasks = [execution.task(chunk, *run) for run in runs]
-        remade = [
-            execution.row(
-                chunk, *run, each.plan, made[run[0].problem], region(made[run[0].problem].workspace)
-            )
-            for run, each in zip(runs, execution.plans(chunk, made, tasks))
-        ]
+    remade = execution.rows_again(chunk, [_runs(chunk)[n] for n in numbers], made, moving)
     faults = []
     for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
         for name, value in rows.table([row], Planned, Outcome).to_pylist()[0].items():

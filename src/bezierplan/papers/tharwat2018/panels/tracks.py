@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import Field
 
 from bezierplan.analysis import metrics
@@ -14,14 +13,12 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import Note, RunsPanel, only
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Metric, Whole
-from bezierplan.workspaces.problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
     from bezierplan.analysis.results import Results
-    from bezierplan.running.chunk import Chunk
 
 
 # Side of the square that is seen, as a share of the extent of what is drawn.
@@ -65,6 +62,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     import pandas as pd
 
     from bezierplan.analysis.results import pick
+    from bezierplan.running import execution
 
     problem = results.problems[only(results.runs, "problem")]
     method = only(results.runs, "method")
@@ -73,7 +71,7 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     parts = [workspaces.ends(problem)]
     for group in _commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
-        paths = _tracked(run, results.jobs[method], problem)
+        paths = execution.tracked(results.jobs[method], run, problem)
         if options.point >= len(paths[0]):
             raise ValueError(f"point: {options.point}; expected less than {len(paths[0])}")
         way = pd.DataFrame([path[options.point] for path in paths], columns=["x", "y"])
@@ -93,18 +91,6 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 def _commonest(groups: pd.Series) -> list[float]:
     """The distinct values, the commonest first, ties by size."""
     return groups.value_counts().sort_index().sort_values(ascending=False, kind="stable").index
-
-
-def _tracked(run: pd.Series, chunk: Chunk, problem: Problem) -> list[np.ndarray]:
-    """The points (n, 2) of the best path after each iteration of a run, reproduced from its
-    chunk.
-    """
-    from bezierplan.running import execution
-
-    condition = next(each for each in chunk.conditions() if each.name == run["condition"])
-    track = execution.track(chunk, condition, int(run["repeat"]), problem)
-    execution.refuse_other_path(run, track[-1])
-    return track
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:

@@ -1,0 +1,37 @@
+"""What planners make as plain values, for text, and back: named tuples and arrays keep their kind
+and all bits of their numbers.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from bezierplan.planners import Plan
+from bezierplan.running.simulation.motion_check import Motion
+from bezierplan.running.simulation.robot import Planned, Ride
+from bezierplan.workspaces.problem import Path
+
+# No column of a planner has a name in capitals.
+_KINDS = {each.__name__: each for each in (Plan, Path, Motion, Planned, Ride)}
+_ARRAY = "Array"
+
+
+def packed(value: Any) -> Any:
+    """A value as text can hold it."""
+    if isinstance(value, np.ndarray):
+        return {_ARRAY: value.astype(float).tolist()}
+    if isinstance(value, tuple(_KINDS.values())):
+        return {type(value).__name__: [*map(packed, value)]}
+    return [*map(packed, value)] if isinstance(value, list) else value
+
+
+def unpacked(value: Any) -> Any:
+    """The value that was packed. Raises TypeError or ValueError for what is none."""
+    if isinstance(value, list):
+        return [*map(unpacked, value)]
+    if not isinstance(value, dict) or len(value) != 1:
+        return value
+    ((kind, parts),) = value.items()
+    if kind == _ARRAY:
+        return np.array(parts, dtype=float)
+    return _KINDS[kind](*map(unpacked, parts)) if kind in _KINDS else value
