@@ -22,6 +22,7 @@ __all__ = [  # names of `api`, found by `__getattr__`
     "methods",
     "plan",
     "plan_all",
+    "problems",
     "read_map",
     "replay",
     "results",

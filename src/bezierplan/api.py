@@ -21,7 +21,8 @@ from bezierplan.analysis import answers
 from bezierplan.geometry import path_files, samples, shortest_paths
 from bezierplan.places import STUDIES
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
-from bezierplan.running import planning, problems
+from bezierplan.running import planning
+from bezierplan.running import problems as problem_files
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.running.judge.answer import path_of
@@ -341,8 +342,8 @@ def shortest_path(problem: Problem) -> Shortest:
 
 def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound]:
     """A problem with its exact shortest path."""
-    placed = problems.placed(problem)
-    return placed, shortest_paths.shortest_path(placed)
+    home = problem_files.placed(problem)
+    return home, shortest_paths.shortest_path(home)
 
 
 def check(problem: Problem, path: Path) -> Judged:
@@ -451,7 +452,7 @@ def plan(
     plain = {k: v.item() if isinstance(v, np.generic) else v for k, v in settings.items()}
     settings = preset | plain
     grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
-    placed = problems.placed(grown, getattr(module, "workspaces", None))
+    placed = problem_files.placed(grown, getattr(module, "workspaces", None))
     _check_settings(name, module, settings, placed)
     parts = planning.legs(placed, places)
     shortest, label = planning.shortest(parts), f"method: {name}"
@@ -615,6 +616,31 @@ def methods() -> dict[str, str]:
         for study in [_study(key)]
         for name in study.methods
     }
+
+
+def problems(experiment: str) -> dict[str, Problem]:
+    """The problems of an experiment of the project's studies, by name.
+
+    Parameters
+    ----------
+    experiment : str
+        Such as ``"song2016/routes"``.
+
+    Returns
+    -------
+    dict of str to Problem
+
+    Raises
+    ------
+    ValueError
+        For an unknown one.
+    """
+    from bezierplan.study.jobs import problems_job
+
+    key, _, name = experiment.partition("/")
+    check_known(key, _keys(), "experiment: study")
+    check_known(name, _study(key).experiments, "experiment")
+    return problem_files.build_all(problems_job(_study(key), name, "full"), _study(key).folder)
 
 
 def results(folder: str | File, experiment: str) -> pd.DataFrame:

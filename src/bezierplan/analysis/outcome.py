@@ -7,12 +7,12 @@ samples. Next to each verdict stands the verdict at the paper's own number of ru
 
 import re
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis import headline, summary
+from bezierplan.analysis import benchmark, headline, summary
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
@@ -29,11 +29,17 @@ SCALES = {
 }
 
 
-def write(titles: Mapping[str, str], verdicts: Mapping[str, str], settings: pd.DataFrame) -> None:
+def write(
+    titles: Mapping[str, str],
+    verdicts: Mapping[str, str],
+    settings: pd.DataFrame,
+    experiments: Iterable[str],
+) -> None:
     """Write the tables of docs/outcome and the README's part. Raises FileNotFoundError if results
     are missing.
 
     titles: of studies, by name. verdicts: the files of their sentences. settings: of their methods.
+    experiments: those on whose problems others can be scored, each `study/name`.
     """
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers, claims, measured = (pd.read_csv(RESULTS / name) for name in TABLES)
@@ -47,6 +53,8 @@ def write(titles: Mapping[str, str], verdicts: Mapping[str, str], settings: pd.D
             shutil.copyfile(file, KEPT / f"{key}_{file.name}")
     claims.to_csv(KEPT / "claims.csv", index=False)
     settings.to_csv(KEPT / "settings.csv", index=False)
+    scored = benchmark.of_results(FULL, experiments)
+    scored.to_csv(KEPT / benchmark.STORED.name, index=False, float_format="%.6g")
     follow = following(KEPT, verdicts, numbers, claims, measured)
     report = summary.report(numbers, claims, measured, titles, follow, RESULTS.name)
     (KEPT / "summary.md").write_text(report, encoding="utf-8")

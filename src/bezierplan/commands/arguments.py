@@ -53,9 +53,10 @@ def call(
     # A word such as -2,0 is no option.
     words = [f" {word}" if re.match(r"-[0-9.]", word) else word for word in words]
     values = vars(parser.parse_args(words))
-    several = [word for name in [*values] if options[name] == "*" for word in values.pop(name)]
+    given = [values.pop(name) for name in options if options[name] == ""]
+    given += [word for name in [*values] if options[name] == "*" for word in values.pop(name)]
     try:
-        main(*several, **values)
+        main(*given, **values)
     except ValueError as fault:
         name, colon, rest = str(fault).partition(":")
         if colon and options.get(name, "").startswith("--"):

@@ -25,7 +25,7 @@ def main() -> None:
     settings = [(key, *row) for key, each in studies.items() for row in settings_of(each)]
     columns = ["study", "method", "setting", "value"]
     try:
-        outcome.write(*named(studies), pd.DataFrame(settings, columns=columns))
+        outcome.write(*named(studies), pd.DataFrame(settings, columns=columns), scored(studies))
         for picture in PICTURES:
             study, _, name = picture.split("/")
             shutil.copyfile(outcome.FULL / picture, outcome.KEPT / f"{study}_{name}")
@@ -39,3 +39,9 @@ def named(studies: dict[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
     files = {key: study.verdict_file() for key, study in studies.items()}
     titles = {key: study.title for key, study in studies.items()}
     return titles, {key: file for key, file in files.items() if file}
+
+
+def scored(studies: dict[str, Any]) -> list[str]:
+    """The experiments that compare methods with a baseline, each `study/name`."""
+    compared = {key: each.baseline_comparison for key, each in studies.items()}
+    return [f"{key}/{name}" for key, each in compared.items() if each for name in each.experiments]

@@ -1,0 +1,107 @@
+"""Methods beside each other on the problems of an experiment, whose exact bounds are known."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import answers
+from bezierplan.analysis.results import of_folder
+from bezierplan.geometry import shortest_paths
+from bezierplan.places import TREE
+from bezierplan.planners import Plan
+from bezierplan.running.judge.answer import accepted
+from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Path, Problem
+
+STORED = TREE / "docs" / "outcome" / "benchmark.csv"
+"""Summaries of the papers' methods, at the papers' numbers of runs."""
+
+
+def summaries(runs: pd.DataFrame) -> pd.DataFrame:
+    """A row for each problem and method of runs: problem, method, number of runs, feasible (their
+    share), excess (median length of these over the exact shortest path's, minus 1), evaluations
+    (median).
+    """
+    free = runs["feasible"].astype(bool)
+    excess = (runs["length"] / runs["bound"] - 1).where(free)
+    groups = runs.assign(feasible=free, excess=excess).groupby(["problem", "method"], sort=False)
+    return groups.agg(
+        runs=("feasible", "size"),
+        feasible=("feasible", "mean"),
+        excess=("excess", "median"),
+        evaluations=("evaluations", "median"),
+    ).reset_index()
+
+
+def scores(rows: pd.DataFrame) -> pd.DataFrame:
+    """A row for each method of summaries, the best mean rank first. On each problem methods are
+    ranked by the share of feasible runs, and of equal ones by the excess; equal ones share the mean
+    of their ranks.
+    """
+    rows = rows.round({"excess": 6}).sort_values(["feasible", "excess"], ascending=[False, True])
+    order = rows.groupby(["feasible", "excess"], sort=False, dropna=False).ngroup()
+    methods = rows.assign(rank=order.groupby(rows["problem"]).rank()).groupby("method")
+    means = {"runs": "sum", "feasible": "mean", "excess": "median", "evaluations": "median"}
+    table = methods.agg({"problem": "nunique"} | means | {"rank": "mean"})
+    return table.rename(columns={"problem": "problems"}).sort_values("rank", kind="stable")
+
+
+def stored(experiment: str) -> pd.DataFrame:
+    """The summaries of the papers' methods on an experiment, `study/name`."""
+    rows = pd.read_csv(STORED)
+    return rows[rows["experiment"] == experiment].drop(columns="experiment")
+
+
+def of_results(folder: FilePath, experiments: Iterable[str]) -> pd.DataFrame:
+    """The summaries of experiments, each `study/name`, in results of a scale."""
+    tables = []
+    for experiment in experiments:
+        study, _, name = experiment.partition("/")
+        rows = summaries(of_folder(folder / study, name).runs)
+        tables.append(rows.assign(experiment=experiment))
+    return pd.concat(tables)[["experiment", *tables[0].columns.drop("experiment")]]
+
+
+def run(problem: Problem, path: Path | None, evaluations: float) -> dict[str, Any]:
+    """A run from its path. Raises ValueError for one that does not join start and target."""
+    if path:
+        accepted(Plan.of_one(path, 0.0, "read"), problem, ())
+    verdict = answers.verdict(problem, shortest_paths.shortest_path(problem), path)
+    return {
+        "problem": problem.name,
+        "feasible": verdict.get("feasible", False),
+        "length": verdict.get("length", np.nan),
+        "bound": verdict["shortest"],
+        "evaluations": evaluations,
+    }
+
+
+def read_paths(file: FilePath) -> list[tuple[str, Path | None, float]]:
+    """Problem, path and evaluations of each row of a csv file with the columns problem, curve and
+    points (x y x y ...), and perhaps evaluations. A row without points is a run without a path.
+    """
+    paths = []
+    for row in pd.read_csv(file, dtype={"problem": str, "points": str}).to_dict("records"):
+        path = None
+        if isinstance(row["points"], str):
+            points = np.array(row["points"].split(), dtype=float).reshape(-1, 2)
+            path = Path(row["curve"], points)
+        paths.append((row["problem"], path, row.get("evaluations", np.nan)))
+    return paths
+
+
+def problem_rows(problems: Mapping[str, Problem]) -> pd.DataFrame:
+    """A row a problem: its ends, its map as JSON, and the exact shortest length."""
+    rows = [
+        {
+            "problem": name,
+            **dict(zip(("start_x", "start_y", "target_x", "target_y"), each.start + each.target)),
+            "bound": shortest_paths.shortest_path(each).length,
+            "map": files.to_json(each.workspace),
+        }
+        for name, each in problems.items()
+    ]
+    return pd.DataFrame(rows)

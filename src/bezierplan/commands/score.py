@@ -1,0 +1,60 @@
+"""Score paths or planners on the problems of a paper, beside the paper's methods."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from bezierplan import api
+from bezierplan.analysis import benchmark
+from bezierplan.commands.arguments import Settings
+
+
+def main(
+    experiment: str,
+    *candidates: str,
+    settings: Settings | None = None,
+    repeats: int = 20,
+    problems: Path | None = None,
+) -> None:
+    """Print a row for each method: runs, share of feasible ones, excess over the exact shortest
+    path, evaluations, and the mean rank on a problem. Those of the papers are not run again.
+
+    Parameters
+    ----------
+    experiment : str
+        one of a study, such as song2016/routes
+    *candidates : str
+        csv files of paths, with the columns problem, curve, points (x y x y ...) and perhaps
+        evaluations; or planners: names, files or STUDY/METHOD
+    settings : dict
+        settings of the planners in place of their own
+    repeats : int
+        runs of a planner on each problem
+    problems : Path, optional
+        a csv file for the problems: ends, bound, map
+
+    Examples
+    --------
+    score song2016/routes --problems routes.csv
+    score song2016/routes paths.csv
+    score song2016/routes mystudy/walk.py --settings '{tries: 200}'
+    """
+    asked = api.problems(experiment)
+    if problems:
+        benchmark.problem_rows(asked).to_csv(problems, index=False)
+    tables = [benchmark.stored(experiment)]
+    for candidate in candidates:
+        if candidate.endswith(".csv"):
+            runs = [
+                benchmark.run(asked[name], *row)
+                for name, *row in benchmark.read_paths(Path(candidate))
+            ]
+        else:
+            runs = [
+                benchmark.run(problem, answer.path, answer.evaluations)
+                for problem in asked.values()
+                for seed in range(repeats)
+                for answer in [api.plan(problem, candidate, seed=seed, **(settings or {}))]
+            ]
+        tables.append(benchmark.summaries(pd.DataFrame(runs).assign(method=candidate)))
+    print(benchmark.scores(pd.concat(tables)).to_string(float_format="%.4g"))

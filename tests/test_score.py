@@ -1,0 +1,62 @@
+"""`score`: paths and planners beside the papers' methods, whose summaries are stored."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import bezierplan as bp
+from bezierplan.__main__ import main
+from bezierplan.analysis import benchmark
+
+
+def test_summaries_count_free_runs_and_take_the_excess_of_these():
+    runs = pd.DataFrame({"problem": "a", "method": ["m"] * 3 + ["n"], "bound": 10.0})
+    runs = runs.assign(length=[12.0, 1.0, 11.0, 11.2], feasible=[True, False, True, True])
+    rows = benchmark.summaries(runs.assign(evaluations=5)).set_index("method")
+    assert rows.loc["m"].to_list()[1:] == pytest.approx([3, 2 / 3, 0.15, 5])
+    # Free more often comes before shorter; of two problems the mean rank.
+    other = rows.reset_index().assign(problem="b", feasible=1.0)
+    ranks = benchmark.scores(pd.concat([rows.reset_index(), other]))["rank"]
+    assert ranks.to_dict() == {"n": 1.0, "m": 2.0}
+    tied = benchmark.scores(rows.reset_index().assign(feasible=1.0, excess=np.nan))["rank"]
+    assert tied.to_list() == [1.5, 1.5]
+
+
+@pytest.fixture
+def scored(capsys):
+    def score(*words):
+        main(["score", "song2016/routes", *map(str, words)])
+        _, _, *lines = capsys.readouterr().out.splitlines()
+        return {name: row for name, *row in map(str.split, lines)}
+
+    return score
+
+
+def test_a_planner_and_its_paths_score_as_the_paper_s_runs_of_it(scored, tmp_path):
+    problems = bp.problems("song2016/routes")
+    answers = [bp.plan(each, "song2016/shortest_path") for each in problems.values()]
+    file = tmp_path / "paths.csv"
+    paths = {
+        "problem": list(problems),
+        "curve": [each.path.curve for each in answers],
+        "points": [" ".join(map(str, each.path.points.ravel().tolist())) for each in answers],
+        "evaluations": 1,
+    }
+    pd.DataFrame(paths).to_csv(file, index=False)
+    rows = scored(file, "song2016/shortest_path", "--repeats", 1, "--problems", tmp_path / "p.csv")
+    stored, own, again = (rows[n] for n in ("shortest_path", str(file), "song2016/shortest_path"))
+    assert own == again == [stored[0], "6", *stored[2:]]
+    listed = pd.read_csv(tmp_path / "p.csv")
+    assert listed["bound"].to_list() == pytest.approx([each.length for each in answers])
+    assert listed["problem"].to_list() == list(problems)
+    paths["points"][0] = "0 0 1 1"
+    pd.DataFrame(paths).to_csv(file, index=False)
+    with pytest.raises(SystemExit):
+        scored(file)
+
+
+def test_what_is_stored_is_of_the_problems_that_studies_have():
+    rows = pd.read_csv(benchmark.STORED)
+    for experiment in ("song2016/routes", "meledje/operators", "elhoseny2017/maps"):
+        own = rows[rows["experiment"] == experiment]
+        assert set(own["problem"]) == set(bp.problems(experiment))
