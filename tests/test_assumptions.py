@@ -3,7 +3,6 @@ that nothing reads is a defect.
 """
 
 import json
-from dataclasses import replace
 from functools import cache
 
 import pytest
@@ -66,7 +65,7 @@ def test_alternative_changes_what_a_run_finds(key, name):
             method: study.methods[method].but(settings=study.methods[method].settings | settings)
             for method, settings in under.items()
         }
-        study = replace(study, methods=study.methods | methods)
+        study = study.but(methods=study.methods | methods)
     changed = with_alternative(study, name)
     assert any(
         found(changed, home(study, method), method, place)

@@ -3,7 +3,6 @@ studies and targets, and what the small subset holds.
 """
 
 import contextlib
-import dataclasses
 import os
 import re
 from pathlib import Path
@@ -18,7 +17,7 @@ from studies import studies, study
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import design, jobs, page, reading
+from bezierplan.study import jobs, page, reading
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -34,7 +33,7 @@ def fault(given):
 def elsewhere(tmp_path, key):
     folder = tmp_path / key
     folder.mkdir()
-    return {key: dataclasses.replace(SONG, key=key, folder=folder)}
+    return {key: SONG.but(key=key, folder=folder)}
 
 
 def test_names_of_studies_of_the_project_and_fresh_ones_are_taken(tmp_path):
@@ -70,7 +69,7 @@ def test_caption_is_one_line_that_says_just_what_it_says():
 def test_a_study_with_another_setting_is_marked_as_changed():
     """The others are not: the settings of the outcome are those of today."""
     assert [own.key for own in studies().values() if page.changed(own)] == []
-    turned = dataclasses.replace(SONG, settings=SONG.settings | {"population": 198})
+    turned = SONG.but(settings=SONG.settings | {"population": 198})
     assert "population of smooth is 198, in the README's outcome 200" in page.changed(turned)
 
 
@@ -122,13 +121,6 @@ def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
     for scale in ("smoke", "full"):
         assert jobs.table_of_runs(SONG, scale, "table1").repeats == repeats[scale]
         assert f"{repeats[scale]} runs of each method" in jobs.caption(SONG, "table1", scale)
-
-
-def test_two_layouts_stand_for_all():
-    own, found = study("meledje"), set()
-    for experiment in own.experiments:
-        found |= {row["layout"] for row in design.Design(own).rows(experiment) if "layout" in row}
-    assert found == {0, 1}
 
 
 def test_the_papers_own_are_the_numbered_ones():

@@ -217,7 +217,7 @@ def test_files_of_problems_keep_the_world(tmp_path):
         (
             "start: centre",
             "warm: true",
-            "policy: replans: warm, but planner walk.py has no function resume",
+            "policy: replans: warm, but its planner has no function resume",
         ),
         ("second.txt, at", "third.txt, at", "changes: 0: file: third.txt"),
         (", at: 2.5", "", "changes: 0: expected either after or at"),

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from bezierplan.schema import checked
+from bezierplan.schema.checked import Fault
 
 
 def main(folder: Path) -> None:
@@ -20,8 +20,9 @@ def main(folder: Path) -> None:
     """
     from bezierplan.study import reading
 
-    with checked.gathered() as faults:
+    try:
         reading.load([folder])
-    print("\n".join(faults) or f"{folder}: no fault")
-    if faults:
+    except Fault as fault:
+        print("\n".join(fault.lines))
         sys.exit(1)
+    print(f"{folder}: no fault")

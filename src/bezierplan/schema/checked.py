@@ -2,8 +2,7 @@
 
 import difflib
 import re
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -20,51 +19,14 @@ LONGEST_FILE = 4_000_000
 """Bytes of the longest file that is read: a study's YAML, maps, published numbers."""
 
 
-DEEPEST = 20
-"""Levels of nesting in YAML; the reader of libyaml has no limit, and would end the program."""
-
-
 class Fault(ValueError):
     """A problem in a file that the user must fix, in one line: no character from the file can break
-    it.
+    it. lines: that of every fault that was found; the first is its text.
     """
 
-    def __init__(self, text: str) -> None:
-        super().__init__(plain(text, 1500))
-
-
-_GATHERED: list[list[str]] = []
-"""The faults found so far, while they are gathered."""
-
-
-@contextmanager
-def gathered() -> Iterator[list[str]]:
-    """The faults of a block: those of its parts (`part`), and the one that ends it."""
-    faults: list[str] = []
-    _GATHERED.append(faults)
-    try:
-        with part():
-            yield faults
-    finally:
-        _GATHERED.pop()
-
-
-@contextmanager
-def part() -> Iterator[None]:
-    """A part of a check that others do not need: while faults are gathered, its fault ends only
-    it.
-    """
-    try:
-        yield
-    except Fault as fault:
-        if not _GATHERED:
-            raise
-        if str(fault) not in _GATHERED[-1]:
-            _GATHERED[-1].append(str(fault))
-    except (LookupError, AttributeError, TypeError):
-        # What follows from a fault that was found before.
-        if not (_GATHERED and _GATHERED[-1]):
-            raise
+    def __init__(self, *lines: str) -> None:
+        self.lines = [plain(line, 1500) for line in lines]
+        super().__init__(self.lines[0])
 
 
 class _Loader(SafeLoader):
@@ -133,19 +95,11 @@ def text_of(file: Path, location: str) -> str:
 def parse(text: str, location: str) -> Any:
     """The content of YAML text, read strictly. Raises Fault, beginning with a location."""
     try:
-        depth = 0
-        for event in yaml.parse(text, _Loader):
-            depth += isinstance(event, yaml.CollectionStartEvent)
-            depth -= isinstance(event, yaml.CollectionEndEvent)
-            if depth > DEEPEST:
-                raise Fault(f"{location}: nested more than {DEEPEST} levels deep")
         return yaml.load(text, _Loader)
-    except Fault:
-        raise
     except yaml.MarkedYAMLError as error:
         line = f": line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise Fault(f"{location}{line}: {error.problem}") from None
-    except (yaml.YAMLError, ValueError, LookupError, AttributeError) as error:
+    except (yaml.YAMLError, ValueError, LookupError, AttributeError, RecursionError) as error:
         # Characters not allowed in YAML, values that are not of their tags.
         raise Fault(f"{location}: not YAML ({str(error).splitlines()[0]})") from None
 

@@ -9,9 +9,8 @@ config/README.md, and the reader of the class.
 import math
 import re
 import textwrap
-import types
 import typing
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from typing import Annotated, Any, NamedTuple, Self, TypeVar
 
 from pydantic import (
@@ -29,7 +28,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from bezierplan.schema.checked import Fault, closest, part
+from bezierplan.schema.checked import Fault, closest
 
 
 class Model(BaseModel):
@@ -106,25 +105,43 @@ def parsed(model: type[M], content: Any, location: str) -> M:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        for fault in _faults(error):
-            with part():
-                raise Fault(": ".join([location, *fault])) from None
-        raise Fault(": ".join([location, *first_fault(error)])) from None
+        raise _fault_of(error, location) from None
+
+
+def sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str], list[str]]:
+    """What is sound of the content of a file, the faults of the rest, and the names of the entries
+    that are left out for them. Raises Fault if too little is left.
+    """
+    try:
+        return model.model_validate(content), [], []
+    except ValidationError as error:
+        fault = _fault_of(error, location)
+        places = {each["loc"][:2] for each in error.errors(include_url=False)}
+    for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
+        del content[key][name]
+    try:
+        return model.model_validate(content), fault.lines, [str(each[-1]) for each in places]
+    except ValidationError:
+        raise fault from None
+
+
+def _fault_of(error: ValidationError, location: str) -> Fault:
+    """All faults, those that others may follow from first."""
+    lines = sorted(_faults(error), key=lambda keys: (": unknown key" not in keys[-1], len(keys)))
+    return Fault(*(": ".join([location, *keys]) for keys in lines))
 
 
 def first_fault(error: ValidationError) -> list[str]:
-    """The fault that is reported of several: the keys that lead to it, and its message's end."""
+    """The first of several faults: the keys that lead to it, and its message's end."""
     return _faults(error)[0]
 
 
 def _faults(error: ValidationError) -> list[list[str]]:
-    """All of them, those that others may follow from first."""
     # After a key that is itself wrong, pydantic puts `[key]`.
-    faults = [
+    return [
         [*(str(key) for key in fault["loc"] if key != "[key]"), _fault(fault, None)]
         for fault in error.errors(include_url=False)
     ]
-    return sorted(faults, key=lambda fault: (": unknown key" not in fault[-1], len(fault)))
 
 
 def wrong(text: str) -> PydanticCustomError:
@@ -373,46 +390,24 @@ def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str,
     """Every name in a model that is defined elsewhere: the keys to it, what it names, the name."""
     for key, field in type(model).model_fields.items():
         if key in model.model_fields_set:
-            yield from _named(getattr(model, key), field.metadata, field.annotation, (*path, key))
-
-
-def unwrapped(metadata: Iterable[Any], annotation: Any) -> tuple[list[Any], Any]:
-    """What stands beside a type, and the type itself, whether a key may be left out (`type | None`)
-    or not.
-    """
-    metadata = list(metadata)
-    while True:
-        parts = typing.get_args(annotation)
-        if typing.get_origin(annotation) is Annotated:
-            metadata, annotation = [*metadata, *annotation.__metadata__], annotation.__origin__
-        elif (
-            typing.get_origin(annotation) in (typing.Union, types.UnionType)
-            and len(parts) == 2
-            and parts[1] is type(None)
-        ):
-            annotation = parts[0]
-        else:
-            return metadata, annotation
+            yield from _named(getattr(model, key), field.annotation, field.metadata, (*path, key))
 
 
 def _named(
-    content: Any, metadata: Any, annotation: Any, path: tuple[str, ...]
+    content: Any, annotation: Any, metadata: Any, path: tuple[str, ...]
 ) -> Iterator[tuple[tuple[str, ...], str, Any]]:
+    if typing.get_origin(annotation) is Annotated:
+        metadata, annotation = annotation.__metadata__, annotation.__origin__
+    parts = typing.get_args(annotation) or (None,)
     if isinstance(content, Model):
         yield from named(content, path)
-        return
-    metadata, annotation = unwrapped(metadata, annotation)
-    marks = [item.what for item in metadata if isinstance(item, Names)]
-    for what in marks[:1]:
-        yield path, what, content
-    if marks:
-        return
-    parts = typing.get_args(annotation)
-    if isinstance(content, list):
+    elif marks := [item.what for item in metadata if isinstance(item, Names)]:
+        yield path, marks[0], content
+    elif isinstance(content, list):
         for number, item in enumerate(content):
-            yield from _named(item, [], parts[0] if parts else None, (*path, str(number)))
+            yield from _named(item, parts[0], (), (*path, str(number)))
     elif isinstance(content, dict):
         for key, item in content.items():
-            yield from _named(item, [], parts[1] if len(parts) > 1 else None, (*path, key))
+            yield from _named(item, parts[-1], (), (*path, key))
     elif typing.get_origin(annotation) is list:  # a lone item of `one_or_list`
-        yield from _named(content, [], parts[0], path)
+        yield from _named(content, parts[0], (), path)

@@ -1,6 +1,5 @@
 """Choices that a paper leaves open, and which methods they concern."""
 
-import dataclasses
 import itertools
 from collections.abc import Iterable
 from typing import Any
@@ -68,7 +67,7 @@ def with_alternative(study: Study, name: str) -> Study:
             | assumption.along.get(method, {})
         )
         methods[method] = methods[method].but(settings=changed)
-    return dataclasses.replace(study, methods=methods)
+    return study.but(methods=methods)
 
 
 def experiments_of_claims(claims: list[Claim]) -> list[str]:

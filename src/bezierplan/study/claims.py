@@ -15,6 +15,7 @@ from bezierplan.schema.model import (
     Metric,
     Model,
     Name,
+    Names,
     Setting,
     listed,
     mapping_or,
@@ -56,10 +57,10 @@ class Assumption(Model):
         "reading with one is never the most likely",
     )
     setting: Name = Field(None, description="the planner's setting that it governs")
-    methods: listed(Name) = Field(
+    methods: listed(Annotated[Name, Names("method")]) = Field(
         [], description="the methods for which alone the alternatives of a setting are"
     )
-    problems: listed(ProblemName) = Field(
+    problems: listed(Annotated[ProblemName, Names("problem")]) = Field(
         [],
         description="the problems on which alone the alternatives of a setting hold; the "
         "default is the value that is used on them",

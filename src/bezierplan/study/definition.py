@@ -3,57 +3,31 @@
 import itertools
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.machine.modules import code_of
 from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.running.inputs import PAPER, tree
-from bezierplan.study.artefacts import Figure
+from bezierplan.study.artefacts import ArtefactsFile
 from bezierplan.study.claims import Assumption
-from bezierplan.study.experiments import (
-    BaselineComparison,
-    Experiment,
-    Method,
-    Paper,
-    Policy,
-    Problem,
-)
+from bezierplan.study.experiments import ExperimentsFile
 from bezierplan.workspaces import files
-from bezierplan.workspaces.kinds import Workspace, file_keys
+from bezierplan.workspaces.kinds import Workspace
 
 
-@dataclass(frozen=True)
-class Study:
+class Study(ExperimentsFile, ArtefactsFile):
     """A study as defined by its files: a paper of this project or a user's own folder of the same
     form (config/README.md).
 
-    key: its name; folder: its location; the others: experiments.yaml, artefacts.yaml, claims.yaml
-    and assumptions.yaml. methods: includes baselines; baselines: their names. settings: of all
-    methods; planner_settings: planner -> settings of its methods only.
+    key: its name; folder: its location; the others: what stands in the files. methods: with
+    baselines.
     """
 
     key: str
     folder: Path
-    title: str
-    paper: Paper | None
-    methods: dict[str, Method]
-    baselines: frozenset[str]
-    settings: dict[str, Any]
-    planner_settings: dict[str, dict[str, Any]]
-    presets: dict[str, dict[str, dict[str, Any]]]
-    policies: dict[str, Policy]
-    workspaces: dict[str, Workspace]
-    problems: dict[str, Problem]
-    experiments: dict[str, Experiment]
-    baseline_comparison: BaselineComparison | None
-    labels: dict[str, str]
-    looks: dict[str, str]
-    tables: dict[str, Table]
-    figures: dict[str, Figure]
     claims: list[Claim]
     assumptions: list[Assumption]
     votes: dict[str, list[str]]
@@ -61,6 +35,11 @@ class Study:
     def accepted(self, method: str) -> dict[str, Any]:
         """Settings accepted by a method's planner, with their annotations."""
         return planner_settings(planner_module(self.planner(method)))
+
+    @property
+    def of_planners(self) -> dict[str, dict[str, Any]]:
+        """Planner -> settings of its methods alone."""
+        return {name: each for name, each in self.settings.items() if isinstance(each, dict)}
 
     def resolved(self, method: str) -> dict[str, Any]:
         """All settings of a method, by name: the study's that its planner accepts, those of its
@@ -70,7 +49,7 @@ class Study:
         common = {name: value for name, value in self.settings.items() if name in accepted}
         return (
             common
-            | self.planner_settings.get(self.methods[method].planner, {})
+            | self.of_planners.get(self.methods[method].planner, {})
             | self.methods[method].settings
         )
 
@@ -80,25 +59,18 @@ class Study:
         return relative(self.folder / planner) if is_file(planner) else planner
 
     def methods_of(self, experiment: str) -> list[str]:
-        """Methods of an experiment, followed by the baselines that support all its workspaces."""
-        content = self.experiments[experiment]
-        kinds = {self.kind_of(problem) for problem in content.problems}
-        return content.methods + [
-            name
-            for name in self.methods
-            if name in self.baselines and self._serves(name, kinds, content)
-        ]
-
-    def _serves(self, baseline: str, kinds: set[str], experiment: Experiment) -> bool:
-        """Whether a baseline can join: its planner supports these kinds of workspace, and has no
-        setting that the experiment varies.
+        """Methods of an experiment, followed by the baselines that join: whose planner supports all
+        its workspaces and has no setting that it varies.
         """
-        module = planner_module(self.planner(baseline))
-        varied = set(experiment.vary) & set(planner_settings(module))
-        drives = any(self.workspace_of(problem).moves for problem in experiment.problems)
-        if drives != bool(self.methods[baseline].policy):
-            return False
-        return kinds <= set(getattr(module, "workspaces", kinds)) and not varied
+        content, moves = self.experiments[experiment], self.moves(experiment)
+        kinds, methods = {self.kind_of(problem) for problem in content.problems}, [*content.methods]
+        for name, baseline in self.baselines.items():
+            module = planner_module(self.planner(name))
+            varied = content.vary.keys() & planner_settings(module).keys()
+            served = kinds <= set(getattr(module, "workspaces", kinds))
+            if served and not varied and moves == bool(baseline.policy):
+                methods.append(name)
+        return methods
 
     def workspace_of(self, problem: str) -> Workspace:
         """The workspace of a problem."""
@@ -216,19 +188,6 @@ class Study:
         """The modules of some parts of its code (`machine.modules`) that it has."""
         code = code_of(self.key, relative(self.folder))
         return [code[part] for part in parts if part in code]
-
-
-def files_of(workspace: Workspace) -> dict[str, str]:
-    """Files that a workspace is read from, by key."""
-    changes = {
-        f"changes: {number}: file": change.file
-        for number, change in enumerate(getattr(workspace, "changes", []))
-    }
-    return {
-        key: getattr(workspace, key)
-        for key in file_keys(type(workspace))
-        if getattr(workspace, key)
-    } | changes
 
 
 def relative(path: Path) -> str:

@@ -1,231 +1,150 @@
-"""The planned runs of an experiment: methods, problems, settings, and what can be selected."""
+"""The planned runs of experiments: methods, problems, settings, and what can be selected."""
 
-from functools import cache
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import pandas as pd
 
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.geometry.curves import CURVES
-from bezierplan.planners import PLACE, is_file, planner_module
-from bezierplan.running.chunk import conditions
-from bezierplan.running.columns import (
-    DRIVE_JOINED,
-    DRIVE_RESULTS,
-    JOINED,
-    PLANNED,
-    RESULTS,
-    RUN_COLUMNS,
-)
-from bezierplan.schema.checked import Fault, check_known, closest
-from bezierplan.schema.model import identity, is_number, one_or_list
+from bezierplan.analysis.results import select
+from bezierplan.planners import planner_module
+from bezierplan.running.columns import DRIVE_JOINED, DRIVE_RESULTS, JOINED, PLANNED, RESULTS
+from bezierplan.running.execution import identity
+from bezierplan.schema.checked import Fault, check_known
+from bezierplan.schema.model import is_number, one_or_list
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job
 
-Row = dict[str, Any]
-
-# Columns for which the rows of a design do not hold every value.
-_MANY = ("repeat", "id")
 # Columns that are left out when bounds are joined, or are no numbers to choose by.
 _LEFT_OUT = ("least_length", "bound_path")
 
 
-class Design:
-    """The runs of a study's experiments, one row each, without repeats; two layouts represent all
-    layouts of a problem that is drawn several times.
+class Design(NamedTuple):
+    """The runs of experiments at scale full."""
+
+    experiments: list[str]
+    rows: pd.DataFrame
+    """One a run, the first repeat alone, with the columns that are known before a run."""
+    types: dict[str, str]
+    """Of the values of all columns of their tables: flag, number, word, or another; `reported` of
+    those that only planners know.
     """
+    kinds: set[str]
+    """Kinds of workspace; none of drives."""
+    repeats: int
 
-    def __init__(self, study: Study) -> None:
-        self.study = study
-        self.rows = cache(self._rows)
-        self.planned = cache(self._planned)
-
-    def _rows(self, experiment: str) -> list[Row]:
-        from bezierplan.running.execution import identity as identity_of
-
-        content, rows = self.study.experiments[experiment], []
-        for method in self.study.methods_of(experiment):
-            described = job(self.study, experiment, method, "full", 0)
-            problems = [
-                name for name, problem in described.problems.items() if problem.get("layout", 0) < 2
-            ]
-            for condition in conditions(problems, content.vary):
-                row = identity_of(described, condition, 0)
-                rows.append({key: row[key] for key in row if key not in ("id", "study", "repeat")})
-        return rows
-
-    def _planned(self, experiment: str) -> dict[str, str]:
-        """Columns of the runs table of an experiment that are known before its runs, each with the
-        type of its values.
-        """
-        problems = [
-            self.study.problems[name] for name in self.study.experiments[experiment].problems
-        ]
-        columns = {key for problem in problems for key in problem.model_fields_set if key in PLACE}
-        columns |= {"layout" for problem in problems if problem.layouts}
-        columns |= {
-            name
-            for method in self.study.methods_of(experiment)
-            for name in self.study.resolved(method)
-        }
-        columns |= self.study.experiments[experiment].vary.keys()
-        return PLANNED | {
-            column: _type([row[column] for row in self.rows(experiment) if column in row])
-            for column in sorted(columns - PLANNED.keys())
-        }
-
-    def _types(self, experiments: list[str]) -> tuple[dict[str, str], set[str]]:
-        """All columns of the runs tables of experiments with the types of their values, but for
-        those that only their planners know; and those that are known before a run.
-        """
-        types, planned = {}, set()
-        for experiment in experiments:
-            joined = JOINED | (DRIVE_RESULTS | DRIVE_JOINED if self.study.moves(experiment) else {})
-            joined = {name: each for name, each in joined.items() if name not in _LEFT_OUT}
-            types |= RESULTS | joined | self.planned(experiment)
-            planned |= self.planned(experiment).keys() - {"id"}
-        return types, planned
-
-    def check_column(self, experiments: list[str], column: str, kind: str, location: str) -> None:
+    def check_column(self, column: str, kind: str, location: str) -> None:
         """A column exists, and has the type that is asked for. Raises Fault, beginning with a
         location.
 
         kind: `column`, one that is known before a run; `number column`, such a column of numbers;
         `quantity`, any column of numbers.
         """
-        types, planned = self._types(experiments)
-        numbers = {name for name, each in types.items() if each == "number"}
-        fit = {"column": planned, "number column": planned & numbers, "quantity": numbers}[kind]
-        if column in fit:
-            return
-        if kind == "quantity" and column in METRICS and METRICS[column].compute is None:
-            self.check_metric(experiments, column, location)
-        elif column in types:
+        fit = [
+            name
+            for name, each in self.types.items()
+            if (kind == "quantity" or name in self.rows)
+            and (kind == "column" or each in ("number", "reported"))
+        ]
+        if column in self.types and column not in fit:
             wanted = "a column of numbers" if kind != "column" else "a column"
             wanted += "" if kind == "quantity" else " that is known before a run"
-            raise Fault(f"{location}: {column}: a {types[column]}; expected {wanted}")
-        else:
-            raise Fault(f"{location}: {column}: unknown{closest(column, fit)}")
+            raise Fault(f"{location}: {column}: a {self.types[column]}; expected {wanted}")
+        check_known(column, fit, location)
 
-    def check_metric(self, experiments: list[str], metric: str, location: str) -> None:
-        """Runs of each experiment can have a metric. Raises Fault, beginning with a location."""
-        described = METRICS[metric]
-        for experiment in experiments:
-            types, reported = self._types([experiment])[0], self._reported(experiment)
-            needed = described.needs or ((metric,) if described.compute is None else ())
-            lacking = [name for name in needed if name not in types and name not in reported]
-            content = self.study.experiments[experiment]
-            kinds = {self.study.kind_of(problem) for problem in content.problems}
-            if lacking and None not in reported:
-                raise Fault(
-                    f"{location}: {metric}: no run of {experiment} has it: its runs table has no "
-                    f"column {lacking[0]}"
-                )
-            if described.on and not self.study.moves(experiment) and not kinds & set(described.on):
-                raise Fault(
-                    f"{location}: {metric}: no run of {experiment} has it: it is for workspaces "
-                    f"of kind {' or '.join(described.on)}"
-                )
+    def check_metric(self, metric: str, location: str) -> None:
+        """Runs can have a metric. Raises Fault, beginning with a location."""
+        check_known(metric, METRICS, location)
+        described, none = METRICS[metric], f"{location}: {metric}: no run of {self.name} has it"
+        needed = described.needs or ((metric,) if described.compute is None else ())
+        for lacking in (name for name in needed if name not in self.types):
+            raise Fault(f"{none}: its runs table has no column {lacking}")
+        if described.on and self.kinds and not self.kinds & set(described.on):
+            raise Fault(f"{none}: it is for workspaces of kind {' or '.join(described.on)}")
 
-    def _reported(self, experiment: str) -> set[str | None]:
-        """Extra columns that the planners of an experiment report; with None if one of them does
-        not say which.
-        """
-        columns: set[str | None] = set()
-        for method in self.study.methods_of(experiment):
-            planner = self.study.planner(method)
-            if not self.study.moves(experiment):
-                unsaid = (None,) if is_file(planner) else ()
-                columns.update(getattr(planner_module(planner), "extra", unsaid))
-        return columns
-
-    def check_where(
-        self,
-        experiments: list[str],
-        where: dict[str, Any],
-        location: str,
-        *,
-        baselines: bool = True,
-    ) -> None:
+    def check_where(self, where: dict[str, Any], location: str, claim: bool = False) -> None:
         """A selection names existing columns and values, in a combination that some run has. Raises
-        Fault, beginning with a location. baselines: whether it includes their runs, as those of
-        claims do not, which may select by what is computed of runs.
+        Fault, beginning with a location. claim: whether it may select by what is computed of runs.
         """
-        types, planned = self._types(experiments)
         for column, wanted in where.items():
-            key = f"{location}: {column}"
-            if column not in types:
-                computed = METRICS[column].compute is not None if column in METRICS else True
-                if column not in METRICS or (computed and baselines):
-                    raise Fault(f"{key}: unknown{closest(column, types)}")
-                self.check_metric(experiments, column, location)
-            elif column not in planned and types[column] in ("number", "list", "name"):
+            key, known = f"{location}: {column}", column in self.rows
+            if claim and column not in self.types and column in METRICS:
+                self.check_metric(column, location)
+                continue
+            check_known(column, self.types, location)
+            if not known and self.types[column] in ("number", "list", "name"):
                 raise Fault(
-                    f"{key}: {wanted}: a {types[column]} that a run finds out is not selected by "
-                    "its value; expected another column"
+                    f"{key}: {wanted}: a {self.types[column]} that a run finds out is not selected "
+                    "by its value; expected another column"
                 )
             for value in one_or_list(wanted):
-                kind = {"flag": bool, "word": str}.get(types.get(column, ""), object)
+                kind = {"flag": bool, "word": str}.get(self.types[column], object)
                 if not isinstance(value, kind):
-                    raise Fault(f"{key}: {value}: expected a {types[column]}")
-                if column == "path_curve":
-                    check_known(value, CURVES, key)
-                elif column == "repeat":
-                    self.check_repeat(experiments, value, key)
-                elif column in planned and column not in _MANY:
-                    values = self.values(experiments, column, baselines)
-                    if identity(value) not in map(identity, values):
-                        raise Fault(f"{key}: {value}: unknown{closest(value, values)}")
-        rows = self._selectable(experiments, baselines)
-        if rows and not any(fits(row, where) for row in rows):
+                    raise Fault(f"{key}: {value}: expected a {self.types[column]}")
+                if column == "repeat":
+                    self.check_repeat(value, key)
+                elif known:
+                    check_known(value, self.values(column), key)
+        planned = {
+            column: wanted
+            for column, wanted in where.items()
+            if column in self.rows and column != "repeat"
+        }
+        if select(self.rows, planned).empty:
             raise Fault(
-                f"{location}: no run of {', '.join(experiments)} has all of "
-                f"{', '.join(f'{key} {value}' for key, value in where.items())}"
+                f"{location}: no run of {self.name} has all of "
+                f"{', '.join(f'{key} {value}' for key, value in planned.items())}"
             )
 
-    def check_repeat(self, experiments: list[str], repeat: Any, location: str) -> None:
-        """A repeat is run at scale full. Raises Fault, beginning with a location."""
-        most = max(self.study.experiments[name].repeats["full"] for name in experiments)
-        if not is_number(repeat) or repeat not in range(most):
-            raise Fault(f"{location}: {repeat}: expected a repeat from 0 to {most - 1}")
+    def check_repeat(self, repeat: Any, location: str) -> None:
+        """A repeat is run. Raises Fault, beginning with a location."""
+        if not is_number(repeat) or repeat not in range(self.repeats):
+            raise Fault(f"{location}: {repeat}: expected a repeat from 0 to {self.repeats - 1}")
 
-    def _selectable(self, experiments: list[str], baselines: bool) -> list[Row]:
-        """Rows of experiments, with those of baselines or without."""
-        rows = [row for name in experiments for row in self.rows(name)]
-        return [row for row in rows if baselines or row["method"] not in self.study.baselines]
+    def values(self, column: str) -> list[Any]:
+        """All values of a column that is known before a run."""
+        return self.rows[column].dropna().unique().tolist()
 
-    def values(self, experiments: list[str], column: str, baselines: bool = True) -> list[Any]:
-        """All values of a column in rows of experiments."""
-        if column not in ("problem", "layout", "condition"):
-            rows = self._selectable(experiments, baselines)
-            return list({repr(row[column]): row[column] for row in rows if column in row}.values())
-        values: dict[Any, None] = {}
-        for experiment in experiments:
-            described = self.study.problems_of(experiment, "full")
-            vary = self.study.experiments[experiment].vary
-            every = {
-                "problem": described,
-                "layout": [each["layout"] for each in described.values() if "layout" in each],
-                "condition": [each.name for each in conditions(list(described), vary)],
-            }
-            values |= dict.fromkeys(every[column])
-        return list(values)
+    @property
+    def name(self) -> str:
+        """In messages."""
+        return ", ".join(self.experiments)
 
 
-def _type(values: list[Any]) -> str:
+def design(study: Study, experiment: str) -> Design:
+    """The runs of an experiment."""
+    methods, moves = study.methods_of(experiment), study.moves(experiment)
+    chunks = [job(study, experiment, method, "full", 0) for method in methods]
+    rows = [identity(chunk, each, 0) for chunk in chunks for each in chunk.conditions()]
+    frame = pd.DataFrame(rows, dtype=object).drop(columns="id")
+    planners = () if moves else (planner_module(study.planner(method)) for method in methods)
+    reported = {name: "reported" for each in planners for name in getattr(each, "extra", ())}
+    joined = JOINED | (DRIVE_RESULTS | DRIVE_JOINED if moves else reported)
+    problems = study.experiments[experiment].problems
+    return Design(
+        [experiment],
+        frame,
+        {name: each for name, each in joined.items() if name not in _LEFT_OUT}
+        | {name: _type(frame[name].dropna().unique()) for name in frame}
+        | (PLANNED | RESULTS),
+        {study.kind_of(problem) for problem in problems} if not moves else set(),
+        study.experiments[experiment].repeats["full"],
+    )
+
+
+def together(designs: list[Design], without: Iterable[str] = ()) -> Design:
+    """The runs of several experiments, without those of some methods."""
+    rows = pd.concat([each.rows for each in designs])
+    return Design(
+        [name for each in designs for name in each.experiments],
+        rows[~rows["method"].isin([*without])],
+        {name: kind for each in designs for name, kind in each.types.items()},
+        set().union(*(each.kinds for each in designs)),
+        max(each.repeats for each in designs),
+    )
+
+
+def _type(values: Iterable[Any]) -> str:
     """The type of a column of settings or places with these values."""
-    if values and all(isinstance(value, bool) for value in values):
-        return "flag"
-    return "number" if values and all(map(is_number, values)) else "word"
-
-
-def fits(row: Row, where: dict[str, Any]) -> bool:
-    """Whether a run matches the conditions of a selection, as far as known before it is run."""
-    for column, wanted in where.items():
-        outcome = (
-            column in METRICS
-            or (column in RUN_COLUMNS and column not in row)
-            or column in ("repeat", "layout", "condition")
-        )
-        drawn = column == "problem" and "layout" in row
-        if not outcome and not drawn and row.get(column) not in one_or_list(wanted):
-            return False
-    return True
+    kinds = {bool if isinstance(value, bool) else is_number(value) for value in values}
+    return {frozenset([bool]): "flag", frozenset([True]): "number"}.get(frozenset(kinds), "word")

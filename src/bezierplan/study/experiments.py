@@ -12,6 +12,7 @@ from bezierplan.schema.model import (
     Line,
     Model,
     Name,
+    Names,
     Number,
     Positive,
     Setting,
@@ -24,7 +25,9 @@ from bezierplan.schema.model import (
     whole,
     wrong,
 )
-from bezierplan.workspaces.kinds import File, Workspace, kinds, of_length
+from bezierplan.schema.model import Experiment as ExperimentName
+from bezierplan.schema.model import Workspace as WorkspaceName
+from bezierplan.workspaces.kinds import FileName, Workspace, kinds, of_length
 
 SCALES = ("smoke", "full", "extended")
 
@@ -52,19 +55,19 @@ class Scales(Model):
 class Method(Model):
     """A planner with its settings."""
 
-    planner: File = Field(
+    planner: FileName = Field(
         description="the name of a file in `src/bezierplan/planners`, or of a file `.py` in the "
         "study's folder"
     )
     settings: Settings = Field(
         {}, description="settings of this method alone, by name; they take precedence"
     )
-    policy: Name = Field(
+    policy: Annotated[Name, Names("policy")] = Field(
         None,
         description="the name of a policy: needed in experiments in dynamic environments, refused "
         "in others",
     )
-    variant_of: Name = Field(
+    variant_of: Annotated[Name, Names("method")] = Field(
         None, description="the method whose published numbers this one is compared with"
     )
 
@@ -72,7 +75,7 @@ class Method(Model):
 class Problem(Model):
     """A workspace with a start and a target."""
 
-    workspace: Name = Field(description="the name of a workspace")
+    workspace: WorkspaceName = Field(description="the name of a workspace")
     start: Point = Field(None, description="[x, y] in units")
     target: Point = Field(None, description="[x, y] in units")
     start_cell: Whole = Field(
@@ -127,8 +130,10 @@ class Problem(Model):
 class Experiment(Model):
     """Problems × varied values × methods × repeats."""
 
-    problems: listed(ProblemName) = Field(description="a list of problems")
-    methods: listed(Name) = Field(description="a list of methods")
+    problems: listed(Annotated[ProblemName, Names("problem")]) = Field(
+        description="a list of problems"
+    )
+    methods: listed(Annotated[Name, Names("own method")]) = Field(description="a list of methods")
     vary: dict[Name, listed(Setting)] = Field(
         {}, description="setting or preset → list of values; every combination is run"
     )
@@ -194,9 +199,9 @@ class Experiment(Model):
 class BaselineComparison(Model):
     """The baseline with which the summary compares the study's methods."""
 
-    baseline: Name = Field(description="a baseline")
+    baseline: Annotated[Name, Names("baseline")] = Field(description="a baseline")
     proposed: Name = Field(None, description="the method that the paper proposes")
-    experiments: listed(Name) = Field(
+    experiments: listed(ExperimentName) = Field(
         description="the experiments in which the methods are compared with it; "
         "it must join each of them"
     )

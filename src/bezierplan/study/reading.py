@@ -6,21 +6,18 @@ import json
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from bezierplan.analysis import study_code
 from bezierplan.machine.modules import code_of
 from bezierplan.places import STUDIES, TREE
 from bezierplan.schema import checked
-from bezierplan.schema.checked import Fault, closest, part
-from bezierplan.schema.model import Model, parsed
+from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.model import parsed, sound_part
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.experiments import ExperimentsFile
-
-M = TypeVar("M", bound=Model)
-
 
 Folders = dict[Path, dict[str, Any]]
 """Folders of studies, with the settings that take the place of a study's own."""
@@ -68,87 +65,82 @@ def _with_values(config: dict[str, Any]) -> dict[str, Any]:
     return {key: value(entry) if key == "settings" else entry for key, entry in config.items()}
 
 
+FILES = {
+    "experiments": ExperimentsFile,
+    "artefacts": ArtefactsFile,
+    "claims": ClaimsFile,
+    "assumptions": AssumptionsFile,
+}
+
+
 def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     """The studies in folders, by name, read and checked. Raises Fault."""
-    from bezierplan.study.checks import check
+    from bezierplan.study.checks import faults_of
 
-    studies = {}
+    studies: dict[str, Study] = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
         try:
-            study = read_study(folder, changed)
-            if study.key in studies:
-                raise Fault(
-                    f"{relative(folder)}: a study of the name {study.key} is there already; "
-                    "rename the folder"
-                )
-            check(study)
+            study, faults, lost = _read(folder, changed)
+            if faults := [*faults, *faults_of(study, lost)]:
+                raise Fault(*faults)
         except Fault as fault:
-            if not changed:
-                raise
+            more = f" (with the configuration's settings: {json.dumps(changed)[:300]})"
+            raise Fault(*(f"{line}{more if changed else ''}" for line in fault.lines)) from None
+        if study.key in studies:
             raise Fault(
-                f"{fault} (with the configuration's settings: {json.dumps(changed)[:300]})"
-            ) from None
+                f"{relative(folder)}: a study of the name {study.key} is there already; rename the "
+                "folder"
+            )
         studies[study.key] = study
     return studies
 
 
-def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
-    """The study in a folder, with each of its files checked on its own. Raises Fault.
+def read_study(folder: Path) -> Study:
+    """The study in a folder, with each of its files checked on its own. Raises Fault."""
+    study, faults, _ = _read(folder, {})
+    if faults:
+        raise Fault(*faults)
+    return study
 
-    changed: settings that take the place of those of the same name in experiments.yaml; those of
-    one planner are taken one by one.
+
+def _read(folder: Path, changed: Mapping[str, Any]) -> tuple[Study, list[str], list[str]]:
+    """The study in a folder, as far as its files are sound, the faults of the rest, and the names
+    of entries that are left out for them. Raises Fault if they are in experiments.yaml.
+
+    changed: settings that take the place of those of the same name there; those of one planner are
+    taken one by one.
     """
-    study_code.functions(code_of(folder.resolve().name, relative(folder)).values())
-    experiments = _read(folder, "experiments", ExperimentsFile)
-    for name, value in (changed or {}).items():
-        own = experiments.settings.get(name)
-        experiments.settings[name] = (
+    key = folder.resolve().name
+    study_code.functions(code_of(key, relative(folder)).values())
+    content: dict[str, Any] = {"claims": [], "assumptions": [], "votes": {}} | dict(ArtefactsFile())
+    faults: list[str] = []
+    lost: list[str] = []
+    for name, model in FILES.items():
+        file, needed = folder / f"{name}.yaml", model is ExperimentsFile
+        try:
+            if needed or file.exists():
+                text = checked.read(file, relative(file))
+                sound, lines, left = sound_part(model, text, relative(file))
+                content |= dict(sound) if not (needed and lines) else {}
+                faults += lines
+                lost += left
+        except Fault as fault:
+            faults += fault.lines
+    if "methods" not in content:
+        raise Fault(*faults)
+    for name, value in changed.items():
+        own = content["settings"].get(name)
+        content["settings"][name] = (
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
         )
-    artefacts, claims, assumptions = None, None, None
-    with part():
-        artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
-    with part():
-        claims = _read(folder, "claims", ClaimsFile)
-    with part():
-        assumptions = _read(folder, "assumptions", AssumptionsFile)
-    if artefacts is None:  # while faults are gathered: what refers to tables would only repeat this
-        artefacts, claims = ArtefactsFile(), None
-    for name in experiments.baselines:
-        if name in experiments.methods:
-            raise Fault(
-                f"{relative(folder / 'experiments.yaml')}: "
-                f"baselines: {name}: a method has this name already"
-            )
-    shared = experiments.settings
-    of_planners = {name: each for name, each in shared.items() if isinstance(each, dict)}
-    declared = {
-        name: getattr(file, name)
-        for file in (experiments, artefacts)
-        for name in type(file).model_fields
-        if name not in ("settings", "methods", "baselines")
-    }
-    return Study(
-        key=folder.resolve().name,
-        folder=folder,
-        methods=experiments.methods | experiments.baselines,
-        baselines=frozenset(experiments.baselines),
-        settings={name: each for name, each in shared.items() if name not in of_planners},
-        planner_settings=of_planners,
-        claims=claims.claims if claims else [],
-        assumptions=assumptions.assumptions if assumptions else [],
-        votes=assumptions.votes if assumptions else {},
-        **declared,
-    )
-
-
-def _read(folder: Path, name: str, model: type[M]) -> M | None:
-    """A file of a study; None if it is missing, because all but the experiments are optional."""
-    file = folder / f"{name}.yaml"
-    if name != "experiments" and not file.exists():
-        return None
-    return parsed(model, checked.read(file, relative(file)), relative(file))
+    for name in content["baselines"].keys() & content["methods"]:
+        raise Fault(
+            f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this name "
+            "already"
+        )
+    content["methods"] = content["methods"] | content["baselines"]
+    return Study.model_construct(key=key, folder=folder, **content), faults, lost
 
 
 def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:

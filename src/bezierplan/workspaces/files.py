@@ -32,12 +32,14 @@ def sources(description: dict, folder: Path) -> list[Path]:
     """The files from which a workspace is read. Raises ValueError if they cannot be told from the
     description.
     """
-    from bezierplan.workspaces.kinds import file_keys, kind_of
+    from bezierplan.schema.model import named
+    from bezierplan.workspaces.kinds import kind_of
 
     kind = kind_of(description)
     if hasattr(kind, "sources"):
         return kind.sources(description, folder)
-    return [folder / description[key] for key in file_keys(kind.Options) if key in description]
+    names = named(kind.Options.model_validate(description))
+    return [folder / name for _, what, name in names if what == "file"]
 
 
 def to_json(workspace: Workspace) -> str:

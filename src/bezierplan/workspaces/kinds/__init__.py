@@ -32,13 +32,12 @@ from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
     Line,
     Model,
+    Names,
     NotNegative,
     Number,
     Positive,
     is_line,
     is_number,
-    keys,
-    unwrapped,
     value,
     whole,
     wrong,
@@ -52,8 +51,8 @@ def _is_file_name(entry: Any) -> bool:
     return is_line(entry) and not set("{}*?[]\\") & set(entry)
 
 
-_IS_FILE = value(_is_file_name, "the name of a file, without { } * ? [ ]")
-File = Annotated[str, _IS_FILE]
+FileName = Annotated[str, value(_is_file_name, "the name of a file, without { } * ? [ ]")]
+File = Annotated[FileName, Names("file")]
 Unit = Annotated[
     str,
     value(
@@ -160,15 +159,6 @@ def kinds() -> dict[str, type[Workspace]]:
     return dict(
         sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].drawn), each[0]))
     )
-
-
-def file_keys(options: type[Workspace]) -> list[str]:
-    """The keys of a kind that name files."""
-    return [
-        key
-        for key, field in keys(options).items()
-        if _IS_FILE in unwrapped(field.metadata, field.annotation)[0]
-    ]
 
 
 def text(description: dict, key: str, folder: Path) -> str:

@@ -48,14 +48,6 @@ class Options(World):
     )
 
 
-def sources(description: dict, folder: Path) -> list[Path]:
-    """The map at the beginning, and those of the changes."""
-    return [
-        folder / file
-        for file in (description["file"], *(change["file"] for change in description["changes"]))
-    ]
-
-
 def world(
     description: dict, problem: dict, name: str, folder: Path, length: Callable[[Grid], float]
 ) -> ChangingCells:

@@ -1,11 +1,11 @@
 """Workspaces that a function of a study's `worlds.py` draws, one for each layout."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from bezierplan.machine.modules import module
-from bezierplan.schema.model import ARGUMENTS, Arguments, Function
+from bezierplan.schema.model import ARGUMENTS, Arguments, Name, Names
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import Workspace
@@ -18,7 +18,7 @@ TYPES = {"circles": Circles, "grid": Grid, "polygons": Polygons}
 class Options(Workspace):
     """Keys of a workspace."""
 
-    function: Function = Field(
+    function: Annotated[Name, Names("world")] = Field(
         description="the name of a function of the study's `worlds.py`, called with a random "
         "generator and the problem: a mapping with `start`, `target`, `obstacles` and `layout`; it "
         "returns a workspace"
