@@ -13,7 +13,7 @@ import pytest
 import starts
 
 from bezierplan.running.judge import recheck
-from bezierplan.study import proof, reading
+from bezierplan.study import reading, stored
 
 ROOT = Path(__file__).parents[1]
 
@@ -201,7 +201,7 @@ def test_what_was_verified_is_listed_and_can_be_judged_again(results):
     judged = json.loads((results.parent / "verified.json").read_text())
     assert f"{results.name}/claims.csv" in judged["sha256"]
     with contextlib.chdir(results.parents[2]):
-        tasks = proof.tasks(reading.load([Path(results.name)]), Path("results/full"))
+        tasks = stored.tasks(reading.load([Path(results.name)]), Path("results/full"))
         verdict = recheck.verify(tasks, 1)
     assert not verdict.faults
     assert verdict.files == judged["files"]

@@ -20,7 +20,7 @@ from bezierplan.places import TREE
 from bezierplan.running import execution, problems, rows, worlds
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.judge import recheck
-from bezierplan.study import proof
+from bezierplan.study import stored
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -171,7 +171,7 @@ def test_a_study_of_ones_own_is_found_here_or_where_it_is_said_to_lie(results, t
     )
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "away").rename(tmp_path / "elsewhere/bend")
-    places = proof.places_of(results, {"studies": ["song2016"]}, ["elsewhere/bend"])
+    places = stored.places_of(results, {"studies": ["song2016"]}, ["elsewhere/bend"])
     assert places == {"bend": "elsewhere/bend"}
 
 

@@ -1,4 +1,4 @@
-"""The jobs of the workflow that work on results, each declared once: a class whose fields are all
+"""The jobs of the workflow but those that draw, each declared once: a class whose fields are all
 values that a job depends on, and whose `run` is the function that works. From that function, and
 from the modules that the values name, follows the digest of code (`Job.digest`) by which Snakemake
 sees that a job must run again. Files of results stand in the rules alone.
@@ -19,7 +19,10 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Shown
 from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.machine.digest import content_digest, function_digest, module_of
+from bezierplan.running.chunk import Chunk
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.inputs import Shows
+from bezierplan.workspaces.kinds import modules_of
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,83 @@ class Job(ABC):
                 function_digest(works, *sorted(set(self.modules()))),
             ]
         )
+
+
+@dataclass(frozen=True)
+class Problems(Job):
+    """The problems of an experiment: drawn once, shared by all its methods."""
+
+    descriptions: Descriptions
+    folder: str
+
+    def modules(self):
+        """Those of the kinds of workspace."""
+        return modules_of(self.descriptions.workspaces)
+
+    def run(self, input_files, output_files, threads):
+        """Build the problems, with the worlds of those that move."""
+        from bezierplan.running import worlds
+
+        built, moving = worlds.build_all(self.descriptions, Path(self.folder))
+        worlds.write(built, self.descriptions.homes, moving, output_files[0])
+
+
+@dataclass(frozen=True)
+class Bounds(Job):
+    """The exact shortest path of each problem of an experiment; of drives, what no robot can
+    beat.
+    """
+
+    def run(self, input_files, output_files, threads):
+        """Compute the bounds."""
+        import pyarrow.parquet as parquet
+
+        from bezierplan.running import problems, worlds
+
+        file = input_files.problems
+        bounds = worlds.bounds_of(problems.read(file), worlds.read(file))
+        parquet.write_table(bounds, output_files[0])
+
+
+@dataclass(frozen=True)
+class Runs(Job):
+    """A method on every condition of an experiment, one block of repeats."""
+
+    chunk: Chunk
+
+    def modules(self):
+        """The planner."""
+        return [module_of(self.chunk.planner)]
+
+    def run(self, input_files, output_files, threads):
+        """Run the method, or let the robot drive."""
+        import pyarrow.parquet as parquet
+
+        from bezierplan.running import execution, problems, rows, worlds
+
+        file = input_files.problems
+        tables = execution.run_chunk(problems.read(file), self.chunk, worlds.read(file))
+        rows.write(tables[0], output_files.runs)
+        parquet.write_table(tables[1], output_files.times)
+        for traces in tables[2:]:
+            parquet.write_table(traces, output_files.traces, compression="zstd")
+
+
+@dataclass(frozen=True)
+class Judgement(Job):
+    """The runs of a method in an experiment, judged again from their rows, in a process that no
+    planner was in, before anything reads them.
+    """
+
+    chunks: list[Chunk]
+
+    def run(self, input_files, output_files, threads):
+        """Judge the runs."""
+        from bezierplan.running.judge import recheck
+
+        files = dict(zip(input_files.runs, self.chunks, strict=True))
+        verdict = recheck.judged(recheck.Task(input_files.problems[0], files))
+        recheck.write(recheck.sound(verdict), output_files[0])
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from bezierplan.analysis import verification
+from bezierplan.analysis import proof, verification
 from bezierplan.commands import config_of, cores, studies_of, study_named
 
 
@@ -57,14 +57,14 @@ def from_runs(
 ) -> tuple[list[str], bool]:
     """What is to be said of results that are made again, and whether they are sound."""
     from bezierplan.running.judge import recheck
-    from bezierplan.study import proof
+    from bezierplan.study import stored
 
     def progress(line: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
     config = config_of()
-    places = proof.places_of(folder, config, map(study_named, names))
-    tasks = proof.tasks(studies_of([*places.values()]) if places else {}, folder)
+    places = stored.places_of(folder, config, map(study_named, names))
+    tasks = stored.tasks(studies_of([*places.values()]) if places else {}, folder)
     faults = proof.unlisted(folder)
     missing = [fault for fault in faults if not Path(fault.file).is_file()]
     if missing:

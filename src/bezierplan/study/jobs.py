@@ -1,10 +1,8 @@
-"""The jobs of the workflow that follow from studies: a function for each rule makes its job from
-the studies and the rule's wildcards. Jobs that work on results are classes of `analysis.jobs` and
-`figures.jobs`, those that make results of this file.
+"""The jobs of the workflow (`analysis.jobs`, `figures.jobs`) that follow from studies: a function
+for each rule makes its job from a study, or all, and the rule's wildcards.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +11,13 @@ from bezierplan.analysis.claims.material import Shown
 from bezierplan.analysis.jobs import (
     Audit,
     BaselineComparison,
+    Bounds,
     Claims,
-    Job,
+    Judgement,
     Latex,
+    Problems,
     Readings,
+    Runs,
     Summary,
     TableOfRuns,
     TableWithoutRuns,
@@ -25,7 +26,6 @@ from bezierplan.analysis.jobs import (
 from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.jobs import Figure
-from bezierplan.machine.digest import module_of
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
@@ -34,7 +34,6 @@ from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
 from bezierplan.study.artefacts import Figure as FigureOfStudy
 from bezierplan.study.definition import Study, relative
-from bezierplan.workspaces.kinds import modules_of
 
 Studies = dict[str, Study]
 
@@ -56,47 +55,11 @@ def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
     return Descriptions(study.key, problems, workspaces)
 
 
-@dataclass(frozen=True)
-class Problems(Job):
-    """The problems of an experiment: drawn once, shared by all its methods."""
-
-    descriptions: Descriptions
-    folder: str
-
-    def modules(self):
-        """Those of the kinds of workspace."""
-        return modules_of(self.descriptions.workspaces)
-
-    def run(self, input_files, output_files, threads):
-        """Build the problems, with the worlds of those that move."""
-        from bezierplan.running import worlds
-
-        built, moving = worlds.build_all(self.descriptions, Path(self.folder))
-        worlds.write(built, self.descriptions.homes, moving, output_files[0])
-
-
 def problems(study: Study, scale: str, experiment: str) -> Problems:
     """The problems of an experiment."""
     described = problems_job(study, experiment, scale)
     maps = study.maps(described.workspaces)
     return Problems(described, relative(study.folder), sources=maps)
-
-
-@dataclass(frozen=True)
-class Bounds(Job):
-    """The exact shortest path of each problem of an experiment; of drives, what no robot can
-    beat.
-    """
-
-    def run(self, input_files, output_files, threads):
-        """Compute the bounds."""
-        import pyarrow.parquet as parquet
-
-        from bezierplan.running import problems, worlds
-
-        file = input_files.problems
-        bounds = worlds.bounds_of(problems.read(file), worlds.read(file))
-        parquet.write_table(bounds, output_files[0])
 
 
 def bounds(study: Study, scale: str, experiment: str) -> Bounds:
@@ -167,50 +130,9 @@ def chunks_of(study: Study, experiment: str, methods: Iterable[str], scale: str)
     return {method: len(chunks(study, experiment, method, scale)) for method in methods}
 
 
-@dataclass(frozen=True)
-class Runs(Job):
-    """A method on every condition of an experiment, one block of repeats."""
-
-    chunk: Chunk
-
-    def modules(self):
-        """The planner."""
-        return [module_of(self.chunk.planner)]
-
-    def run(self, input_files, output_files, threads):
-        """Run the method, or let the robot drive."""
-        import pyarrow.parquet as parquet
-
-        from bezierplan.running import execution, problems, rows, worlds
-
-        file = input_files.problems
-        tables = execution.run_chunk(problems.read(file), self.chunk, worlds.read(file))
-        rows.write(tables[0], output_files.runs)
-        parquet.write_table(tables[1], output_files.times)
-        for traces in tables[2:]:
-            parquet.write_table(traces, output_files.traces, compression="zstd")
-
-
 def runs(study: Study, scale: str, experiment: str, method: str, chunk: str) -> Runs:
     """A chunk of runs."""
     return Runs(job(study, experiment, method, scale, int(chunk)))
-
-
-@dataclass(frozen=True)
-class Judgement(Job):
-    """The runs of a method in an experiment, judged again from their rows, in a process that no
-    planner was in, before anything reads them.
-    """
-
-    chunks: list[Chunk]
-
-    def run(self, input_files, output_files, threads):
-        """Judge the runs."""
-        from bezierplan.running.judge import recheck
-
-        files = dict(zip(input_files.runs, self.chunks, strict=True))
-        verdict = recheck.judged(recheck.Task(input_files.problems[0], files))
-        recheck.write(recheck.sound(verdict), output_files[0])
 
 
 def judgement(study: Study, scale: str, experiment: str, method: str) -> Judgement:

@@ -1,24 +1,16 @@
-"""Do all files of a scale follow from the studies? What each file of runs is to hold, and what
-follows from the runs, made again in a folder of its own.
-"""
+"""Do all files of a scale follow from its runs? They are made again in a folder of their own."""
 
 import json
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from bezierplan.places import TREE
 from bezierplan.running import rows
-from bezierplan.running.judge.recheck import Fault, Task, sha256
-from bezierplan.schema import checked
-from bezierplan.schema.checked import check_known
-from bezierplan.study import jobs
-from bezierplan.study.experiments import SCALES
-from bezierplan.study.jobs import Studies
+from bezierplan.running.judge.recheck import Fault, sha256
 
 LIST = "verified.json"
 """The file that lists the digests of all others."""
@@ -34,52 +26,6 @@ _RULES = (
     *("problems", "table", "unprinted_table", "listing", "latex", "figure", "claims", "audit"),
     *("baseline_comparison", "summary", "verdict", "page"),
 )
-
-
-def places_of(folder: Path, config: dict[str, Any], words: Iterable[str]) -> dict[str, str]:
-    """Where the studies lie whose results a scale's folder holds, by name: as a configuration or
-    further words say, or in the working folder. Raises Fault for one that is in none of these.
-    """
-    known = {Path(word).resolve().name: word for word in (*config["studies"], *words)}
-    found = {problems.parent.name for problems in folder.glob("*/problems")}
-    for key in sorted(found - known.keys()):
-        if not Path(key, "experiments.yaml").is_file():
-            raise checked.Fault(
-                f"{folder / key}: no study {key} in config/config.yaml or here; say where it lies: "
-                f"--studies FOLDER/{key}"
-            )
-        known[key] = f"./{key}"
-    return {key: word for key, word in known.items() if key in found}
-
-
-def tasks(studies: Studies, folder: Path) -> list[Task]:
-    """What is to be judged below a scale's folder. Raises Fault for what no study makes, and
-    FileNotFoundError without runs.
-    """
-    scale = folder.resolve().name
-    listed = [*_runs(studies, folder, scale)]
-    if not listed:
-        raise FileNotFoundError(
-            f"{folder}: no runs here; expected a folder of results, such as results/full"
-        )
-    for file in sorted(folder.glob("*/problems/*.bounds.parquet")):
-        listed.append(Task(str(file).replace(".bounds.", "."), {}, str(file)))
-    return listed
-
-
-def _problems(folder: Path, study: str, experiment: str) -> str:
-    return str(folder / study / "problems" / f"{experiment}.parquet")
-
-
-def _runs(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
-    for place in sorted(folder.glob("*/runs/*/*")):
-        key, _, experiment, method = place.relative_to(folder).parts
-        check_known(scale, SCALES, f"{folder}: scale")
-        check_known(experiment, studies[key].experiments, f"{place}: experiment")
-        check_known(method, studies[key].methods_of(experiment), f"{place}: method")
-        chunks = jobs.judgement(studies[key], scale, experiment, method).chunks
-        files = {str(place / f"{number}.parquet"): chunk for number, chunk in enumerate(chunks)}
-        yield Task(_problems(folder, key, experiment), files)
 
 
 def _listed(folder: Path) -> dict[str, str]:
