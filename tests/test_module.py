@@ -57,8 +57,8 @@ use rule * from paths as paths_*
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A workflow that uses this one as a module, after it has made the study's results at two
-    scales, and its report.
+    """A workflow that uses this one as a module, after it has made the study's results, and its
+    report.
     """
     folder = tmp_path_factory.mktemp("module")
     (folder / "walk" / "published").mkdir(parents=True)
@@ -72,18 +72,17 @@ def folder(tmp_path_factory):
         "around,length,median,2,m,4.2\n",
     }.items():
         (folder / name).write_text(text)
-    for words in (["paths_smoke", "paths_all"], ["paths_all", "--report", "report.html"]):
+    for words in (["paths_all"], ["paths_all", "--report", "report.html"]):
         done = starts.snakemake(folder, *words, "--cores", "2", "--workflow-profile", "none")
         assert done.returncode == 0, done.stderr + done.stdout
     return folder
 
 
 def test_a_module_with_a_prefix_makes_everything(folder):
-    for scale in ("smoke", "full"):
-        assert (folder / "far/away/results" / scale / "index.html").stat().st_size > 10_000
     made = folder / "far/away/results/full"
     for name in (
         "baseline_comparison.csv",
+        "index.html",
         "summary.md",
         "walk/claims.csv",
         "walk/beyond/ways.svg",

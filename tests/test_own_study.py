@@ -189,14 +189,6 @@ def test_only_an_edit_of_the_code_beside_the_planner_reruns_its_methods(results)
     assert sorted(set(methods)) == ["high", "low"]
 
 
-def test_words_of_a_title_are_no_markup_in_the_report(results):
-    folder = results.parents[2]
-    snakemake(folder, "all", "--report", str(folder / "report.html"))
-    report = (folder / "report.html").read_text()
-    assert "Lengths &lt;/script&gt;&lt;b&gt; `x`_ .. include:: bend.py" in report
-    assert "Lengths </script>" not in report
-
-
 def test_what_was_verified_is_listed_and_can_be_judged_again(results):
     judged = json.loads((results.parent / "verified.json").read_text())
     assert f"{results.name}/claims.csv" in judged["sha256"]

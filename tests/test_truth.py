@@ -185,20 +185,14 @@ def test_no_table_shows_them_and_the_honest_one_ran(ended):
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize(("column", "value"), [("feasible", False), ("length", 1.0)])
-def test_runs_that_were_edited_between_two_jobs_are_shown_nowhere(ended, column, value):
+def test_runs_that_were_edited_between_two_jobs_are_shown_nowhere(ended):
     """Whoever it was: another planner, or a reader."""
     folder, _ = ended
     name = "results/smoke/liars/runs/plain/honest/0.parquet"
     file, sound = folder / name, (folder / name).read_bytes()
     table = parquet.read_table(file)
-    place = table.column_names.index(column)
-    parquet.write_table(
-        table.set_column(
-            place, column, pa.array([value] * len(table), table.schema.field(column).type)
-        ),
-        file,
-    )
+    place = table.column_names.index("length")
+    parquet.write_table(table.set_column(place, "length", pa.array([1.0] * len(table))), file)
     for made in folder.glob(f"{TABLES}/honest*"):
         made.unlink()
     try:
@@ -218,7 +212,8 @@ def test_a_file_that_ends_the_start_is_told_before_any_job(tmp_path):
     file.write_text(f"{file.read_text()}\nos._exit(0)\n")
     done = snakemake(tmp_path, f"{TABLES}/honest.csv")
     assert done.returncode == 2
-    (line,) = (done.stdout + done.stderr).splitlines()
+    told = (done.stdout + done.stderr).splitlines()
+    (line,) = [line for line in told if not line.startswith("Config file ")]
     assert line.endswith(
         "when it is imported: its process ended itself with exit status 0, before it was done"
     )
