@@ -5,10 +5,12 @@ from pathlib import Path
 
 import pytest
 import tables_of_keys as keys
+from studies import KEYS, study
 
+from bezierplan.places import TREE
 from bezierplan.running import execution
 from bezierplan.running.chunk import Condition
-from bezierplan.schema import model
+from bezierplan.schema import checked, model
 from bezierplan.schema.checked import Fault
 from bezierplan.study import artefacts, jobs, reading
 
@@ -111,3 +113,12 @@ def test_settings_of_a_planner_stand_between_those_of_the_study_and_of_a_method(
     resolved = study.resolved("smooth")
     assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 601, 6)
     assert study.resolved("shortest_path") == {}
+
+
+def test_a_paper_is_cited_alike_by_its_study_and_by_this_software():
+    cited = checked.read(TREE / "CITATION.cff")["references"]
+    studies = {key: study(key).paper for key in KEYS}
+    assert {each["notes"].split(":")[0].strip(): each["title"] for each in cited} == {
+        key: paper.title for key, paper in studies.items()
+    }
+    assert {each.get("doi") for each in cited} == {paper.doi for paper in studies.values()}

@@ -70,13 +70,13 @@ class Model(BaseModel):
 
     def plain(self, *without: str) -> dict[str, Any]:
         """The mapping as written, in plain values; some keys can be left out."""
-        fields = type(self).model_fields.items()
-        entry = {
-            field.alias or name: getattr(self, name)
-            for name, field in fields
-            if name in self.model_fields_set
-        }
-        return {key: plain(value) for key, value in entry.items() if key not in without}
+        return self.model_dump(
+            exclude_unset=True,
+            by_alias=True,
+            serialize_as_any=True,
+            warnings=False,
+            exclude={*without},
+        )
 
     def but(self, **changed: Any) -> Self:
         """A copy with changed values, which are not checked."""
@@ -91,21 +91,12 @@ def keys(model: type[Model]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
-def plain(value: Any) -> Any:
-    """Models as mappings, also inside lists and mappings."""
-    if isinstance(value, Model):
-        return value.plain()
-    if isinstance(value, dict):
-        return {key: plain(each) for key, each in value.items()}
-    return [plain(each) for each in value] if isinstance(value, list) else value
-
-
 def parsed(model: type[M], content: Any, location: str) -> M:
     """The content of a file as a model. Raises Fault, beginning with a location."""
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        raise _fault_of(error, location) from None
+        raise fault_of(error, location) from None
 
 
 def sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str], list[str]]:
@@ -115,33 +106,24 @@ def sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str
     try:
         return model.model_validate(content), [], []
     except ValidationError as error:
-        fault = _fault_of(error, location)
+        fault = fault_of(error, location)
         places = {each["loc"][:2] for each in error.errors(include_url=False)}
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
         del content[key][name]
-    try:
-        return model.model_validate(content), fault.lines, [str(each[-1]) for each in places]
-    except ValidationError:
-        raise fault from None
+    return parsed(model, content, location), fault.lines, [str(each[-1]) for each in places]
 
 
-def _fault_of(error: ValidationError, location: str) -> Fault:
-    """All faults, those that others may follow from first."""
-    lines = sorted(_faults(error), key=lambda keys: (": unknown key" not in keys[-1], len(keys)))
-    return Fault(*(": ".join([location, *keys]) for keys in lines))
-
-
-def first_fault(error: ValidationError) -> list[str]:
-    """The first of several faults: the keys that lead to it, and its message's end."""
-    return _faults(error)[0]
-
-
-def _faults(error: ValidationError) -> list[list[str]]:
+def fault_of(error: ValidationError, *location: str) -> Fault:
+    """All faults of a model, those that others may follow from first, each with a location and the
+    keys that lead to it.
+    """
     # After a key that is itself wrong, pydantic puts `[key]`.
-    return [
-        [*(str(key) for key in fault["loc"] if key != "[key]"), _fault(fault, None)]
+    lines = [
+        [*location, *(str(key) for key in fault["loc"] if key != "[key]"), _fault(fault, None)]
         for fault in error.errors(include_url=False)
     ]
+    lines.sort(key=lambda line: (": unknown key" not in line[-1], len(line)))
+    return Fault(*map(": ".join, lines))
 
 
 def wrong(text: str) -> PydanticCustomError:
@@ -294,11 +276,6 @@ def identity(entry: Any) -> str:
     if isinstance(entry, list):
         return f"[{', '.join(map(identity, entry))}]"
     return repr(float(entry) if is_number(entry) else entry)
-
-
-def at_most(number: int) -> Any:
-    """A limit on the entries of a list."""
-    return Field(max_length=number)
 
 
 def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:

@@ -9,14 +9,12 @@ from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationE
 from bezierplan.analysis.table_kinds import TABLES, Table
 from bezierplan.figures import style
 from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
-from bezierplan.schema.checked import closest
 from bezierplan.schema.model import (
     Line,
     Model,
     Name,
     Setting,
     expected,
-    first_fault,
     listed,
     mapping_or,
     one_of,
@@ -25,7 +23,7 @@ from bezierplan.schema.model import (
 )
 from bezierplan.study.experiments import Settings
 
-_PANEL = TypeAdapter(Annotated[Panel, one_of("kind", kinds())])
+_PANELS = TypeAdapter(dict[str, Annotated[Panel, one_of("kind", kinds())]])
 _PARTS = TypeAdapter(
     Annotated[list[dict[str, Any]], Field(min_length=2)], config=ConfigDict(strict=True)
 )
@@ -41,34 +39,31 @@ def _joined(part: dict[str, Any], shared: dict[str, Any]) -> dict[str, Any]:
     return shared | part | both
 
 
-def _expanded(entry: Any) -> dict[str, Any]:
-    """What an entry in a list of panels stands for, by the keys that lead there."""
+def _expanded(place: int, entry: Any) -> dict[str, Any]:
+    """What an entry at a place in a list of panels stands for, by the keys that lead there."""
     if not isinstance(entry, dict) or "each" not in entry:
-        return {"": entry}
+        return {f"{place}": entry}
     shared = {key: value for key, value in entry.items() if key != "each"}
     try:
         parts = _PARTS.validate_python(entry["each"])
     except ValidationError:
         raise wrong(f"each: {shown(entry['each'])}: expected {EACH}") from None
-    return {f": each: {number}": _joined(part, shared) for number, part in enumerate(parts)}
+    return {f"{place}: each: {n}": _joined(part, shared) for n, part in enumerate(parts)}
 
 
 def _panels(entries: Any) -> list[Panel]:
     """The panels of a figure, each with its place in the list of the file."""
-    panels = []
     if not isinstance(entries, list) or not entries:
         raise expected("a list of panels")
+    placed: dict[str, Any] = {}
     for number, entry in enumerate(entries):
-        for place, content in _expanded(entry).items():
-            try:
-                panel = _PANEL.validate_python(content)
-            except ValidationError as error:
-                raise wrong(": ".join([f"{number}{place}", *first_fault(error)])) from None
-            panel._place = f"{number}{place}"
-            panels.append(panel)
+        placed |= _expanded(number, entry)
+    panels = _PANELS.validate_python(placed)
+    for place, panel in panels.items():
+        panel._place = place
     if len(panels) > MOST_PANELS:
         raise wrong(f"{len(panels)} panels; expected at most {MOST_PANELS}, one a letter")
-    return panels
+    return [*panels.values()]
 
 
 class Figure(Model):
@@ -86,18 +81,11 @@ class Figure(Model):
     )
 
 
-def _look(given: Any) -> str:
-    """The name of a look."""
-    if not isinstance(given, str) or given not in style.LOOKS:
-        raise wrong(f"{given}: unknown{closest(str(given), style.LOOKS)}")
-    return given
-
-
 class ArtefactsFile(Model):
     """The file."""
 
     labels: dict[Line, Line] = Field({}, description="name → how it is printed")
-    looks: dict[Name, Annotated[str, PlainValidator(_look)]] = Field(
+    looks: dict[Name, Literal[tuple(style.LOOKS)]] = Field(
         {},
         description="name of a method → how it looks in every figure: "
         + ", ".join(style.LOOKS)

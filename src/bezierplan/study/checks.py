@@ -23,7 +23,7 @@ from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_known, closest
-from bezierplan.schema.model import Model, first_fault, named, one_or_list
+from bezierplan.schema.model import Model, fault_of, named, one_or_list
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, with_alternative
 from bezierplan.study.artefacts import Figure
@@ -90,8 +90,9 @@ class Checks:
         try:
             yield
         except ValueError as error:
-            lines = error.lines if isinstance(error, Fault) else [str(error)]
-            self.faults.extend(": ".join([*self._place, line]) for line in lines)
+            for line in error.lines if isinstance(error, Fault) else [str(error)]:
+                if not any(each.endswith(line) for each in self.faults):
+                    self.faults.append(": ".join([*self._place, line]))
         except (LookupError, AttributeError, TypeError):
             # What follows from a fault that was found before.
             if not self.faults:
@@ -99,18 +100,11 @@ class Checks:
         finally:
             self._place = outer
 
-    def each(
-        self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]
-    ) -> dict[str, Any]:
-        """Check the entries of a section of a file, and return those without a fault."""
-        sound = {}
+    def each(self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]) -> None:
+        """Check the entries of a section of a file."""
         for name, entry in entries.items():
-            before = len(self.faults)
             with self.at(section, name):
                 work(name, entry)
-            if len(self.faults) == before:
-                sound[name] = entry
-        return sound
 
     def check(self) -> None:
         """All that there is."""
@@ -121,12 +115,8 @@ class Checks:
                 return
             self.shared_settings()
             self.each("methods", study.methods, self.settings)
-            homes = self.each("workspaces", study.workspaces, self.workspace)
-            unsound = study.workspaces.keys() - homes
-            placed = {
-                n: each for n, each in study.problems.items() if each.workspace not in unsound
-            }
-            self.each("problems", placed, self.problem)
+            self.each("workspaces", study.workspaces, self.workspace)
+            self.each("problems", study.problems, self.problem)
             self.each("experiments", study.experiments, self.experiment)
             self.baseline_comparison()
         for file in study.published_files():
@@ -143,11 +133,11 @@ class Checks:
         ):
             with self.at(relative(study.folder / f"{section}.yaml")):
                 self.each(section, {entry.id: entry for entry in entries}, work)
-                # Alternatives and results are looked up by it.
-                for entry in entries:
-                    if sum(entry.id == each.id for each in entries) > 1:
-                        raise Fault(f"{section}: {entry.id}: another one has this id already")
-
+                # Results are looked up by it.
+                ids = [entry.id for entry in entries]
+                for identity in ids:
+                    if ids.count(identity) > 1:
+                        raise Fault(f"{section}: {identity}: another one has this id already")
         with self.at(relative(study.folder / "assumptions.yaml"), "votes"):
             check_all(study.votes, study.with_published(), "table")
             for table, voting in study.votes.items():
@@ -217,11 +207,6 @@ class Checks:
                     f"workspace: {problem.workspace}: of kind {home.kind}, which "
                     f"{'needs' if needed else 'has no'} {key}"
                 )
-        if home.drawn and problem.start is None:
-            raise Fault(
-                f"start_cell: {problem.start_cell}: cells of drawn workspaces have no numbers; "
-                "expected start: [x, y]"
-            )
         self.built(name)
 
     def _built(self, name: str) -> Problem:
@@ -367,7 +352,7 @@ class Checks:
                 strict = TypeAdapter(annotation, config=ConfigDict(strict=True))
                 strict.validate_python(arguments[name])
             except ValidationError as error:
-                raise Fault(": ".join(["arguments", name, *first_fault(error)])) from None
+                raise fault_of(error, "arguments", name) from None
 
     # artefacts.yaml
 

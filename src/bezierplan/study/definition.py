@@ -145,13 +145,6 @@ class Study(ExperimentsFile, ArtefactsFile):
         """The tables of runs that have published numbers."""
         return {name: table for name, table in self.compared().items() if table.published}
 
-    def published_of(self, table: str) -> list[str]:
-        """Files of published numbers that a table without runs shows: its own, or all for a
-        function.
-        """
-        file = self.published_file(table)
-        return [file] if file else self.published_files()
-
     def published_drawn(self, figure: str) -> list[str]:
         """Files of published numbers that a figure draws: the tables that its panels name, or all
         for functions that ask for them.

@@ -212,10 +212,16 @@ class Paper(Model):
 
     title: Line = Field(description="one line")
     authors: listed(Line) = Field(description="a list of names")
-    year: Annotated[int, whole(1800, 2200)] = Field(description="a whole number")
+    year: Annotated[int, whole(1800, 2200)] = Field(None, description="a whole number")
     journal: Line = Field(None, description="where it appeared")
     doi: Line = Field(None, description="its DOI, such as 10.1609/aiide.v11i1.12808")
     link: Line = Field(None, description="where it can be read")
+
+    @property
+    def where(self) -> str:
+        """Authors, journal, year and link, as far as known."""
+        parts = [*self.authors, self.journal, self.year, self.link]
+        return ", ".join(map(str, filter(None, parts)))
 
 
 class ExperimentsFile(Model):

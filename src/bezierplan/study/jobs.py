@@ -148,39 +148,35 @@ def judgement(study: Study, scale: str, experiment: str, method: str) -> Judgeme
 # Tables and figures
 
 
-def experiments_of(study: Study, artefact: str) -> list[str]:
-    """Names of the experiments whose results an artefact shows, each once, in order."""
-    if artefact in study.tables:
-        return [study.compared()[artefact].experiment] if artefact in study.compared() else []
-    shown = [getattr(panel, "experiment", None) for panel in study.figures[artefact].panels]
-    return list(dict.fromkeys(filter(None, shown)))
-
-
-def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
-    """Methods of an experiment whose runs an artefact needs: for a table of the paper's form those
-    it selects, for another all (the comparison shows them), for a figure those it selects,
+def methods_shown(study: Study, artefact: str) -> dict[str, list[str]]:
+    """By experiment, the methods whose runs an artefact needs: for a table of the paper's form
+    those it selects, for another all (the comparison shows them), for a figure those it selects,
     including baselines if named.
     """
-    methods = study.experiments[experiment].methods
     if artefact in study.tables:
-        spec = study.compared()[artefact]
-        return (
-            one_or_list(spec.where.get("method", methods))
-            if spec.printed
-            else study.methods_of(experiment)
-        )
-    needed = set()
+        if (spec := study.compared().get(artefact)) is None:
+            return {}
+        methods = study.methods_of(spec.experiment)
+        if spec.printed:
+            own = study.experiments[spec.experiment].methods
+            methods = one_or_list(spec.where.get("method", own))
+        return {spec.experiment: methods}
+    needed: dict[str, set[str]] = {}
     for panel in study.figures[artefact].panels:
-        if getattr(panel, "experiment", None) == experiment:
-            needed.update(one_or_list(panel.where.get("method", methods)))
-    return [method for method in study.methods_of(experiment) if method in needed]
+        if name := getattr(panel, "experiment", None):
+            methods = panel.where.get("method", study.experiments[name].methods)
+            needed.setdefault(name, set()).update(one_or_list(methods))
+    return {
+        name: [method for method in study.methods_of(name) if method in shown]
+        for name, shown in needed.items()
+    }
 
 
 def shown_by(study: Study, artefact: str, scale: str) -> Shows:
     """The results that a table or figure shows."""
     return {
-        name: chunks_of(study, name, methods_of(study, artefact, name), scale)
-        for name in experiments_of(study, artefact)
+        name: chunks_of(study, name, methods, scale)
+        for name, methods in methods_shown(study, artefact).items()
     }
 
 
@@ -198,7 +194,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     if spec.get("kind") == "function" or any("data" in panel for panel in panels):
         return study.labels
     shown = {panel["method"] for panel in panels if "method" in panel}
-    for experiment in experiments_of(study, artefact):
+    for experiment in methods_shown(study, artefact):
         content = study.experiments[experiment]
         shown |= {*study.methods_of(experiment), *content.problems}
         shown |= {str(value) for values in content.vary.values() for value in values}
@@ -239,7 +235,8 @@ def table_without_runs(study: Study, scale: str, table: str) -> TableWithoutRuns
     """The table of a name."""
     spec = study.tables[table].but(title=table)
     code = study.code_for("functions") if spec.kind == "function" else []
-    return TableWithoutRuns(spec, sources=study.published_of(table), code=code)
+    file = study.published_file(table)
+    return TableWithoutRuns(spec, sources=[file] if file else study.published_files(), code=code)
 
 
 def latex(study: Study, scale: str, table: str) -> Latex:
@@ -249,15 +246,14 @@ def latex(study: Study, scale: str, table: str) -> Latex:
 
 def figure(study: Study, scale: str, figure: str) -> Figure:
     """The figure of a name."""
-    spec, experiments = study.figures[figure], experiments_of(study, figure)
+    spec, shown = study.figures[figure], methods_shown(study, figure)
     again = {panel.experiment for panel in spec.panels if panel.rerun}
     bare = workspaces_of_figure(study, figure)
     any_method = any(getattr(panel, "data", None) for panel in spec.panels)
     own = {"functions": any_method, "panels": any(panel.kind == "own" for panel in spec.panels)}
     parts = ["metrics", *(part for part, needed in own.items() if needed)]
-    methods = {method for name in experiments for method in study.methods_of(name)}
-    first = study.problems[study.experiments[experiments[0]].problems[0]] if experiments else None
-    home = first.workspace if first else [*bare, *study.workspaces][0]
+    methods = {method for name in shown for method in study.methods_of(name)}
+    homes = [study.problems[study.experiments[name].problems[0]].workspace for name in shown]
     return Figure(
         study=study.key,
         columns=spec.columns,
@@ -266,15 +262,12 @@ def figure(study: Study, scale: str, figure: str) -> Figure:
         labels=labels_of(study, figure),
         looks={name: look for name, look in looks(study).items() if any_method or name in methods},
         workspaces={name: study.workspaces[name].plain() for name in bare},
-        repeats={name: study.experiments[name].repeats[scale] for name in experiments},
+        repeats={name: study.experiments[name].repeats[scale] for name in shown},
         chunks={
-            name: {
-                method: job(study, name, method, scale, 0)
-                for method in methods_of(study, figure, name)
-            }
+            name: {method: job(study, name, method, scale, 0) for method in shown[name]}
             for name in sorted(again)
         },
-        unit=study.workspaces[home].unit,
+        unit=study.workspaces[[*homes, *bare, *study.workspaces][0]].unit,
         folder=relative(study.folder),
         sources=[*study.maps(bare), *study.published_drawn(figure)],
         shows=shown_by(study, figure, scale),
@@ -294,7 +287,7 @@ def caption(study: Study, artefact: str, scale: str) -> str:
     """
     spec = study.tables.get(artefact) or study.figures[artefact]
     sentences = [spec.title, getattr(spec, "mirrors", None)]
-    for experiment in experiments_of(study, artefact):
+    for experiment in methods_shown(study, artefact):
         content = study.experiments[experiment]
         most = "at most " if scale == "extended" and content.fewer else ""
         repeats = content.repeats[scale]

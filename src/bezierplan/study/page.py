@@ -17,7 +17,6 @@ from bezierplan.figures.page.page_job import (
 )
 from bezierplan.places import STUDIES, TREE
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
-from bezierplan.schema import checked
 from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
 from bezierplan.study.artefacts import in_printed_order
@@ -90,7 +89,7 @@ def _outcome(studies: Studies, scale: str) -> list[str]:
 
 def _study(study: Study, scale: str, root: str) -> StudyShown:
     """What the page needs of a study beside its results."""
-    names = shown_of(study, scale, root)
+    names, paper = shown_of(study, scale, root), study.paper
     there = {
         "claims": bool(study.claims),
         "checks": bool(study.claims),
@@ -105,7 +104,7 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
     }
     return StudyShown(
         title=study.title,
-        paper=_paper(study),
+        paper=paper and PaperCited(paper.title, paper.where, paper.doi),
         labels=study.labels,
         methods={
             name: MethodShown(study.planner(name), study.resolved(name)) for name in study.methods
@@ -179,21 +178,3 @@ def _repeats(study: Study, scale: str) -> list[int]:
             for count in fewer.values()
         ]
     return [min(counts), max(counts)] if counts else []
-
-
-def _paper(study: Study) -> PaperCited | None:
-    """The paper of a study, as its files or CITATION.cff cite it, whose entry's notes begin with
-    the study's name. None without such.
-    """
-    if paper := study.paper:
-        where = [", ".join(paper.authors), paper.journal, str(paper.year), paper.link]
-        return PaperCited(paper.title, ", ".join(filter(None, where)), paper.doi)
-    file = TREE / "CITATION.cff"
-    cited = checked.read(file)["references"] if file.is_file() else []
-    entry = next(
-        (each for each in cited if each.get("notes", "").split(":")[0].strip() == study.key), None
-    )
-    if entry is None:
-        return None
-    where = ", ".join(str(entry[name]) for name in ("journal", "year") if name in entry)
-    return PaperCited(entry["title"], where, entry.get("doi"))

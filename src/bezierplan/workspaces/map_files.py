@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from bezierplan.schema.checked import Fault
-from bezierplan.schema.model import first_fault
+from bezierplan.schema.model import fault_of
 from bezierplan.workspaces import files, raster, robot
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.kinds import kinds
@@ -67,7 +67,7 @@ def described(
     try:
         kinds()[kind].model_validate(home | {"unit": "m", "file": "map"} | description)
     except ValidationError as error:
-        raise ValueError(": ".join(first_fault(error))) from None
+        raise fault_of(error) from None
     return home | description
 
 

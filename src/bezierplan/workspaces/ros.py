@@ -21,7 +21,7 @@ from bezierplan.schema.model import (
     Model,
     NotNegative,
     Positive,
-    first_fault,
+    fault_of,
     is_number,
     value,
 )
@@ -107,7 +107,7 @@ def _content(file: Path) -> Content:
     try:
         return Content.model_validate(content)
     except ValidationError as error:
-        raise ValueError(": ".join(first_fault(error))) from None
+        raise fault_of(error) from None
 
 
 def _occupied(file: Path, content: Content, unknown: Unknown) -> np.ndarray:

@@ -13,7 +13,6 @@ from bezierplan.schema.model import (
     Name,
     Names,
     Values,
-    at_most,
     listed,
     matching,
     one_of,
@@ -73,8 +72,10 @@ class Claim(Model):
         "more, in a row of its own, with each of the others in its place",
         min_length=1,
     )
-    checks: Annotated[list[Annotated[Check, one_of("test", kinds())]], at_most(MOST_CHECKS)] = (
-        Field(description="a list of checks, at least one of them primary", min_length=1)
+    checks: list[Annotated[Check, one_of("test", kinds())]] = Field(
+        description="a list of checks, at least one of them primary",
+        min_length=1,
+        max_length=MOST_CHECKS,
     )
 
     @model_validator(mode="after")
