@@ -37,7 +37,8 @@ def results() -> tuple[str, Path]:
 
 def content() -> tuple[SimpleNamespace, Path]:
     """What `build.page` gives for the results that there are, and their folder. Added to a study:
-    name, as people search for it; definition; outcome, its row of the headline. Raises Fault.
+    name, as people search for it; definition; data, of the viewer; outcome, its row of the
+    headline. Raises Fault.
     """
     scale, folder = results()
     with contextlib.chdir(ROOT):
@@ -50,10 +51,9 @@ def content() -> tuple[SimpleNamespace, Path]:
         tables = [pd.read_csv(OUTCOME / name) for name in outcome.TABLES]
         files = {key: study.verdict_file() for key, study in studies.items()}
         following = outcome.following(OUTCOME, files, *tables)
-    page.folder = folder
     page.data = data_of((folder / "index.html").read_text(encoding="utf-8"))
     for key, study in page.studies.items():
-        study.name, study.definition = name_of(key), studies[key]
+        study.name, study.definition, study.data = name_of(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
         study.verdict = following[key]
         study.baseline = [row for row in reader.records(tables[2]) if row["study"] == key]

@@ -13,9 +13,11 @@ from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
 import pytest
+import report
 from playwright.sync_api import expect
 from test_page_browser import CHROMIUM, browser  # noqa: F401
 
+import bezierplan as bp
 from bezierplan.places import STUDIES
 from bezierplan.planners import known_planners
 
@@ -51,6 +53,13 @@ def test_every_method_has_a_page_with_equations_settings_and_a_run(site):
     for part in ("a-run", "the-algorithm-on-one-page", "settings", "what-it-achieves"):
         assert f'id="{part}"' in page
     assert "{'" not in page.partition('id="settings"')[2].partition('id="code"')[0]
+
+
+def test_the_run_of_each_method_page_is_made_again_by_its_example(site):
+    examples = [re.search(r"replay (\S+/\d+)", page.read_text()) for page in site.glob("methods/*")]
+    names = [example[1] for example in examples if example]
+    assert len(names) >= 10
+    assert all(bp.replay(name).length > 0 for name in names[:3])
 
 
 def test_every_paper_has_a_page_with_its_tables_figures_and_claims(site):
@@ -161,6 +170,13 @@ SEARCHES = {
     "Tharwat 2018": "papers/tharwat2018.html",
     "how to cite": "cite.html",
 }
+
+
+@in_browser
+def test_the_report_has_a_page_a_paper_and_at_most_fourteen(tmp_path):
+    report.main(str(tmp_path / "report.pdf"))
+    pages = re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes())
+    assert 8 <= len(pages) <= 14
 
 
 @in_browser

@@ -2,8 +2,8 @@
 or one that also keeps a safety distance from the obstacles (BCA-Q) (ma2020, Section 3).
 
 A chromosome is the sequence of the free control points, each gene the binary number of a free cell;
-cells are numbered row by row from the top left (ma2020, eqs. 10 and 11, whose signs as printed lead
-outside the map). Lengths in the kernels are in cells.
+cells are numbered row by row from the top left (ma2020, eqs. 10 and 11, the latter with the sign
+that stays on the map). Lengths in the kernels are in cells.
 
 Every form of the fitness is expressed as a cost, its reciprocal: the roulette uses 1 / cost, and
 the lowest cost is the best.
