@@ -91,8 +91,8 @@ def name_of(key: str) -> str:
 
 
 def _as_stored(study: SimpleNamespace) -> None:
-    """Put the stored numbers and verdicts of a study in place of those of a scale with fewer runs.
-    Why a claim has its verdict is told by that scale, if it has the same verdict.
+    """Put the stored numbers and verdicts of a study in place of those of a scale with fewer runs,
+    which tells why a claim has its verdict.
     """
     for table in study.tables:
         for cell in table["numbers"]:
@@ -103,8 +103,8 @@ def _as_stored(study: SimpleNamespace) -> None:
             cells[:] = [(printed, _like(own, cell), cell) for printed, own, cell in cells]
     for claim in study.claims:
         if stored := claim["stored"]:
-            if stored["verdict"] != claim["verdict"]:
-                claim["why"] = ""
+            if claim["why"] and stored["verdict"] != claim["verdict"]:
+                claim["why"] = f"In fewer runs, which say {claim['verdict']}: {claim['why']}"
             claim |= {name: stored[name] for name in _OF_CLAIM} | {"stored": None}
             claim["rule"] = why.rule(
                 study.job.holds.get(claim["id"]), claim["verdict"], claim["holds"]

@@ -21,6 +21,7 @@ import pandas as pd
 from docutils.nodes import SkipNode
 from docutils.utils.math import latex2mathml
 
+from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.planners import known_planners, planner_module, planner_settings
 from bezierplan.study.alternatives import default_of
@@ -75,6 +76,7 @@ def write(folder: Path) -> None:
         "planners": planners,
         "references": {entry["key"]: entry for entry in content.citations()},
         "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
+        "names": [(heading, [*rows]) for heading, rows in names.listed([], [*names.NAMES])],
         "table": table,
         "about": content.about,
         "first_sentence": content.first_sentence,
