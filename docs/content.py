@@ -14,7 +14,7 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from bezierplan.analysis import outcome
+from bezierplan.analysis import baseline_comparison, outcome
 from bezierplan.commands import studies_of
 from bezierplan.figures.page import build, reader, why
 from bezierplan.schema.checked import Fault
@@ -56,9 +56,9 @@ def content() -> tuple[SimpleNamespace, Path]:
         study.name, study.definition, study.data = name_of(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
         study.verdict = following[key]
-        study.baseline = [row for row in reader.records(tables[2]) if row["study"] == key]
-        for row in study.baseline:
-            row["cornered"] = row["curvature"] is None
+        measured = reader.of_study(tables[2], key)
+        study.baseline_in_words = baseline_comparison.sentence(measured)
+        study.baseline = reader.with_corners(measured)
         study.outcome = page.headline.table.loc[key]
         if scale != SCALES[0]:
             _as_stored(study)
@@ -101,6 +101,7 @@ def _as_stored(study: SimpleNamespace) -> None:
                 cell |= reader.nearness(cell) | {"stored": None}
         for _, cells in (table["laid"] or {"rows": []})["rows"]:
             cells[:] = [(printed, _like(own, cell), cell) for printed, own, cell in cells]
+    study.gap = reader.gap(study.tables)
     for claim in study.claims:
         if stored := claim["stored"]:
             if claim["why"] and stored["verdict"] != claim["verdict"]:

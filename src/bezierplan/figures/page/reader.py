@@ -64,12 +64,6 @@ def studies(
             for name, each in described.tables.items()
         ]
         baseline, verdict = of_study(measured, key), folder / key / "verdict.md"
-        gaps = [
-            cell["gap"]
-            for table in own_tables
-            for cell in table["numbers"]
-            if cell["counted"] and cell["gap"] is not None
-        ]
         shown[key] = SimpleNamespace(
             key=key,
             job=described,
@@ -79,15 +73,25 @@ def studies(
             methods=[_method(key, name, each) for name, each in described.methods.items()],
             assumptions=[_assumption(key, each._asdict()) for each in described.assumptions],
             audit=records(files.get("audit", pd.DataFrame())),
-            baseline=records(baseline.assign(cornered=np.isinf(baseline["curvature"])))
-            if len(baseline)
-            else [],
+            baseline=with_corners(baseline) if len(baseline) else [],
             baseline_in_words=baseline_comparison.sentence(baseline) if len(baseline) else "",
-            gap=float(np.median(gaps)) if gaps else None,
+            gap=gap(own_tables),
             shown=[],
             verdict=verdict.read_text(encoding="utf-8") if verdict.is_file() else "",
         )
     return shown
+
+
+def with_corners(baseline: pd.DataFrame) -> list[Row]:
+    """Rows of a comparison with the baseline. Added: cornered, for paths with corners."""
+    return records(baseline.assign(cornered=np.isinf(baseline["curvature"])))
+
+
+def gap(tables: list[Row]) -> float | None:
+    """The median gap over the numbers of tables that count, if one has a gap."""
+    cells = (cell for table in tables for cell in table["numbers"])
+    gaps = [cell["gap"] for cell in cells if cell["counted"] and cell["gap"] is not None]
+    return float(np.median(gaps)) if gaps else None
 
 
 def _method(study: str, name: str, method: Any) -> Row:
