@@ -9,13 +9,13 @@ from pivots import pivot_of
 from bezierplan.analysis.claims import kinds
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
-    AssumptionShown,
-    FigureShown,
-    MethodShown,
+    AssumptionView,
+    Citation,
+    FigureView,
+    MethodView,
     PageJob,
-    PaperCited,
-    StudyShown,
-    TableShown,
+    StudyView,
+    TableView,
 )
 
 HOSTILE = '</script><script>window.broken = 1</script><img src=x onerror="window.broken = 1">'
@@ -75,24 +75,24 @@ def job() -> PageJob:
     values = [{"metric": metric, "statistic": "mean"} for metric in ("length", "objective")]
     table = pivot_of({"index": ["method"], "values": values, "published": "table1.csv"})
     claims = ("C1", "C2", "C3")
-    study = StudyShown(
+    study = StudyView(
         title=HOSTILE,
-        paper=PaperCited(HOSTILE, "A journal, 2000", "10.1/x"),
+        paper=Citation(HOSTILE, "A journal, 2000", "10.1/x"),
         labels={"a": HOSTILE, "p": "the room"},
-        methods={"a": MethodShown("chaotic_pso", {"size": HOSTILE})},
+        methods={"a": MethodView("chaotic_pso", {"size": HOSTILE})},
         checks={claim: [kinds.check_of(LOWER)] for claim in claims},
         holds=dict.fromkeys(claims, "any"),
         repeats={"smoke": [2, 3], "extended": [250, 4000]},
         tables={
-            "table1": TableShown(HOSTILE, f"{HOSTILE}. Ten runs.", table, {}),
-            "more": TableShown("more", "more. Ten runs.", table.but(extends="table1"), {}),
-            "listed": TableShown("a list", "a list.", SimpleNamespace(), {}),
+            "table1": TableView(HOSTILE, f"{HOSTILE}. Ten runs.", table, {}),
+            "more": TableView("more", "more. Ten runs.", table.but(extends="table1"), {}),
+            "listed": TableView("a list", "a list.", SimpleNamespace(), {}),
         },
-        figures={"figure1": FigureShown("Lengths", f"Lengths. {HOSTILE}")},
-        assumptions=[AssumptionShown("O1", HOSTILE, 5, [8], "it fits", "inferred", "genes")],
+        figures={"figure1": FigureView("Lengths", f"Lengths. {HOSTILE}")},
+        assumptions=[AssumptionView("O1", HOSTILE, 5, [8], "it fits", "inferred", "genes")],
         files=["claims", "checks", "audit"],
         experiments={},
-        changed=[],
+        changes=[],
     )
     return PageJob("smoke", {"one": study}, outcome=False)
 

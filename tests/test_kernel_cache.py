@@ -141,7 +141,7 @@ def test_a_process_that_holds_a_lock_does_not_wait_for_ever(tmp_path, monkeypatc
     below.mkdir()
     with open(below / "lock", "w") as other:
         fcntl.flock(other, fcntl.LOCK_EX)
-        alone = partial(kernel_cache._alone, held=held)
+        alone = partial(kernel_cache._alone, locks=held)
         with alone(above), alone(below), alone(above):
             assert held == [above, below]
     assert held == []

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from page_content import SVG, job, page
 
 from bezierplan.figures.page import addresses, answer, build, charts, reader, runs
-from bezierplan.figures.page.page_job import ExperimentShown
+from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.figures.panels import paths
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
@@ -240,7 +240,7 @@ def stored(folder, lengths, feasible, **more):
     ]
     parquet.write_table(pa.Table.from_pylist(rows), folder / "0.parquet")
     files = (str(folder / name) for name in ("p.parquet", "p.bounds.parquet"))
-    return ExperimentShown(["m"], len(rows), [str(folder / "0.parquet")], *files, traces=[])
+    return ExperimentView(["m"], len(rows), [str(folder / "0.parquet")], *files, traces=[])
 
 
 def test_best_median_worst_and_the_first_failed_runs_are_shown(tmp_path):

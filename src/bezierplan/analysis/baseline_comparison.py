@@ -41,12 +41,12 @@ BASELINE = "the exact shortest path with rounded corners"
 """What the baseline is, in words."""
 
 
-def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
+def measured(experiments: dict[str, Results], baseline: str) -> pd.DataFrame:
     """One row for each method of some experiments, in all of which the baseline runs; `COLUMNS` but
     for the study.
     """
     medians = pd.concat(
-        [_medians(results).assign(experiment=name) for name, results in found.items()],
+        [_medians(results).assign(experiment=name) for name, results in experiments.items()],
         ignore_index=True,
     )
     of_baseline = medians["method"] == baseline

@@ -187,7 +187,7 @@ def of_table(
     """
     keys = published.columns.difference(NOT_KEYS, sort=False)
     for entry in entries:
-        tried = []
+        tries = []
         what = (
             f"a free polyline of at most {entry.edges} edges through cell centres"
             if entry.diagonal is None
@@ -201,23 +201,23 @@ def of_table(
             path = sought(entry, problem, row["value"], possible.decimals(row["printed"]))
             if path is None:
                 continue
-            tried.append(path)
+            tries.append(path)
             location = place(row, [*keys, "metric", *(["statistic"] if entry.statistic else [])])
             limit, fits = path.length * problem.workspace.cell, True if path.paths else None
             yield checked(item, location, rule, row["value"], limit, fits, in_words(path))
-        if tried:
-            matched = sum(bool(path.paths) for path in tried)
-            chance = at_least(matched, [path.chance for path in tried])
+        if tries:
+            matched = sum(bool(path.paths) for path in tries)
+            chance = at_least(matched, [path.chance for path in tries])
             told = (
-                f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
+                f"{matched} of {len(tries)} are such lengths; the chance of as many: {chance:.2g}"
             )
             location = ", ".join(
                 f"{key}={' or '.join(map(str, one_or_list(wanted)))}"
                 for key, wanted in (entry.where | {"statistic": entry.statistic}).items()
                 if wanted
             )
-            rule, fits = f"{entry.because}: all numbers together", matched == len(tried) or None
-            yield checked(item, location, rule, matched, len(tried), fits, told)
+            rule, fits = f"{entry.because}: all numbers together", matched == len(tries) or None
+            yield checked(item, location, rule, matched, len(tries), fits, told)
 
 
 def at_least(count: int, chances: list[float]) -> float:
@@ -257,19 +257,19 @@ def _reached(ways: Ways, first: int, most: float, last: int, edges: int) -> list
 
 
 def _paths(
-    ways: Ways, reached: list[list[np.ndarray]], last: int, printed: float, half: float
+    ways: Ways, levels: list[list[np.ndarray]], last: int, printed: float, half: float
 ) -> list[tuple[int, ...]]:
     """Places of the matching polylines with fewest edges, found backwards from their ends."""
-    for edges in range(1, len(reached)):
-        if _near(reached[edges][last], printed, half).any():
-            walks = _walks(ways, reached, edges, (last,), printed, half)
+    for edges in range(1, len(levels)):
+        if _near(levels[edges][last], printed, half).any():
+            walks = _walks(ways, levels, edges, (last,), printed, half)
             return list(itertools.islice(walks, MOST_PATHS))
     return []
 
 
 def _walks(
     ways: Ways,
-    reached: list[list[np.ndarray]],
+    levels: list[list[np.ndarray]],
     left: int,
     path: tuple[int, ...],
     length: float,
@@ -283,8 +283,8 @@ def _walks(
         return
     for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
         rest = length - ways.lengths[path[-1], other]
-        if _near(reached[left - 1][other], rest, half).any():
-            yield from _walks(ways, reached, left - 1, (*path, int(other)), rest, half)
+        if _near(levels[left - 1][other], rest, half).any():
+            yield from _walks(ways, levels, left - 1, (*path, int(other)), rest, half)
 
 
 def _near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:

@@ -87,11 +87,11 @@ ALL_STUDIES: set[str] = set()
 """Names of the metrics of every study, which no study declares anew."""
 
 
-def register(found: dict[str, Metric]) -> None:
+def register(functions: dict[str, Metric]) -> None:
     """Add metrics. Raises ValueError for a name of every study's."""
-    for name in ALL_STUDIES.intersection(found):
+    for name in ALL_STUDIES.intersection(functions):
         raise ValueError(f"metric {name}: every study has one of this name; choose another")
-    METRICS.update(found)
+    METRICS.update(functions)
 
 
 def count(
@@ -114,15 +114,15 @@ F = TypeVar("F", bound=Callable[..., Any])
 def metric(
     unit: str,
     meaning: str,
-    adapted: Callable[[F], Compute] = lambda function: function,
+    adapter: Callable[[F], Compute] = lambda function: function,
     **facts: Any,
 ) -> Callable[[F], F]:
-    """A decorator: the function is the metric of its own name. facts: of `Metric`. adapted: makes
+    """A decorator: the function is the metric of its own name. facts: of `Metric`. adapter: makes
     it one of (runs, problems).
     """
 
     def declared(function: F) -> F:
-        register({function.__name__: Metric(unit, meaning, adapted(function), **facts)})
+        register({function.__name__: Metric(unit, meaning, adapter(function), **facts)})
         return function
 
     return declared

@@ -63,23 +63,23 @@ def write(
     README.write_text(readme, encoding="utf-8")
 
 
-def following(kept: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
+def following(folder: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
-    audits = [str(kept / f"{key}_{AUDIT}") for key in verdicts]
-    calibrations = sorted(map(str, kept.glob(f"*_{READINGS[1]}")))
+    audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
+    calibrations = sorted(map(str, folder.glob(f"*_{READINGS[1]}")))
     return summary.verdicts(*tables, verdicts, audits, calibrations)
 
 
-def table(kept: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:
+def table(folder: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:
     """The README's headline and sentences, from a folder's tables, and the scale, from its
     summary.
     """
-    tables = [pd.read_csv(kept / name) for name in TABLES]
+    tables = [pd.read_csv(folder / name) for name in TABLES]
     follow = "\n".join(
         f"- {titles[key].partition(':')[0]}: {_SENTENCE.split(text)[0]}"
-        for key, text in following(kept, verdicts, *tables).items()
+        for key, text in following(folder, verdicts, *tables).items()
     )
-    heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
+    heading = (folder / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
     overview = headline.markdown(headline.headline(*tables, titles))
     return f"{overview}\n\n{follow}\n\nScale `{scale}`: {SCALES[scale]}"

@@ -85,7 +85,7 @@ def quantities(
     tables: dict[str, Pivot], votes: dict[str, list[str]], files: dict[str, str]
 ) -> list[Quantity]:
     """The printed numbers that vote. votes: table -> metrics; files: of published numbers."""
-    found = []
+    all_quantities = []
     for name, spec in tables.items():
         printed = comparison.as_read(published_table(files[Path(spec.published).stem]), spec.reads)
         keys = printed.columns[: printed.columns.get_loc("metric")].to_list()
@@ -94,7 +94,7 @@ def quantities(
                 chosen = printed[
                     (printed["metric"] == entry.metric) & (printed["statistic"] == statistic)
                 ]
-                found.append(
+                all_quantities.append(
                     Quantity(
                         spec.experiment,
                         spec.where | spec.primary,
@@ -107,7 +107,7 @@ def quantities(
                         chosen.assign(n=chosen["n"].fillna(1)),
                     )
                 )
-    return found
+    return all_quantities
 
 
 def measured(voting: list[Quantity], results: dict[str, Results]) -> np.ndarray:
@@ -277,21 +277,21 @@ def listed(study: str, choices: list[Choice]) -> list[Reading]:
 
 
 def searched(
-    start: list[Reading], allowed: Callable[[Reading], bool], score: Callable[[Reading], float]
+    start: list[Reading], fits: Callable[[Reading], bool], score: Callable[[Reading], float]
 ) -> list[tuple[float, Reading]]:
     """Scores of the readings that a search tries, the best first."""
-    found = [(score(each), each) for each in start]
+    scores = [(score(each), each) for each in start]
     alone = sorted(
-        ((value, each) for value, each in found if len(each) == 1 and allowed(each)),
+        ((value, each) for value, each in scores if len(each) == 1 and fits(each)),
         key=lambda pair: -pair[0],
     )
-    best = max((pair for pair in found if allowed(pair[1])), key=lambda pair: pair[0])
+    best = max((pair for pair in scores if fits(pair[1])), key=lambda pair: pair[0])
     for _, each in alone[:CLIMB]:
         tried = best[1] | each
-        if tried not in [reading for _, reading in found]:
-            found.append((score(tried), tried))
-            best = max(best, found[-1], key=lambda pair: pair[0])
-    return sorted(found, key=lambda pair: -pair[0])
+        if tried not in [reading for _, reading in scores]:
+            scores.append((score(tried), tried))
+            best = max(best, scores[-1], key=lambda pair: pair[0])
+    return sorted(scores, key=lambda pair: -pair[0])
 
 
 def of_study(

@@ -48,9 +48,9 @@ def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
     return {file: row for file in files for row in _rows(file, name)}
 
 
-def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
+def equal(run: pd.Series, row: dict[str, Any]) -> bool:
     """Whether a reproduced run equals a stored row, bit for bit."""
-    return row_text(run[list(stored)].to_dict()) == row_text(stored)
+    return row_text(run[list(row)].to_dict()) == row_text(row)
 
 
 def _rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:

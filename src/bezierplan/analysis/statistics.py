@@ -375,19 +375,19 @@ def _experiments(
     return drawn, drawn, TAIL if name in ("count", "share") else _expanded_tail(len(values))
 
 
-def scaled(name: str, values: np.ndarray, asked: int, size: int | None) -> float:
+def scaled(name: str, values: np.ndarray, among: int, size: int | None) -> float:
     """A named statistic of our values (n,) as an experiment of `size` runs would print it, so that
     it stands beside a published one.
 
-    A count is taken in proportion; asked: runs among which it is one. The least and the largest
+    A count is taken in proportion; among: runs among which it is one. The least and the largest
     value are the medians of those of such experiments, where our values determine them; our own
     where they do not. The other statistics do not depend on the number of runs.
     """
     value = statistic(name, values)
-    if size is None or size == asked or not len(values):
+    if size is None or size == among or not len(values):
         return value
     if name == "count":
-        return value * size / asked
+        return value * size / among
     if name not in ("min", "max"):
         return value
     least, most = (np.sort(ends)[DRAWS // 2] for ends in _extremes(name, values, size))

@@ -53,7 +53,7 @@ def gathered(
 def verdicts(
     numbers: pd.DataFrame,
     claims: pd.DataFrame,
-    measured: pd.DataFrame,
+    measures: pd.DataFrame,
     files: dict[str, str],
     audit_files: list[str],
     calibration_files: list[str],
@@ -62,7 +62,7 @@ def verdicts(
     if not files:
         return {}
     audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
-    tables = {"numbers": numbers, "claims": claims, "baseline": measured, "audit": audits}
+    tables = {"numbers": numbers, "claims": claims, "baseline": measures, "audit": audits}
     if calibration_files:
         tables["calibration"] = pd.concat(map(pd.read_csv, calibration_files), ignore_index=True)
     return verdict.of_studies(files, tables | {"wholes": wholes.of_numbers(numbers)})
@@ -144,7 +144,7 @@ def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
 def report(
     numbers: pd.DataFrame,
     claims: pd.DataFrame,
-    measured: pd.DataFrame,
+    measures: pd.DataFrame,
     titles: dict[str, str],
     follow: dict[str, str],
     scale: str,
@@ -152,13 +152,13 @@ def report(
     """The summary of a scale as markdown: what follows for each study, the headline, the methods
     compared with the baseline, then the claims of each study with their verdicts.
 
-    measured: rows with the columns `baseline_comparison.COLUMNS`. follow: as from `verdicts`.
+    measures: rows with the columns `baseline_comparison.COLUMNS`. follow: as from `verdicts`.
     """
     parts = [
         f"{HEADING}{scale}",
         *(f"## What follows: {titles[key]}\n\n{text.strip()}" for key, text in follow.items()),
         "## In numbers" if follow else "",
-        headline.markdown(headline.headline(numbers, claims, measured, titles)),
+        headline.markdown(headline.headline(numbers, claims, measures, titles)),
         "A published number counts if it can be tested and is not derivable from other published "
         "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
         "identified numbers. `verdict_papers_size`: the verdict from as many runs as the paper "
@@ -167,7 +167,7 @@ def report(
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
         "gives one. Here each claim has its verdict under the default interpretation; "
         "`claims.csv` has the others too.",
-        *baseline_comparison.section(measured, titles),
+        *baseline_comparison.section(measures, titles),
     ]
     for study, title in titles.items():
         primary = claims[(claims["study"] == study) & claims["primary"]].set_index("id")

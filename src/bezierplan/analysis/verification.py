@@ -33,7 +33,7 @@ TIMES = ("s", "ms")
 _WIDTH = 2 * stats.norm.ppf(0.975)
 
 
-def compared(kept: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
+def compared(outcome: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     """The numbers of an installation's comparison beside those kept of the same table: the columns
     that name one, value_kept, value_own, p.
 
@@ -41,11 +41,11 @@ def compared(kept: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     of fewer than two runs, extremes.
     """
     names = [*again.columns[: again.columns.get_loc("unit") + 1], "n_published", "value_published"]
-    kept, again = (
+    outcome, again = (
         frame.assign(**{name: _plain(frame[name]) for name in names}).drop_duplicates(names)
-        for frame in (kept, again)
+        for frame in (outcome, again)
     )
-    both = kept.merge(again, on=names, suffixes=("_kept", "_own"))
+    both = outcome.merge(again, on=names, suffixes=("_kept", "_own"))
     values, sizes, low, high = (
         [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")]
         for name in ("value_ours", "n_ours", "low95_ours", "high95_ours")
@@ -83,11 +83,11 @@ def p_values(
     return np.where((least < 2) | np.isnan(widths[0]) | np.isnan(widths[1]), np.nan, p)
 
 
-def failed(found: pd.DataFrame) -> pd.DataFrame:
+def failed(numbers: pd.DataFrame) -> pd.DataFrame:
     """The numbers that differ by more than chance, at `ERROR_RATE` for all together, the least
     probable first.
     """
-    return found[found["p"] * found["p"].notna().sum() < ERROR_RATE].sort_values("p")
+    return numbers[numbers["p"] * numbers["p"].notna().sum() < ERROR_RATE].sort_values("p")
 
 
 def against_outcome(folder: Path) -> tuple[list[str], bool]:

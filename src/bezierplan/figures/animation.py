@@ -28,11 +28,11 @@ EACH, LAST = 120, 1500
 _SIDE, _DOTS, _COLOURS = 3.6, 100, 32
 
 
-def save_run(reproduced: Results, file: Path) -> None:
+def save_run(results: Results, file: Path) -> None:
     """Save the drive in the results of one run."""
-    row = reproduced.runs.iloc[0]
-    problem, world = (part[row["problem"]] for part in (reproduced.problems, reproduced.worlds))
-    ride, verdict = execution.redriven(reproduced.jobs[row["method"]], row, problem, world)
+    row = results.runs.iloc[0]
+    problem, world = (part[row["problem"]] for part in (results.problems, results.worlds))
+    ride, verdict = execution.redriven(results.jobs[row["method"]], row, problem, world)
     save(world, problem, ride, verdict, file)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.jobs import Job
-from bezierplan.figures.page.page_job import ExperimentShown, PageJob
+from bezierplan.figures.page.page_job import ExperimentView, PageJob
 from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
 from bezierplan.running.chunk import Chunk
@@ -97,7 +97,7 @@ class Page(Job):
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
-        experiments: dict[str, dict[str, ExperimentShown]] = {key: {} for key in self.page.studies}
+        experiments: dict[str, dict[str, ExperimentView]] = {key: {} for key in self.page.studies}
         for place, files in inputs.experiments(self.shows, input_files).items():
             key, _, name = place.partition("/")
             methods, repeats = self.page.studies[key].experiments[name]
@@ -106,7 +106,7 @@ class Page(Job):
                 for chunk in files.chunks
                 if place in self.moving
             ]
-            experiments[key][name] = ExperimentShown(
+            experiments[key][name] = ExperimentView(
                 methods, repeats, files.chunks, files.problems, files.bounds, traces
             )
         studies = {

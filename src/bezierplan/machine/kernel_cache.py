@@ -141,7 +141,7 @@ class Kernel(CPUDispatcher):
     compiles it.
     """
 
-    held: ClassVar[list[Path]] = []
+    locks: ClassVar[list[Path]] = []
     """Folders in which this process compiles, each for a kernel of the one before."""
 
     def enable_caching(self) -> None:
@@ -166,7 +166,7 @@ class Kernel(CPUDispatcher):
                 return super().compile(sig)
             _tell()
             folder = Path(self._cache.cache_path)
-            with _alone(folder, self.held), _rare_garbage_collection():
+            with _alone(folder, self.locks), _rare_garbage_collection():
                 return super().compile(sig)
 
 
@@ -188,26 +188,26 @@ def _rare_garbage_collection() -> Iterator[None]:
 
 
 @contextmanager
-def _alone(folder: Path, held: list[Path]) -> Iterator[None]:
+def _alone(folder: Path, locks: list[Path]) -> Iterator[None]:
     """Hold the lock of a folder of kernels; the operating system releases it if this process is
-    killed. held: folders in which this process compiles, each for a kernel of the one before.
+    killed. locks: folders in which this process compiles, each for a kernel of the one before.
 
     Without the lock, kernels are compiled by each process that needs them: on a file system without
     locks, and after `PATIENCE` seconds.
     """
-    if folder in held:
+    if folder in locks:
         yield
         return
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
-        until = time.monotonic() + (PATIENCE if held else math.inf)
+        until = time.monotonic() + (PATIENCE if locks else math.inf)
         while not _locked(lock) and time.monotonic() < until:
             time.sleep(LOOK)
-        held.append(folder)
+        locks.append(folder)
         try:
             yield
         finally:
-            held.pop()
+            locks.pop()
 
 
 def _locked(lock: Any) -> bool:

@@ -7,13 +7,13 @@ from bezierplan.analysis.jobs import Verified
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import OUTCOME, files
 from bezierplan.figures.page.page_job import (
-    AssumptionShown,
-    FigureShown,
-    MethodShown,
+    AssumptionView,
+    Citation,
+    FigureView,
+    MethodView,
     PageJob,
-    PaperCited,
-    StudyShown,
-    TableShown,
+    StudyView,
+    TableView,
 )
 from bezierplan.places import STUDIES, TREE
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
@@ -87,7 +87,7 @@ def _outcome(studies: Studies, scale: str) -> list[str]:
     return [*map(str, OUTCOME)] if shown else []
 
 
-def _study(study: Study, scale: str, root: str) -> StudyShown:
+def _study(study: Study, scale: str, root: str) -> StudyView:
     """What the page needs of a study beside its results."""
     names, paper = shown_of(study, scale, root), study.paper
     there = {
@@ -102,18 +102,18 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
         )
         for name, content in study.experiments.items()
     }
-    return StudyShown(
+    return StudyView(
         title=study.title,
-        paper=paper and PaperCited(paper.title, paper.where, paper.doi),
+        paper=paper and Citation(paper.title, paper.where, paper.doi),
         labels=study.labels,
         methods={
-            name: MethodShown(study.planner(name), study.resolved(name)) for name in study.methods
+            name: MethodView(study.planner(name), study.resolved(name)) for name in study.methods
         },
         checks={claim.id: claim.checks for claim in study.claims},
         holds={claim.id: claim.holds for claim in study.claims},
         repeats={each: _repeats(study, each) for each in (scale, "extended")},
         tables={
-            name: TableShown(
+            name: TableView(
                 study.tables[name].title,
                 jobs.caption(study, name, scale),
                 study.whole(name) if name in study.compared() else study.tables[name],
@@ -123,19 +123,19 @@ def _study(study: Study, scale: str, root: str) -> StudyShown:
             if name in study.tables
         },
         figures={
-            name: FigureShown(figure.title, jobs.caption(study, name, scale))
+            name: FigureView(figure.title, jobs.caption(study, name, scale))
             for name in names
             if (figure := study.figures.get(name))
         },
         assumptions=[
-            AssumptionShown(
-                **{name: getattr(each, name) for name in AssumptionShown._fields}
+            AssumptionView(
+                **{name: getattr(each, name) for name in AssumptionView._fields}
                 | {"default": default_of(study, each)}
             )
             for each in study.assumptions
         ],
         files=[name for name, of in there.items() if of],
-        changed=changed(study),
+        changes=changed(study),
         experiments=behind,
     )
 

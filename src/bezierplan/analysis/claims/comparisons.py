@@ -109,7 +109,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     paired = check.paired
     if paired is None:
         paired = _shares_draws(check, material)
-    made = []
+    comparison_list = []
     for condition, rows in _split(runs, every):
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
         conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
@@ -131,7 +131,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
             numbers, number_of_runs = printed(
                 check, list(zip(*(printed_rows[cell] for cell in cells)))
             )
-            made.append(
+            comparison_list.append(
                 Comparison(
                     place=condition,
                     name=name,
@@ -145,7 +145,7 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                     factors=tuple((key, rows[key].iloc[0]) for key in every),
                 )
             )
-    return made
+    return comparison_list
 
 
 def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFrame:
@@ -160,7 +160,7 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         column: wanted for column, wanted in where.items() if column not in metrics.METRICS
     }
     outcomes = {column: wanted for column, wanted in where.items() if column in metrics.METRICS}
-    measured = []
+    frames = []
     for name in check.experiments:
         if name not in material.results:
             raise Untestable(f"the experiment {name} was not run")
@@ -185,8 +185,8 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         values = values.reindex(runs.index)
         if check.failures == "last":
             values = values.fillna(np.inf)
-        measured.append(select(runs.assign(value=values), conditions))
-    return pd.concat(measured, ignore_index=True)
+        frames.append(select(runs.assign(value=values), conditions))
+    return pd.concat(frames, ignore_index=True)
 
 
 def _compared(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:

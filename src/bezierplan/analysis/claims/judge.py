@@ -143,7 +143,7 @@ def _judge_variant(
     # substituted.
     checks = [comparisons.with_rest(check, claim, material) for check in claim.checks]
     checks = in_variant(checks, first, assignment)
-    described = {
+    content = {
         **{key: getattr(claim, key) for key in ("id", "place", "statement")},
         "study": study,
         "variant": variant,
@@ -154,31 +154,33 @@ def _judge_variant(
             _is_timed(check) for check in checks if check.primary and len(with_work(check)) == 1
         ),
     }
-    judged, obstacle = [], ""
+    judgements, obstacle = [], ""
     for number, check in [
         (number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)
     ]:
         try:
-            judged += _findings(number, check, claim, name, material)
+            judgements += _findings(number, check, claim, name, material)
         except Untestable as reason:
             if not check.primary:
-                judged.append(
+                judgements.append(
                     _Judged(number, check, False, "", "", None, Finding(reason=str(reason)))
                 )
             else:
                 obstacle = obstacle or str(reason)
-    judged = _marked(judged)
-    deciding = [each for each in judged if each.primary]
-    shown = None if obstacle else _shown(deciding, holds)
-    named = {key: described[key] for key in ("study", "id", "variant")}
-    rows = [_check_row(each, material) | named | {"decisive": each is shown} for each in judged]
-    if shown is None:
-        return described | {
+    judgements = _marked(judgements)
+    deciding = [each for each in judgements if each.primary]
+    decisive = None if obstacle else _shown(deciding, holds)
+    named = {key: content[key] for key in ("study", "id", "variant")}
+    rows = [
+        _check_row(each, material) | named | {"decisive": each is decisive} for each in judgements
+    ]
+    if decisive is None:
+        return content | {
             "verdict": "untestable",
             "published": _published(deciding),
             "reason": obstacle,
         }, rows
-    finding = shown.finding
+    finding = decisive.finding
     verdict = verdicts.verdict(
         [each.mark for each in deciding], [each.mark_family for each in deciding], holds
     )
@@ -190,23 +192,23 @@ def _judge_variant(
     reasons = [
         _by_own_criterion(claim, verdict),
         _less_than(deciding, verdict, material),
-        _one_by_one(judged, verdict),
-        _reason(shown),
-        _disagreement(judged),
+        _one_by_one(judgements, verdict),
+        _reason(decisive),
+        _disagreement(judgements),
         claim.note or "",
     ]
     summary = finding._asdict() | {
         "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
-        "where_it_holds": "" if everywhere else _where_it_holds(judged, material.labels),
+        "where_it_holds": "" if everywhere else _where_it_holds(judgements, material.labels),
         "published": _published(deciding),
         "low95": finding.low,
         "high95": finding.high,
-        "counted": shown.comparison.counted if shown.comparison else "",
-        "p_family": shown.p_family,
+        "counted": decisive.comparison.counted if decisive.comparison else "",
+        "p_family": decisive.p_family,
         "reason": "; ".join(filter(None, reasons)),
     }
-    return described | summary, rows
+    return content | summary, rows
 
 
 def _by_own_criterion(claim: Claim, verdict: str) -> str:
@@ -238,9 +240,9 @@ def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str
     return f"{where}differs by less than {size}"
 
 
-def _one_by_one(judged: list[_Judged], verdict: str) -> str:
+def _one_by_one(findings: list[_Judged], verdict: str) -> str:
     """Of a sentence without effect that takes comparisons together: how many of these hold."""
-    single = [each.mark for each in judged if not each.primary and each.comparison]
+    single = [each.mark for each in findings if not each.primary and each.comparison]
     if verdict != "no effect" or "+" not in single:
         return ""
     return f"one by one {single.count('+')} of {len(single)} hold"
@@ -269,11 +271,11 @@ def _findings(
     return _together(judged) if check.together else judged
 
 
-def _together(found: list[_Judged]) -> list[_Judged]:
+def _together(findings: list[_Judged]) -> list[_Judged]:
     """The comparisons of each place as one, followed by themselves as secondary ones."""
-    places = dict.fromkeys(each.condition for each in found)
+    places = dict.fromkeys(each.condition for each in findings)
     judged = []
-    for own in ([each for each in found if each.condition == place] for place in places):
+    for own in ([each for each in findings if each.condition == place] for place in places):
         finding, decisive = verdicts.conjunction([each.finding for each in own])
         parts = tuple(each.comparison for each in own)
         whole = own[decisive]._replace(
@@ -283,18 +285,18 @@ def _together(found: list[_Judged]) -> list[_Judged]:
     return judged
 
 
-def _marked(judged: list[_Judged]) -> list[_Judged]:
+def _marked(findings: list[_Judged]) -> list[_Judged]:
     """The comparisons with their marks, the primary ones also with their marks in the family."""
     tested = [
         number
-        for number, each in enumerate(judged)
+        for number, each in enumerate(findings)
         if each.primary and not math.isnan(each.finding.p)
     ]
     corrected = dict(
-        zip(tested, verdicts.family(np.array([judged[number].finding.p for number in tested])))
+        zip(tested, verdicts.family(np.array([findings[number].finding.p for number in tested])))
     )
     marked = []
-    for number, each in enumerate(judged):
+    for number, each in enumerate(findings):
         p_family = corrected.get(number, math.nan)
         together = verdicts.mark(each.finding, p_family) if each.primary else ""
         marked.append(
@@ -307,19 +309,19 @@ def _marked(judged: list[_Judged]) -> list[_Judged]:
     return marked
 
 
-def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
+def _in_words(entry: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     """A comparison with the factors that distinguish it from the others of its claim."""
     factors: dict[str, Any] = {}
-    if judged.comparison is not None:
-        if judged.check.against and not judged.parts:
-            group, other = (_group_in_words(judged.check, cell) for cell in judged.comparison.cells)
+    if entry.comparison is not None:
+        if entry.check.against and not entry.parts:
+            group, other = (_group_in_words(entry.check, cell) for cell in entry.comparison.cells)
             factors |= {"against": other, "group": group}
-        factors |= dict(judged.comparison.factors)
-    elif judged.condition:
-        factors["in"] = judged.condition
+        factors |= dict(entry.comparison.factors)
+    elif entry.condition:
+        factors["in"] = entry.condition
     if len({_what(other.check) for other in deciding}) > 1:
-        factors["what"] = _what(judged.check)
-    return verdicts.Marked(factors, judged.mark_family)
+        factors["what"] = _what(entry.check)
+    return verdicts.Marked(factors, entry.mark_family)
 
 
 def _what(check: Check) -> str:
@@ -328,15 +330,15 @@ def _what(check: Check) -> str:
     return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
 
 
-def _where_it_holds(judged: list[_Judged], labels: Mapping[str, str]) -> str:
+def _where_it_holds(findings: list[_Judged], labels: Mapping[str, str]) -> str:
     """`verdicts.where_it_holds` of the comparisons that decide; if all or none of these hold, which
     they may do because of the closest of several that are taken together, of these one by one.
     """
-    deciding = [each for each in judged if each.primary]
+    deciding = [each for each in findings if each.primary]
     words = verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], labels)
     single = [
         each._replace(mark_family=each.mark)
-        for each in judged
+        for each in findings
         if not each.primary and any(each.check is whole.check for whole in deciding if whole.parts)
     ]
     if words or not any(each.mark == "+" for each in single):
@@ -350,16 +352,16 @@ def _group_in_words(check: Check, group: Any) -> Any:
     return group if isinstance(group, str) else f"{group:g} {check.cells.replace('_', ' ')}"
 
 
-def _disagreement(judged: list[_Judged]) -> str:
+def _disagreement(findings: list[_Judged]) -> str:
     """A note where seconds and counted work disagree, one of which is primary and the other
     secondary.
     """
     others = {
         (each.condition, each.name, _is_timed(each.check)): each.mark
-        for each in judged
+        for each in findings
         if not each.primary
     }
-    deciding = [each for each in judged if each.primary]
+    deciding = [each for each in findings if each.primary]
     pairs = [
         (each, others.get((each.condition, each.name, not _is_timed(each.check))))
         for each in deciding
@@ -408,19 +410,19 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
 # The printed numbers, and experiments of the paper's size.
 
 
-def _printed(judged: _Judged) -> tuple[float, bool | None]:
+def _printed(entry: _Judged) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are
     not printed.
     """
-    parts = judged.parts or (judged.comparison,)
+    parts = entry.parts or (entry.comparison,)
     if None in parts or any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
-    printed = [effects.effect(judged.check, part.printed, part.cells) for part in parts]
+    printed = [effects.effect(entry.check, part.printed, part.cells) for part in parts]
     held = all(
-        bool(effects.claimed(judged.check, effect, judged.finding.margin)) for effect in printed
+        bool(effects.claimed(entry.check, effect, entry.finding.margin)) for effect in printed
     )
     return float(
-        effects.effect(judged.check, judged.comparison.printed, judged.comparison.cells)
+        effects.effect(entry.check, entry.comparison.printed, entry.comparison.cells)
     ), held
 
 
@@ -443,30 +445,30 @@ def _reason(each: _Judged) -> str:
     return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
 
 
-def _check_row(judged: _Judged, material: Material) -> dict:
+def _check_row(entry: _Judged, material: Material) -> dict:
     """A row of claim_checks.csv, whose columns leave out the rest of the finding."""
-    check, finding = judged.check, judged.finding
-    effect_published, held = _printed(judged)
+    check, finding = entry.check, entry.finding
+    effect_published, held = _printed(entry)
     return finding._asdict() | {
-        "check": judged.number,
-        "primary": judged.primary,
+        "check": entry.number,
+        "primary": entry.primary,
         "test": check.test,
         "experiments": ", ".join(check.experiments),
         "metric": check.metric,
         "statistic": check.statistic_shown,
         "unit": _unit(check, material),
-        "condition": judged.condition,
-        "comparison": judged.name,
-        "mark": judged.mark,
-        "mark_family": judged.mark_family,
-        "counted": judged.comparison.counted if judged.comparison else "",
+        "condition": entry.condition,
+        "comparison": entry.name,
+        "mark": entry.mark,
+        "mark_family": entry.mark_family,
+        "counted": entry.comparison.counted if entry.comparison else "",
         "low95": finding.low,
         "high95": finding.high,
-        "p_family": judged.p_family,
+        "p_family": entry.p_family,
         "effect_published": effect_published,
         "published": {True: "holds", False: "fails", None: "not printed"}[held],
         "timed": _is_timed(check),
-        "reason": _reason(judged),
+        "reason": _reason(entry),
     }
 
 

@@ -192,15 +192,15 @@ def _best_factor(comparisons: Sequence[Marked], sought: str) -> str | None:
     return best
 
 
-def _chosen(factor: str, chosen: list, every: list, labels: Mapping[str, str]) -> str:
+def _chosen(factor: str, subset: list, every: list, labels: Mapping[str, str]) -> str:
     """Words for a subset of a factor's values."""
-    others = [value for value in every if value not in chosen]
-    few = len(chosen) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
+    others = [value for value in every if value not in subset]
+    few = len(subset) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
     if few and _before(factor).startswith("at "):
         return f"{_before(factor)}other than {_joined(others, labels)}"
     if few:
-        return f"{_before(factor)}{len(chosen)} of {len(every)}: all but {_joined(others, labels)}"
-    return f"{_before(factor)}{_joined(chosen, labels)}"
+        return f"{_before(factor)}{len(subset)} of {len(every)}: all but {_joined(others, labels)}"
+    return f"{_before(factor)}{_joined(subset, labels)}"
 
 
 def _joined(values: list, labels: Mapping[str, str]) -> str:

@@ -93,14 +93,14 @@ def by_map(studies: dict[str, SimpleNamespace], data: dict[str, Any]) -> list[Ro
     return rows
 
 
-def _measured(study: SimpleNamespace, method: str, shown: list[Row]) -> Row:
+def _measured(study: SimpleNamespace, method: str, rows: list[Row]) -> Row:
     """A method on the maps of a kind."""
-    gaps = [each["gap"] for each in shown if each["gap"] is not None]
+    gaps = [each["gap"] for each in rows if each["gap"] is not None]
     cpu = next((row["cpu"] for row in study.baseline if row["method"] == method), None)
     return {
         "study": study,
         "method": method,
-        "feasible": sum(each["feasible"] for each in shown) / sum(each["count"] for each in shown),
+        "feasible": sum(each["feasible"] for each in rows) / sum(each["count"] for each in rows),
         "gap": sum(gaps) / len(gaps) if gaps else float("inf"),
         "cpu": cpu,
     }

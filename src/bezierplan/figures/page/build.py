@@ -46,19 +46,19 @@ _AS_WRITTEN = re.compile(r"(<(?:script|style|pre)\b.*?</(?:script|style|pre)>)",
 
 
 def write(
-    job: PageJob, folder: Path, summary: list[str] | None, verified: str | None, file: str
+    job: PageJob, folder: Path, summary: list[str] | None, proof: str | None, file: str
 ) -> None:
     """Write the page.
 
     folder: that of the scale. summary: files of all studies together, numbers.csv, claims.csv and
-    baseline_comparison.csv, if the scale has them. verified: the file of the check of the runs
+    baseline_comparison.csv, if the scale has them. proof: the file of the check of the runs
     shown (`running.recheck`), if there is one.
     """
-    Path(file).write_text(html(page(job, folder, summary, verified), folder), encoding="utf-8")
+    Path(file).write_text(html(page(job, folder, summary, proof), folder), encoding="utf-8")
 
 
 def page(
-    job: PageJob, folder: Path, summary: list[str] | None = None, verified: str | None = None
+    job: PageJob, folder: Path, summary: list[str] | None = None, proof: str | None = None
 ) -> SimpleNamespace:
     """What the templates show. data: what the viewer reads."""
     tables = [reader.read(file) for file in summary] if summary else None
@@ -79,7 +79,7 @@ def page(
         made_by=_made_by(),
         headline=_headline(stored or tables, {key: own.title for key, own in job.studies.items()}),
         stored=bool(stored),
-        verified=_verified(Path(verified)) if verified else None,
+        verified=_verified(Path(proof)) if proof else None,
         studies=studies,
         data=data
         | {

@@ -8,7 +8,7 @@ from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.table_kinds import Table
 
 
-class PaperCited(NamedTuple):
+class Citation(NamedTuple):
     """A paper as it is cited."""
 
     title: str
@@ -17,14 +17,14 @@ class PaperCited(NamedTuple):
     doi: str | None
 
 
-class MethodShown(NamedTuple):
+class MethodView(NamedTuple):
     """A method of a study."""
 
     planner: str
     settings: dict[str, Any]
 
 
-class FigureShown(NamedTuple):
+class FigureView(NamedTuple):
     """A figure of the page."""
 
     title: str
@@ -32,7 +32,7 @@ class FigureShown(NamedTuple):
     """Title, methods, their settings and repeats."""
 
 
-class TableShown(NamedTuple):
+class TableView(NamedTuple):
     """A table of the page."""
 
     title: str
@@ -43,7 +43,7 @@ class TableShown(NamedTuple):
     """Those with which the table is made."""
 
 
-class AssumptionShown(NamedTuple):
+class AssumptionView(NamedTuple):
     """A detail that a paper leaves open."""
 
     id: str
@@ -55,7 +55,7 @@ class AssumptionShown(NamedTuple):
     setting: str | None
 
 
-class ExperimentShown(NamedTuple):
+class ExperimentView(NamedTuple):
     """An experiment whose runs the viewer shows."""
 
     methods: list[str]
@@ -69,15 +69,15 @@ class ExperimentShown(NamedTuple):
     """Files of the drives, where the world moves."""
 
 
-class StudyShown(NamedTuple):
+class StudyView(NamedTuple):
     """A study of the page."""
 
     title: str
-    paper: PaperCited | None
+    paper: Citation | None
     """None for a reader's own study."""
     labels: dict[str, str]
     """Name -> how it is printed."""
-    methods: dict[str, MethodShown]
+    methods: dict[str, MethodView]
     checks: dict[str, list[Check]]
     """Those of each claim."""
     holds: dict[str, str]
@@ -86,14 +86,14 @@ class StudyShown(NamedTuple):
     """Scale -> the least and the largest number of runs of a method under a condition; empty for a
     study without experiments.
     """
-    tables: dict[str, TableShown]
-    figures: dict[str, FigureShown]
-    assumptions: list[AssumptionShown]
+    tables: dict[str, TableView]
+    figures: dict[str, FigureView]
+    assumptions: list[AssumptionView]
     files: list[str]
     """Which of `FILES` there are."""
-    changed: list[str]
+    changes: list[str]
     """Settings that are not those of the README's outcome, in words."""
-    experiments: dict[str, ExperimentShown]
+    experiments: dict[str, ExperimentView]
 
 
 FILES = {
@@ -108,6 +108,6 @@ class PageJob(NamedTuple):
     """The page of a scale."""
 
     scale: str
-    studies: dict[str, StudyShown]
+    studies: dict[str, StudyView]
     outcome: bool
     """Whether the README's outcome is shown, next to that of this scale."""

@@ -16,7 +16,7 @@ from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import why
 from bezierplan.figures.page.addresses import address, of_cells
-from bezierplan.figures.page.page_job import FILES, PageJob, StudyShown, TableShown
+from bezierplan.figures.page.page_job import FILES, PageJob, StudyView, TableView
 from bezierplan.running.inputs import tree
 
 Row = dict[str, Any]
@@ -45,16 +45,16 @@ def studies(
     job: PageJob,
     folder: Path,
     summary: list[pd.DataFrame] | None,
-    stored: list[pd.DataFrame] | None,
+    outcome: list[pd.DataFrame] | None,
 ) -> dict[str, SimpleNamespace]:
     """All studies, from the files in the folder of a scale.
 
     summary: numbers, claims and comparisons with the baseline of all studies, if the scale has
-    them. stored: those of the README's outcome, if it is shown beside this scale's.
+    them. outcome: those of the README's outcome, if it is shown beside this scale's.
     """
     numbers, _, measured = summary or [None] * 3
-    other_numbers, other_claims, _ = stored or [None] * 3
-    shown = {}
+    other_numbers, other_claims, _ = outcome or [None] * 3
+    pages = {}
     for key, described in job.studies.items():
         files = {name: read(folder / key / FILES[name]) for name in described.files}
         claims = _claims(key, described, files, of_study(other_claims, key))
@@ -64,7 +64,7 @@ def studies(
             for name, each in described.tables.items()
         ]
         baseline, verdict = of_study(measured, key), folder / key / "verdict.md"
-        shown[key] = SimpleNamespace(
+        pages[key] = SimpleNamespace(
             key=key,
             job=described,
             claims=claims,
@@ -79,7 +79,7 @@ def studies(
             shown=[],
             verdict=verdict.read_text(encoding="utf-8") if verdict.is_file() else "",
         )
-    return shown
+    return pages
 
 
 def with_corners(baseline: pd.DataFrame) -> list[Row]:
@@ -113,21 +113,21 @@ def _method(study: str, name: str, method: Any) -> Row:
     }
 
 
-def _artefact(study: str, name: str, shown: Any) -> Row:
+def _artefact(study: str, name: str, artefact: Any) -> Row:
     """A table or figure: its title, caption, address, and the path of its files without endings."""
     return {
         "name": name,
         "address": address(study, name),
-        "title": shown.title,
-        "settings": shown.caption.removeprefix(f"{shown.title}.").strip(),
+        "title": artefact.title,
+        "settings": artefact.caption.removeprefix(f"{artefact.title}.").strip(),
         "stem": f"{study}/{tree(name)}/{name}",
         "of_paper": tree(name) == "paper",
     }
 
 
-def _figure(study: str, name: str, shown: Any, folder: Path) -> Row:
+def _figure(study: str, name: str, artefact: Any, folder: Path) -> Row:
     """A figure, with the runs that it shows and what is lowest and highest in it, in words."""
-    row = _artefact(study, name, shown)
+    row = _artefact(study, name, artefact)
     text = (folder / f"{row['stem']}.txt").read_text(encoding="utf-8").strip()
     runs, _, extremes = text.partition("\n")
     return row | {"runs": runs, "extremes": extremes}
@@ -136,28 +136,28 @@ def _figure(study: str, name: str, shown: Any, folder: Path) -> Row:
 def _table(
     study: str,
     name: str,
-    shown: TableShown,
+    artefact: TableView,
     folder: Path,
     labels: dict[str, str],
     counted: pd.DataFrame,
-    stored: pd.DataFrame,
+    outcome: pd.DataFrame,
 ) -> Row:
     """A table: its numbers next to published ones, or its columns and rows."""
-    row, spec = _artefact(study, name, shown), shown.spec
+    row, spec = _artefact(study, name, artefact), artefact.spec
     compared = isinstance(spec, Pivot) and bool(spec.published)
     row["csv"] = f"{row['stem']}{'.comparison' * compared}.csv"
     table = read(folder / row["csv"])
     if not compared:
         return row | {"numbers": [], "laid": None, "columns": list(table), "rows": records(table)}
-    counted, stored = (
-        each[each["table"] == name] if len(each) else each for each in (counted, stored)
+    counted, outcome = (
+        each[each["table"] == name] if len(each) else each for each in (counted, outcome)
     )
-    cells = _numbers(row["address"], table, spec, counted, stored, labels)
-    laid = _laid(folder / row["stem"], table, shown, cells) if spec.printed else None
+    cells = _numbers(row["address"], table, spec, counted, outcome, labels)
+    laid = _laid(folder / row["stem"], table, artefact, cells) if spec.printed else None
     return row | {"numbers": cells, "laid": laid}
 
 
-def _laid(stem: Path, compared: pd.DataFrame, shown: TableShown, cells: list[Row]) -> Row:
+def _laid(stem: Path, numbers: pd.DataFrame, artefact: TableView, cells: list[Row]) -> Row:
     """A table as the paper prints it. head: of its columns. rows: the names of each, and its cells:
     printed, ours, and the number (None where there is none).
     """
@@ -165,25 +165,25 @@ def _laid(stem: Path, compared: pd.DataFrame, shown: TableShown, cells: list[Row
         pd.read_csv(f"{stem}{ending}.csv", dtype=str, keep_default_na=False)
         for ending in ("", ".published")
     )
-    names = list(ours.columns[: len(shown.spec.index)])
+    names = list(ours.columns[: len(artefact.spec.index)])
     ours, printed = ours.set_index(names), printed.set_index(names)
-    numbered = compared.assign(value=np.arange(len(compared)))
-    which = tables.alike(numbered, shown.spec, shown.labels, like=ours)
+    numbered = numbers.assign(value=np.arange(len(numbers)))
+    which = tables.alike(numbered, artefact.spec, artefact.labels, like=ours)
     rows = [
         [(text, own, cells[int(n)] if n else None) for text, own, n in zip(*row, strict=True)]
         for row in zip(printed.to_numpy(), ours.to_numpy(), which.to_numpy(), strict=True)
     ]
     firsts = ours.reset_index()[names].to_numpy().tolist()
     head = [*names, *ours.columns]
-    return {"head": head, "rows": list(zip(firsts, rows, strict=True)), "note": shown.spec.note}
+    return {"head": head, "rows": list(zip(firsts, rows, strict=True)), "note": artefact.spec.note}
 
 
 def _numbers(
     table: str,
-    compared: pd.DataFrame,
+    comparison: pd.DataFrame,
     spec: Pivot,
     counted: pd.DataFrame,
-    stored: pd.DataFrame,
+    outcome: pd.DataFrame,
     labels: dict[str, str],
 ) -> list[Row]:
     """The cells of a table: those with a published number, and what other methods have in the same
@@ -191,17 +191,17 @@ def _numbers(
     runs would print it), apart (relative to the published number), near, stored (the row of the
     README's outcome).
     """
-    keys = list(compared.columns[: compared.columns.get_loc("metric")])
+    keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
-    published = compared["value_published"].notna()
+    published = comparison["value_published"].notna()
     # `summary.numbers` keeps the order of a table's rows.
-    compared["counted"] = False
+    comparison["counted"] = False
     if len(counted):
-        compared.loc[published, "counted"] = counted["counted"].to_numpy()
-    printed = compared.loc[published, what].drop_duplicates()
-    cells = records(compared.merge(printed, on=what))
+        comparison.loc[published, "counted"] = counted["counted"].to_numpy()
+    printed = comparison.loc[published, what].drop_duplicates()
+    cells = records(comparison.merge(printed, on=what))
     positions = [{name: cell[name] for name in (*keys, *what)} for cell in cells]
-    others = {address(*(row[name] for name in positions[0])): row for row in records(stored)}
+    others = {address(*(row[name] for name in positions[0])): row for row in records(outcome)}
     for cell, position, name in zip(
         cells, positions, of_cells(table, positions, spec.primary), strict=True
     ):
@@ -244,7 +244,7 @@ def _heading(metric: str, statistic: str, spec: Pivot, labels: dict[str, str]) -
 
 
 def _claims(
-    study: str, described: StudyShown, files: dict[str, pd.DataFrame], stored: pd.DataFrame
+    study: str, content: StudyView, files: dict[str, pd.DataFrame], outcome: pd.DataFrame
 ) -> list[Row]:
     """Claims in their primary variant. Added: address, rule (what its count means), why,
     comparisons, interpretations (its other variants), shown_in, stored (the row of the README's
@@ -255,18 +255,18 @@ def _claims(
     compared: dict[tuple, list[Row]] = {}
     for row in records(files.get("checks", pd.DataFrame())):
         compared.setdefault((row["id"], row["variant"]), []).append(row)
-    others = {row["id"]: row for row in records(stored) if row["primary"]}
-    claims, there = [], described.tables.keys() | described.figures.keys()
+    others = {row["id"]: row for row in records(outcome) if row["primary"]}
+    claims, there = [], content.tables.keys() | content.figures.keys()
     for _, rows in files["claims"].groupby("id", sort=False):
         every = records(rows)
         claim = next(row for row in every if row["primary"])
         comparisons = compared.get((claim["id"], claim["variant"]), [])
-        checks = described.checks.get(claim["id"], [])
+        checks = content.checks.get(claim["id"], [])
         for each in comparisons:
             check = checks[each["check"] - 1] if each["check"] <= len(checks) else None
             each["reference"] = why.reference(check) if check else 0.0
             each["name"] = ", ".join(
-                labelled(words, described.labels)
+                labelled(words, content.labels)
                 for words in (each["comparison"], each["condition"])
                 if words
             )
@@ -274,14 +274,12 @@ def _claims(
             claim
             | {
                 "address": address(study, claim["id"]),
-                "rule": why.rule(
-                    described.holds.get(claim["id"]), claim["verdict"], claim["holds"]
-                ),
-                "why": _why(claim, comparisons, checks, described.labels),
+                "rule": why.rule(content.holds.get(claim["id"]), claim["verdict"], claim["holds"]),
+                "why": _why(claim, comparisons, checks, content.labels),
                 "comparisons": comparisons,
-                "variant": labelled(claim["variant"] or "", described.labels),
+                "variant": labelled(claim["variant"] or "", content.labels),
                 "interpretations": [
-                    row | {"variant": labelled(row["variant"], described.labels)}
+                    row | {"variant": labelled(row["variant"], content.labels)}
                     for row in every
                     if not row["primary"]
                 ],

@@ -14,7 +14,7 @@ import pandas as pd
 import pyarrow.parquet as parquet
 
 from bezierplan.analysis import results
-from bezierplan.figures.page.page_job import ExperimentShown
+from bezierplan.figures.page.page_job import ExperimentView
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds as world_files
@@ -40,50 +40,50 @@ _DRAWN = [
 Row = dict[str, Any]
 
 
-def chosen(study: str, experiment: str, described: ExperimentShown) -> tuple[list[Row], Row]:
+def chosen(study: str, experiment: str, content: ExperimentView) -> tuple[list[Row], Row]:
     """The runs of an experiment that the viewer shows: which of each method on each problem; and
     the `runs`, `problems` and `workspaces` by their names. Of all other runs only lengths are kept.
     """
-    bounds = parquet.read_table(described.bounds).to_pandas().set_index("problem")
-    columns = [*_RANKED, *_DRAWN, *(["steps"] if described.traces else [])]
-    tables = {file: parquet.read_table(file, columns=columns) for file in described.runs}
-    ranked = pd.concat(
+    bounds = parquet.read_table(content.bounds).to_pandas().set_index("problem")
+    columns = [*_RANKED, *_DRAWN, *(["steps"] if content.traces else [])]
+    tables = {file: parquet.read_table(file, columns=columns) for file in content.runs}
+    ranking = pd.concat(
         [table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()]
     )
-    ranked = ranked[
-        (ranked["repeat"] < described.repeats) & ranked["method"].isin(described.methods)
+    ranking = ranking[
+        (ranking["repeat"] < content.repeats) & ranking["method"].isin(content.methods)
     ]
-    ranked["gap"] = ranked["length"] / ranked["problem"].map(bounds["bound"]) - 1
-    groups = [("", ranked)]
+    ranking["gap"] = ranking["length"] / ranking["problem"].map(bounds["bound"]) - 1
+    groups = [("", ranking)]
     if len(bounds) <= MOST_PROBLEMS:
-        groups = [*ranked.groupby("problem", sort=False), *(groups if len(bounds) > 1 else [])]
-    shown = []
+        groups = [*ranking.groupby("problem", sort=False), *(groups if len(bounds) > 1 else [])]
+    choice = []
     for problem, runs in groups:
         by_method = dict(
             list(runs[["method", "id", "gap", "feasible"]].groupby("method", sort=False))
         )
-        shown += [
+        choice += [
             _shown(experiment, problem, method, by_method[method])
-            for method in described.methods
+            for method in content.methods
             if method in by_method
         ]
-    named = {
+    ids = {
         name
-        for each in shown
+        for each in choice
         for name in (each["best"], each["median"], each["worst"], *each["failed"])
         if name
     }
     kept = [
         tables[file].take(rows.index.to_list()).to_pandas()
-        for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)
+        for file, rows in ranking[ranking["id"].isin(ids)].groupby("file", sort=False)
     ]
-    rows = pd.concat(kept) if kept else ranked
+    rows = pd.concat(kept) if kept else ranking
     made, moving = (
-        problem_files.read(described.problems),
-        world_files.read(described.problems),
+        problem_files.read(content.problems),
+        world_files.read(content.problems),
     )
     by_name = {row["id"]: row for row in rows.to_dict("records")}
-    traces = _traces(described.traces, list(by_name))
+    traces = _traces(content.traces, list(by_name))
     prefix = f"{study}/{experiment}/"
     runs = {
         name: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"])
@@ -92,20 +92,20 @@ def chosen(study: str, experiment: str, described: ExperimentShown) -> tuple[lis
     for name, trace in traces.items():
         row = by_name[name]
         runs[name] |= _drive(runs[name]["path"], trace, row, moving[row["problem"]].pace)
-    named = rows["problem"].unique()
-    workspaces = {prefix + name: _shapes(made[name]) for name in named}
+    ids = rows["problem"].unique()
+    workspaces = {prefix + name: _shapes(made[name]) for name in ids}
     problems = {
         prefix + name: _problem(prefix + name, made[name], moving.get(name), bounds.loc[name])
-        for name in named
+        for name in ids
     }
-    return shown, {"runs": runs, "workspaces": workspaces, "problems": problems}
+    return choice, {"runs": runs, "workspaces": workspaces, "problems": problems}
 
 
-def _traces(named: list[str], ids: list[str]) -> dict[str, np.ndarray]:
+def _traces(by_name: list[str], ids: list[str]) -> dict[str, np.ndarray]:
     """Places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
     tables = [
         parquet.read_table(file, columns=["id", "x", "y"], filters=[("id", "in", ids)])
-        for file in named
+        for file in by_name
     ]
     return {
         row["id"]: np.column_stack([row["x"], row["y"]])

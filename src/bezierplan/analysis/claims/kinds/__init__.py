@@ -32,9 +32,9 @@ def kind_of(check: Check) -> ModuleType:
     return importlib.import_module(f"{__name__}.{check.test}")
 
 
-def check_of(given: dict[str, Any]) -> Check:
+def check_of(values: dict[str, Any]) -> Check:
     """The check of a job, from its plain values."""
-    return kinds()[given["test"]].model_validate(given)
+    return kinds()[values["test"]].model_validate(values)
 
 
 @cache
