@@ -136,7 +136,7 @@ def test_an_experiment_is_a_name_and_no_pattern(name, tmp_path):
 def test_wrong_numbers_of_a_file_are_told_by_name(arguments, tmp_path):
     name = [*arguments][-1]
     with pytest.raises(ValueError, match=f"^{name}: .*; expected a number above 0"):
-        bp.plan(PROBLEM).to_csv(tmp_path / "path.csv", **arguments)
+        bp.plan(PROBLEM).save(tmp_path / "path.csv", **arguments)
 
 
 BORDER = (-5.0, 5.0, -5.0, 5.0)
@@ -183,7 +183,7 @@ def test_a_list_of_problems_is_planned_in_one_call(tmp_path):
 
 def test_an_answer_is_json_and_a_picture_in_a_notebook(tmp_path):
     answer = bp.plan(PROBLEM)
-    answer.to_json(tmp_path / "path.json")
+    answer.save(tmp_path / "path.json")
     values = json.loads((tmp_path / "path.json").read_text())
     assert values["path"]["points"][0] == [0.5, 0.5]
     assert values["feasible"] is True

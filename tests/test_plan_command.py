@@ -89,7 +89,7 @@ def test_the_command_and_the_function_plan_alike(asked, capsys, tmp_path):
     cell = float(words[words.index("--cell") + 1]) if "--cell" in words else None
     problem = bp.Problem("", bp.read_map(GAPS, cell=cell), (2.0, 10.0), (18.0, 10.0))
     answer = bp.plan(problem, **arguments)
-    answer.to_csv(tmp_path / "function.csv")
+    answer.save(tmp_path / "function.csv")
     lines = planned(
         capsys, GAPS, *ENDS, *words, "--out", str(command), status=int(not answer.feasible)
     )

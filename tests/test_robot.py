@@ -193,7 +193,7 @@ def test_on_random_maps_no_written_path_comes_closer_than_the_radius(tmp_path, s
     if answer.path is None:
         return
     assert answer.feasible
-    answer.to_csv(tmp_path / "path.csv", step=0.001)
+    answer.save(tmp_path / "path.csv", step=0.001)
     distance = least_distance(tmp_path / "path.csv", obstacles, room.bounds)
     assert distance >= radius - 2e-8
     assert distance == pytest.approx(answer.clearance, abs=1e-4)

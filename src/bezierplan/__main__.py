@@ -9,6 +9,7 @@ import re
 import signal
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 import bezierplan
 from bezierplan.commands import arguments
@@ -43,8 +44,7 @@ def main(words: list[str]) -> None:
         print(f"bezierplan {bezierplan.__version__}")
         return
     if name not in COMMANDS:
-        sys.stderr.write(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}\n")
-        sys.exit(2)
+        _refuse(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}")
     try:
         command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")
         functions = getattr(command, "PASSES_ON", ())
@@ -52,8 +52,7 @@ def main(words: list[str]) -> None:
             command.main(*rest)
         else:
             arguments.call(f"{PROGRAM} {name}", command.main, functions, rest)
-        if sys.stdout:  # which a process without one does not have
-            sys.stdout.flush()
+        sys.stdout.flush()
     # The reader, such as `head`, has enough; Python flushes once more when it exits.
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -62,17 +61,21 @@ def main(words: list[str]) -> None:
     except ModuleNotFoundError as missing:
         if missing.name not in EXTRA:
             raise
-        sys.stderr.write(
+        _refuse(
             f"{name}: needs {missing.name}, which is not installed; install it with: pip install "
-            "'bezierplan[workflow]'\n"
+            "'bezierplan[workflow]'"
         )
-        sys.exit(2)
     except (ValueError, OSError) as fault:
         # What the operating system says names the file last, and an error number first.
         system = isinstance(fault, OSError) and fault.filename and fault.strerror
         text = f"{fault.filename}: {fault.strerror}" if system else str(fault)
-        sys.stderr.write(f"{Fault(text)}\n")
-        sys.exit(2)
+        _refuse(f"{Fault(text)}")
+
+
+def _refuse(text: str) -> NoReturn:
+    """End with the status of wrong input."""
+    sys.stderr.write(f"{text}\n")
+    sys.exit(2)
 
 
 INTERRUPTED = 128 + signal.SIGINT

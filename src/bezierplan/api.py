@@ -20,7 +20,7 @@ import bezierplan
 from bezierplan.analysis import answers
 from bezierplan.geometry import path_files, samples, shortest_paths
 from bezierplan.places import STUDIES
-from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
+from bezierplan.planners import is_file, known_planners, planner_module
 from bezierplan.running import planning
 from bezierplan.running import problems as problem_files
 from bezierplan.running.guard import interface
@@ -141,59 +141,42 @@ class Judged:
         drawn_path.draw(axes, problem, self.path, self.shortest_points, self.collision)
         return axes
 
-    def to_picture(self, file: str | File) -> None:
-        """Draw the same with a legend into a file whose suffix matplotlib knows, such as .svg or
-        .png.
-        """
-        from bezierplan.figures import drawn_path
-
-        drawn_path.save(File(file), self.plot)
-
-    def to_csv(self, file: str | File, *, step: float | None = None) -> None:
-        """Write distance, x, y, heading and curvature along the path.
+    def save(self, file: str | File, *, step: float | None = None) -> None:
+        """Write the path into a file of the kind that its suffix names.
 
         Parameters
         ----------
         file : str or Path
-            A .csv file.
+            What `plot` draws, with a legend (.svg, .png, .pdf); distance, x, y, heading and
+            curvature along the path (.csv); a line with the verdict (.geojson); a `nav_msgs/Path`
+            message as `ros2 topic pub` reads it (.yaml); or all fields of the answer (.json), in
+            which null is what JSON has no number for.
         step : float, optional
-            As in `sample`, by default a thousandth of the length.
+            Of points: as in `sample`, by default a thousandth of the length.
 
         Raises
         ------
         ValueError
-            If there is no path.
+            For points without a path.
         """
-        path_files.write_csv(File(file), self._spaced(step))
-
-    def to_geojson(self, file: str | File, *, step: float | None = None) -> None:
-        """Write the path as a GeoJSON feature of kind LineString, with the verdict among its
-        properties.
-        """
-        verdict = {"feasible": self.feasible, "length": self.length, "clearance": self.clearance}
-        path_files.write_geojson(File(file), self._spaced(step), verdict)
-
-    def to_ros(self, file: str | File, *, step: float | None = None, frame: str = "map") -> None:
-        """Write the path as a `nav_msgs/Path` message in YAML, as `ros2 topic pub` reads it."""
-        path_files.write_ros(File(file), self._spaced(step), frame)
-
-    def to_json(self, file: str | File) -> None:
-        """Write the verdict with curve, control points and shortest path; null is what JSON has no
-        number for.
-        """
-        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        file, values = File(file), {each.name: getattr(self, each.name) for each in fields(self)}
         del values["problem"]
-        path_files.write_json(File(file), values | {"gap": self.gap})
+        if file.suffix in path_files.WRITERS:
+            # A path of no length has two samples, whatever their distance.
+            points = self.sample(step=(self.length / 1000 or 1.0) if step is None else step)
+            path_files.WRITERS[file.suffix](file, points, values)
+        elif file.suffix == ".json":
+            path_files.write_json(file, values | {"gap": self.gap})
+        else:
+            from bezierplan.figures import drawn_path
+
+            drawn_path.save(file, self.plot)
 
     def _repr_html_(self) -> str:
         """The picture and what the command line prints, for notebooks."""
         from bezierplan.figures import drawn_path
 
         return drawn_path.html(self.plot, answers.lines(self))
-
-    def _spaced(self, step: float | None) -> samples.Samples:
-        """Samples for a file. A path of no length has two, whatever their distance."""
-        return self.sample(step=(self.length / 1000 or 1.0) if step is None else step)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,23 +215,6 @@ class Answer(Judged):
     stop: str
     turning_radius: float
     cpu_s: float = math.nan
-
-
-# Fields that are the planner's own.
-_PLAIN = {"claimed_feasible": bool, "objective": float, "evaluations": int, "stop": str}
-
-
-@dataclass(frozen=True)
-class Shortest:
-    """The exact shortest path: its length, in the map's unit (infinite without a free path), and
-    its points (n, 2).
-
-    Among circles the points are the vertices of a chain of chords and tangents that is within 1e-6
-    of the path.
-    """
-
-    length: float
-    points: np.ndarray = field(repr=False)
 
 
 def read_map(
@@ -311,7 +277,7 @@ def example_map(name: str) -> File:
     return files[name]
 
 
-def shortest_path(problem: Problem) -> Shortest:
+def shortest_path(problem: Problem) -> shortest_paths.Bound:
     """The exact shortest path of a point from start to target.
 
     Parameters
@@ -321,8 +287,9 @@ def shortest_path(problem: Problem) -> Shortest:
 
     Returns
     -------
-    Shortest
-        Its length and a polyline along it.
+    Bound
+        Its length, in the map's unit (infinite without a free path), and its points (n, 2): among
+        circles a polyline within 1e-6 of the path.
 
     Raises
     ------
@@ -337,7 +304,7 @@ def shortest_path(problem: Problem) -> Shortest:
     4.5113
     """
     _check_problem(problem)
-    return Shortest(*_bound(problem)[1])
+    return _bound(problem)[1]
 
 
 def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound]:
@@ -473,7 +440,7 @@ def plan(
     radius = answer.extra["least_radius"] if planner == planning.ROUNDED else math.nan
     return Answer(
         **judged,
-        **{field: getattr(answer, field) for field in (*_PLAIN, "history")},
+        **{field: getattr(answer, field) for field in (*answers.OF_PLANNERS, "history")},
         via=places,
         turning_radius=radius,
         method=name,
@@ -500,7 +467,7 @@ def plan_all(
     Returns
     -------
     DataFrame
-        The file's rows with feasible, length, shortest, gap, clearance, curvature and cpu_s.
+        The file's rows with feasible, length, shortest, clearance, curvature and cpu_s.
 
     Raises
     ------
@@ -512,8 +479,8 @@ def plan_all(
     rows = pd.read_csv(file)
     ends = rows[["start_x", "start_y", "target_x", "target_y"]].to_numpy(float)
     made = [plan(Problem("", workspace, (a, b), (c, d)), method, **options) for a, b, c, d in ends]
-    names = ("feasible", "length", "shortest", "gap", "clearance", "curvature", "cpu_s")
-    return rows.assign(**{name: [getattr(each, name) for each in made] for name in names})
+    names = ["feasible", "length", "shortest", "clearance", "curvature", "cpu_s"]
+    return rows.join(pd.DataFrame(map(vars, made))[names])
 
 
 def _check_problem(problem: Problem) -> None:
@@ -562,16 +529,17 @@ def named(method: str) -> tuple[str, dict[str, Any]]:
         return method, {}
     if method in known_planners():
         uses = [use for use, planner in methods().items() if planner == method]
-        if not uses:
-            return method, {}
-        key, name = uses[0].split("/")
-    else:
-        key, _, name = method.rpartition("/")
-    is_study = key in _keys() or (key and (File(key) / "experiments.yaml").is_file())
-    if not is_study or name not in _study(key).methods:
+        return named(uses[0]) if uses else (method, {})
+    key, _, name = method.rpartition("/")
+    if not (key and (_folder(key) / "experiments.yaml").is_file() and name in _study(key).methods):
         known = [*methods(), *known_planners()]
         raise ValueError(f"method: {method}: unknown{closest(method, known)}")
     return _study(key).planner(name), _study(key).resolved(name)
+
+
+def _folder(key: str) -> File:
+    """That of a study of this project, or any other."""
+    return STUDIES / key if key in _keys() else File(key)
 
 
 @cache
@@ -579,7 +547,7 @@ def _study(key: str) -> Any:
     """A study of this project, which its tests have checked, or that of a folder."""
     from bezierplan.study import reading
 
-    return reading.read_study(STUDIES / key if key in _keys() else File(key))
+    return reading.read_study(_folder(key))
 
 
 def _keys() -> list[str]:
@@ -696,14 +664,4 @@ def replay(run: str) -> Answer:
 
 def answer_of(reproduced: Any, run: str) -> Answer:
     """The answer in the results of one run, by its name."""
-    from bezierplan.analysis.results import path_of
-
-    row, parts = reproduced.runs.iloc[0], run.split("/")
-    return Answer(
-        **answers.verdict(*_bound(reproduced.problems[row["problem"]]), path_of(row)),
-        turning_radius=float(row.get("least_radius", math.nan)),
-        method=f"{parts[0]}/{parts[3]}",
-        settings={name: row[name] for name in planner_settings(planner_module(row["planner"]))},
-        history=np.array(row["history"], dtype=float),
-        **{field: kind(row[field]) for field, kind in _PLAIN.items()},
-    )
+    return Answer(**answers.of_run(reproduced, run))

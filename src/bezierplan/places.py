@@ -1,7 +1,6 @@
 """Where things lie: this package, the tree of studies and workflow, the folder of caches."""
 
 import os
-import sys
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
@@ -26,6 +25,4 @@ def cache_folder() -> Path:
     """
     if CHECKOUT:
         return (TREE if os.access(TREE, os.W_OK) else Path.home()) / ".cache"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "bezierplan"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "bezierplan"

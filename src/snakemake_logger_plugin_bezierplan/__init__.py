@@ -88,18 +88,12 @@ class LogHandler(RichHandler):
         self.reasons.clear()
 
     def show_progress(self) -> None:
-        """Print a line, unless the last one is too fresh; time left as if all jobs took equally
-        long.
-        """
+        """Print a line, unless the last one is too fresh."""
         now = time.monotonic()
         done, total = self.event_handler.completed, self.event_handler.total_jobs
         if done == total or now - self.last_line >= BETWEEN_LINES:
-            self.last_line, elapsed = now, now - self.started
-            left = f", about {in_hours(elapsed / done * (total - done))} left"
-            self.say(
-                f"{done} of {total} jobs done, {in_hours(elapsed)} elapsed"
-                f"{left if done < total else ''}"
-            )
+            self.last_line = now
+            self.say(f"{done} of {total} jobs done, {in_hours(now - self.started)} elapsed")
 
 
 def last_lines(outputs: set[Path], seconds: float) -> list[str]:

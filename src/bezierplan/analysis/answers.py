@@ -1,17 +1,27 @@
 """What exact geometry says of one path, and what to print of it."""
 
+from __future__ import annotations
+
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
+from bezierplan.planners import planner_module, planner_settings
 from bezierplan.running import planning
+from bezierplan.running.judge.answer import restored
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.grown import grown_of
 from bezierplan.workspaces.problem import Path, Problem
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.results import Results
+
+OF_PLANNERS = {"claimed_feasible": bool, "objective": float, "evaluations": int, "stop": str}
+"""Fields that are the planner's own, beside the history."""
 
 
 def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None) -> dict[str, Any]:
@@ -43,6 +53,23 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
         "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
         "curvature_jump": jump,
         "corners": not math.isfinite(jump),
+    }
+
+
+def of_run(reproduced: Results, name: str) -> dict[str, Any]:
+    """The fields of `api.Answer` for the results of one run, by its name."""
+    row, (study, _, _, method, _) = reproduced.runs.iloc[0], name.split("/")
+    problem = reproduced.problems[row["problem"]]
+    return verdict(
+        problem,
+        shortest_paths.shortest_path(problem),
+        restored(row["path_curve"], row["path_points"]),
+    ) | {
+        "turning_radius": float(row.get("least_radius", math.nan)),
+        "method": f"{study}/{method}",
+        "settings": {each: row[each] for each in planner_settings(planner_module(row["planner"]))},
+        "history": np.array(row["history"], dtype=float),
+        **{field: kind(row[field]) for field, kind in OF_PLANNERS.items()},
     }
 
 

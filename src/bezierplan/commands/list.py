@@ -18,7 +18,7 @@ from bezierplan.workspaces import kinds as workspace_kinds
 Rows = Iterable[tuple[str, Any]]
 
 
-def main(*words: str, studies: Sequence[str] = ()) -> None:
+def main(*words: str) -> None:
     """Print the contents of the configured studies, or of those named. Raises Fault for a word that
     is neither a kind nor a study.
 
@@ -28,8 +28,6 @@ def main(*words: str, studies: Sequence[str] = ()) -> None:
         kinds (tables, figures, methods, experiments, claims, settings) and studies or their
         folders; without any, all of them but settings; or names that files of a study can use
         (metrics, panels, tests, worlds, planners), those of the studies included
-    studies : list of str
-        a study in place of those of config/config.yaml: a name or a folder
 
     Examples
     --------
@@ -37,7 +35,7 @@ def main(*words: str, studies: Sequence[str] = ()) -> None:
     list settings tharwat2018
     list metrics mystudy
     """
-    loaded = studies_of([*studies, *(word for word in words if study_named(word) != word)])
+    loaded = studies_of([word for word in words if study_named(word) != word])
     names = [Path(study_named(word)).name for word in words]
     known = [*KINDS, *NAMES, *loaded]
     for name in names:

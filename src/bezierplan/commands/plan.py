@@ -9,18 +9,11 @@ from bezierplan import api
 from bezierplan.analysis import answers
 from bezierplan.commands import arguments
 from bezierplan.commands.arguments import Place
+from bezierplan.geometry import path_files
 from bezierplan.schema.checked import Fault
 
 PASSES_ON = (api.read_map, api.plan)
-WRITERS = {
-    ".svg": api.Judged.to_picture,
-    ".png": api.Judged.to_picture,
-    ".csv": api.Judged.to_csv,
-    ".geojson": api.Judged.to_geojson,
-    ".yaml": api.Judged.to_ros,
-    ".json": api.Judged.to_json,
-}
-POINTS = (".csv", ".geojson", ".yaml")
+FILES = (".svg", ".png", ".json", *path_files.WRITERS)
 # The most CPU seconds of a planner that is called again, since the first call loads its kernels.
 _LONG = 2.0
 
@@ -74,10 +67,6 @@ def main(
     """
     if out:
         _check_out(out, map)
-    if step is not None and not step > 0:
-        raise Fault(f"step: {step:g}; expected a number above 0")
-    if step is not None and (not out or out.suffix not in POINTS):
-        raise Fault(f"step: {step:g}: only for --out with a file that ends in {', '.join(POINTS)}")
     if not map.suffix and not map.exists():
         map = api.example_map(str(map))
     names = {parameter.name for parameter, *_ in arguments.parameters(api.read_map)}
@@ -88,7 +77,7 @@ def main(
     if answer.cpu_s < _LONG:
         answer = api.plan(problem, **options, **settings)
     if out and answer.path:
-        WRITERS[out.suffix](answer, out, **({} if step is None else {"step": step}))
+        answer.save(out, step=step)
     for name, text in answers.lines(answer).items():
         print(f"{name:16}{text}")
     if not math.isfinite(answer.shortest):
@@ -109,9 +98,7 @@ def _check_out(out: Path, map: Path) -> None:
     """Raise Fault for a file that cannot be written, before planning, which may take long, or that
     the map consists of.
     """
-    if out.suffix not in WRITERS:
-        raise Fault(f"out: {out}; expected a file that ends in {', '.join(WRITERS)}")
-    if not out.parent.is_dir():
-        raise Fault(f"out: {out}: no folder {out.parent}; expected one that exists")
+    if out.suffix not in FILES:
+        raise Fault(f"out: {out}; expected a file that ends in {', '.join(FILES)}")
     if out.exists() and out.resolve().with_suffix("") == map.resolve().with_suffix(""):
         raise Fault(f"out: {out}: is there, with the map's name; expected another file")

@@ -41,6 +41,6 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     else:
         answer = api.answer_of(reproduced, run)
         lines = answers.lines(answer)
-        answer.to_picture(picture)
+        answer.save(picture)
     for name, text in {**lines, "picture": picture}.items():
         print(f"{name:16}{text}")

@@ -33,19 +33,8 @@ def main(*words: str) -> None:
     """
     if not words:
         raise Fault("expected a word, such as the folder of a study; run --help shows examples")
-    from snakemake.cli import get_argument_parser, parse_config
-    from snakemake.exceptions import CliException
-
-    started = command(words)
-    # What Snakemake would tell in a traceback, or with all its options.
-    theirs = get_argument_parser()
-    theirs.error = _refuse
-    try:
-        parse_config(theirs.parse_args(started[3:]).config)
-    except (CliException, ValueError) as fault:
-        raise Fault(str(fault)) from None
     streams = {"stdout": forks.stream_for(sys.stdout), "stderr": forks.stream_for(sys.stderr)}
-    workflow = subprocess.Popen(started, **streams, process_group=0)
+    workflow = subprocess.Popen(command(words), **streams, process_group=0)
     signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
     try:
         sys.exit(workflow.wait())
@@ -54,10 +43,6 @@ def main(*words: str) -> None:
         os.killpg(workflow.pid, signal.SIGINT)
         workflow.wait()
         raise
-
-
-def _refuse(message: str) -> None:
-    raise Fault(message)
 
 
 def command(words: tuple[str, ...]) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from bezierplan.geometry.samples import Samples
 
 
-def write_csv(file: Path, samples: Samples) -> None:
+def write_csv(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
     """A heading row, then distance, x, y, heading and curvature of each sample, with nine
     digits.
     """
@@ -25,8 +25,9 @@ def write_csv(file: Path, samples: Samples) -> None:
     )
 
 
-def write_geojson(file: Path, samples: Samples, properties: Mapping[str, Any]) -> None:
-    """A feature of kind LineString."""
+def write_geojson(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
+    """A feature of kind LineString, with the verdict among its properties."""
+    properties = {name: values[name] for name in ("feasible", "length", "clearance")}
     line = {"type": "LineString", "coordinates": np.column_stack([samples.x, samples.y]).tolist()}
     write_json(file, {"type": "Feature", "properties": properties, "geometry": line})
 
@@ -48,7 +49,7 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def write_ros(file: Path, samples: Samples, frame: str) -> None:
+def write_ros(file: Path, samples: Samples, values: Mapping[str, Any]) -> None:
     """A `nav_msgs/Path` message as YAML; a pose's orientation is the heading as a quaternion about
     z.
     """
@@ -56,7 +57,7 @@ def write_ros(file: Path, samples: Samples, frame: str) -> None:
 
     poses = [
         {
-            "header": {"frame_id": frame},
+            "header": {"frame_id": "map"},
             "pose": {
                 "position": {"x": float(x), "y": float(y), "z": 0.0},
                 "orientation": {
@@ -70,4 +71,8 @@ def write_ros(file: Path, samples: Samples, frame: str) -> None:
         for x, y, heading in zip(samples.x, samples.y, samples.heading, strict=True)
     ]
     with file.open("w", encoding="utf-8") as lines:
-        yaml.safe_dump({"header": {"frame_id": frame}, "poses": poses}, lines, sort_keys=False)
+        yaml.safe_dump({"header": {"frame_id": "map"}, "poses": poses}, lines, sort_keys=False)
+
+
+WRITERS = {".csv": write_csv, ".geojson": write_geojson, ".yaml": write_ros}
+"""Suffix -> what writes samples of a path, and values of its verdict."""
