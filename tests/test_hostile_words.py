@@ -23,19 +23,6 @@ WORDS = {
         ["new", "a_file/x"],
         "a_file/x: expected a new folder in one that exists",
     ),
-    "a misspelt option of Snakemake": (
-        ["run", "x", "--scale", "full"],
-        "unrecognized arguments: --scale",
-    ),
-    "cores of Snakemake in words": (
-        ["run", "x", "--cores", "nan"],
-        "(--cores, -c): must be integer",
-    ),
-    "a configuration without a name": (
-        ["run", "x", "--config", "{studies: [x]}"],
-        "Invalid config definition: Config entries have to be defined as name=value",
-    ),
-    "a limit of Snakemake in words": (["run", "x", "--retries", "many"], "--retries"),
 }
 
 

@@ -252,7 +252,7 @@ FAULTS = {
     "cell": ([GAPS, *ENDS, "--cell", "inf"], "--cell: inf: expected the side of a cell"),
     "folder": (
         [GAPS, *ENDS, "--out", "nowhere/path.svg"],
-        "--out: nowhere/path.svg: no folder nowhere; expected one that exists",
+        "nowhere/path.svg: No such file",
     ),
     "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
     "rule": ([GAPS, *ENDS, "--cell", "1", "--rule", "some"], "--rule: some: unknown"),

@@ -301,10 +301,6 @@ REFUSED = {
         (*WALL, "--robot-radius", "0.2", "--via", "1,1.6"),
         "--via: (1.0, 1.6): 0.1 from an obstacle or the border",
     ),
-    "step without a file": (
-        (*WALL, "--step", "1"),
-        "--step: 1: only for --out with a file that ends in .csv, .geojson",
-    ),
 }
 
 

@@ -67,19 +67,14 @@ def main(words: list[str]) -> None:
         )
     except (ValueError, OSError) as fault:
         # What the operating system says names the file last, and an error number first.
-        system = isinstance(fault, OSError) and fault.filename and fault.strerror
-        text = f"{fault.filename}: {fault.strerror}" if system else str(fault)
-        _refuse(f"{Fault(text)}")
+        file = getattr(fault, "filename", None)
+        _refuse(Fault(f"{file}: {fault.strerror}" if file else str(fault)))
 
 
-def _refuse(text: str) -> NoReturn:
+def _refuse(text: str | Fault) -> NoReturn:
     """End with the status of wrong input."""
     sys.stderr.write(f"{text}\n")
     sys.exit(2)
-
-
-INTERRUPTED = 128 + signal.SIGINT
-"""The exit status of a command that its user interrupts."""
 
 
 def start() -> None:
@@ -88,7 +83,7 @@ def start() -> None:
         main(sys.argv[1:])
     except KeyboardInterrupt:
         print(f"{PROGRAM}: interrupted", file=sys.stderr, flush=True)
-        sys.exit(INTERRUPTED)
+        sys.exit(128 + signal.SIGINT)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import bezierplan
 from bezierplan.analysis import answers
 from bezierplan.geometry import path_files, samples, shortest_paths
 from bezierplan.places import STUDIES
@@ -40,10 +39,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-__all__ = bezierplan.__all__
-
 Method = str | Callable[..., Any] | ModuleType
-Via = Sequence[tuple[float, float]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -356,7 +352,7 @@ def plan(
     *,
     seed: int = 0,
     robot_radius: float = 0.0,
-    via: Via = (),
+    via: Sequence[tuple[float, float]] = (),
     **settings: Any,
 ) -> Answer:
     """Plan one path and judge it by exact geometry.
@@ -631,9 +627,9 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     ValueError
         If there are no such results, or they are damaged.
     """
-    from bezierplan.analysis import results as stored
+    from bezierplan.analysis.results import of_folder
 
-    return stored.of_folder(File(folder), experiment).runs
+    return of_folder(File(folder), experiment).runs
 
 
 def replay(run: str) -> Answer:

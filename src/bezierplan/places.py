@@ -23,6 +23,6 @@ def cache_folder() -> Path:
     """The folder of what can be made again: `.cache` in a clone that can be written, and of an
     installed package the user's own.
     """
-    if CHECKOUT:
-        return (TREE if os.access(TREE, os.W_OK) else Path.home()) / ".cache"
+    if CHECKOUT and os.access(TREE, os.W_OK):
+        return TREE / ".cache"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "bezierplan"

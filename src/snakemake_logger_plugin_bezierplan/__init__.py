@@ -16,8 +16,6 @@ from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 from snakemake_interface_logger_plugins.common import LogEvent
 from snakemake_logger_plugin_rich import LogHandler as RichHandler
 
-__all__ = ["LogHandler"]
-
 REASON = "CRITICAL "
 """What comes, in a job's log, before the line that says why the job failed
 (`bezierplan.running.jobs.log`).
@@ -78,7 +76,7 @@ class LogHandler(RichHandler):
         for log in map(Path, self.event_handler.jobs_info.get(job, {}).get("log") or []):
             lines = log.read_text("utf-8", "replace").splitlines() if log.is_file() else []
             if lines and REASON in lines[-1]:
-                return lines[-1].split(REASON, 1)[1]
+                return lines[-1].partition(REASON)[2]
         return ""
 
     def close(self) -> None:
@@ -115,11 +113,7 @@ def unknown_target(message: str) -> str:
     from bezierplan.schema.checked import closest
 
     match = re.search(r"No rule to produce (\S+)", message)
-    if not match or not KNOWN:
-        return ""
-    if "/" in match[1]:
-        return f"{match[1]}: no rule makes this file; `python -m bezierplan list` lists targets"
-    return f"{match[1]}: no target{closest(match[1], KNOWN)}"
+    return f"{match[1]}: no target{closest(match[1], KNOWN)}" if match and KNOWN else ""
 
 
 def in_hours(seconds: float) -> str:

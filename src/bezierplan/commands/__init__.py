@@ -6,23 +6,16 @@ holds functions of the interface whose options are the command's as well.
 """
 
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bezierplan.places import TREE
 from bezierplan.schema import checked
-
-SNAKEMAKE = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
-"""The beginning of a command that starts the workflow."""
 
 
 def cores() -> int:
     """How many cores this process may use, all of this machine where that is not known."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def config_of(names: Sequence[str] = ()) -> dict[str, Any]:

@@ -74,8 +74,7 @@ def _methods(study: Study) -> Rows:
 def _settings(study: Study) -> Rows:
     for planner in dict.fromkeys(map(study.planner, study.methods)):
         for name, declared in planner_settings(planner_module(planner)).items():
-            meaning = f"; {declared.meaning}" if declared.meaning else ""
-            yield f"{planner}: {name}", f"{declared}{meaning}"
+            yield f"{planner}: {name}", f"{declared}; {declared.meaning}"
 
 
 def _sentence(thing: Any) -> str:

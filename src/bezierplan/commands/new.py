@@ -51,13 +51,13 @@ def main(
         raise Fault(f"{folder}: expected a new folder in one that exists")
     if len({from_ is None, start is None, target is None}) > 1:
         raise Fault("expected --from, --start and --target together: a map of your own")
-    if example and from_:
-        raise Fault("--example: has its own maps; expected it without --from")
     if from_:
         workspace = described(from_, cells=True)
         files.load(workspace, from_.parent)
     shutil.copytree(
-        EXAMPLE if example else TEMPLATE, folder, ignore=shutil.ignore_patterns("__pycache__")
+        EXAMPLE if example and not from_ else TEMPLATE,
+        folder,
+        ignore=shutil.ignore_patterns("__pycache__"),
     )
     _replace(folder / "README.md", "mystudy", folder.name)
     if from_:
@@ -67,14 +67,11 @@ def main(
 
 
 def _put(folder: Path, sources: list[Path], workspace: dict, ends: dict[str, list[float]]) -> None:
-    """Put a map in the place of the room. The claims and the published number are about the room,
-    so they go.
-    """
+    """Put a map in the place of the room. The published number is about the room, so it goes."""
     for source in sources:
         shutil.copyfile(source, folder / source.name)
     (folder / "room.txt").unlink()
     shutil.rmtree(folder / "published")
-    (folder / "claims.yaml").unlink()
     _replace(folder / "artefacts.yaml", "    published: lengths.csv\n", "")
     experiments = folder / "experiments.yaml"
     _replace(experiments, "^  room:.*\n", f"  room: {_flow(workspace)}")

@@ -22,10 +22,12 @@ def main() -> None:
     Fault if one of them is incomplete.
     """
     studies = studies_of()
-    settings = [(key, *row) for key, each in studies.items() for row in settings_of(each)]
-    columns = ["study", "method", "setting", "value"]
+    settings = pd.DataFrame(
+        [(key, *row) for key, each in studies.items() for row in settings_of(each)],
+        columns=["study", "method", "setting", "value"],
+    )
     try:
-        outcome.write(*named(studies), pd.DataFrame(settings, columns=columns), scored(studies))
+        outcome.write(*named(studies), settings, scored(studies))
         for picture in PICTURES:
             study, _, name = picture.split("/")
             shutil.copyfile(outcome.FULL / picture, outcome.KEPT / f"{study}_{name}")
@@ -36,9 +38,8 @@ def main() -> None:
 
 def named(studies: dict[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
     """The titles of studies, and the files of their sentences."""
-    files = {key: study.verdict_file() for key, study in studies.items()}
     titles = {key: study.title for key, study in studies.items()}
-    return titles, {key: file for key, file in files.items() if file}
+    return titles, {key: file for key in studies if (file := studies[key].verdict_file())}
 
 
 def scored(studies: dict[str, Any]) -> list[str]:

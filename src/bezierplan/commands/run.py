@@ -7,8 +7,9 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Sequence
 
-from bezierplan.commands import SNAKEMAKE, study_named
+from bezierplan.commands import study_named
 from bezierplan.places import TREE
 from bezierplan.running.jobs import forks
 from bezierplan.schema.checked import Fault
@@ -33,8 +34,8 @@ def main(*words: str) -> None:
     """
     if not words:
         raise Fault("expected a word, such as the folder of a study; run --help shows examples")
-    streams = {"stdout": forks.stream_for(sys.stdout), "stderr": forks.stream_for(sys.stderr)}
-    workflow = subprocess.Popen(command(words), **streams, process_group=0)
+    out, err = map(forks.stream_for, (sys.stdout, sys.stderr))
+    workflow = subprocess.Popen(command(words), stdout=out, stderr=err, process_group=0)
     signal.signal(signal.SIGTERM, lambda *_: workflow.terminate())
     try:
         sys.exit(workflow.wait())
@@ -45,10 +46,11 @@ def main(*words: str) -> None:
         raise
 
 
-def command(words: tuple[str, ...]) -> list[str]:
+def command(words: Sequence[str]) -> list[str]:
     """The command that runs words."""
+    snakemake = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
+    snakemake += ["--workflow-profile", str(TREE / "profiles" / "default")]
     folders = [study_named(word) for word in words if study_named(word) != word]
     others = [word for word in words if study_named(word) == word]
-    studies = json.dumps(folders)
-    profile = ["--workflow-profile", str(TREE / "profiles" / "default")]
-    return [*SNAKEMAKE, *profile, *others, *(["--config", f"studies={studies}"] if folders else [])]
+    config = ["--config", f"studies={json.dumps(folders)}"] if folders else []
+    return [*snakemake, *others, *config]

@@ -12,16 +12,13 @@ workspaces = ("grid",)
 
 def plan(problem, rng, *, tries: Annotated[int, Range(1)]):
     """The shortest of some polylines through a random point whose samples are in free cells."""
-    grid, best, history = problem.workspace, None, []
+    grid, best, shortest, history = problem.workspace, None, np.inf, []
     x_low, x_high, y_low, y_high = grid.bounds
     for middle in rng.uniform((x_low, y_low), (x_high, y_high), (tries, 2)):
         path = Path("polyline", np.array([problem.start, middle, problem.target]))
-        cells = [
-            grid.cell_of(x, y) for x, y in curves.sample_matrix("polyline", 3, 201) @ path.points
-        ]
-        if not any(grid.occupied[cell] for cell in cells) and (
-            best is None or curves.length(path) < curves.length(best)
-        ):
-            best = path
-        history.append(np.inf if best is None else curves.length(best))
-    return Plan(best, history[-1], best is not None, tries, np.array(history), "tries", {})
+        samples = curves.sample_matrix("polyline", 3, 201) @ path.points
+        length = curves.length(path)
+        if length < shortest and not any(grid.occupied[grid.cell_of(x, y)] for x, y in samples):
+            best, shortest = path, length
+        history.append(shortest)
+    return Plan(best, shortest, best is not None, tries, np.array(history), "tries", {})
