@@ -10,12 +10,7 @@ from bezierplan.commands import run
 NO_STUDY = "not a name of a study; expected at most 100 letters, digits, _ and -, a letter first; "
 WORDS = {
     "results of two lines": (["verify", "x\ny"], "x\\ny: no runs here"),
-    "results with an escape": (["digest", "x\x1by"], "x\\x1by: no runs here"),
     "no core": (["verify", ".", "--cores", "0"], "--cores: 0; expected a number of at least 1"),
-    "a core that is no number": (
-        ["verify", ".", "--cores", "nan"],
-        "--cores: invalid int value: 'nan'",
-    ),
     "a study of two lines": (["new", "x\n"], f"x\\n: {NO_STUDY}"),
     "a study of a long name": (["new", "x" * 300], NO_STUDY),
     "a study where nothing can be made": (["new", "/proc/x"], "/proc/x: No such file or directory"),

@@ -52,10 +52,8 @@ def about(*expected):
         ([(25, 5), (35, 35)], 0),
         ([(5, 5), (5, 35), (35, 35)], 0),  # the leg past the corner would enter the occupied cell
         ([(5, 15), (5, 25), (15, 25)], 1),  # it may touch the cell's corner
-        ([(25, 5), (35, 5), (35, 35)], 1),
         ([(25, 5), (30, 5), (35, 5), (35, 35)], 1),  # a node on a straight way is no corner
         ([(5, 5), (20, 5), (20, 20), (35, 35)], 1),
-        ([(25, 5), (25, 5), (35, 5), (35, 35)], 1),
         ([(25, 5), (25, 5)], 0),
     ],
 )
