@@ -11,7 +11,7 @@ from bezierplan.analysis import table_kinds
 from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.figures import panels
+from bezierplan.figures import figure, panels
 from bezierplan.places import TREE
 from bezierplan.running import columns
 from bezierplan.schema.model import Model, keys
@@ -38,7 +38,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A **table** has `kind`, and by kind", table_kinds.TABLES),
         ("An entry of a table's `values`", table_kinds.TableValue),
         ("An entry of a table's `monotone`", table_kinds.Monotone),
-        ("A **figure**", artefacts.Figure),
+        ("A **figure**", figure.Figure),
         ("A panel has `kind`, and by kind", panels.kinds()),
     ],
     "claims": [

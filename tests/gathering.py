@@ -21,13 +21,14 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import yaml
 
+from bezierplan.analysis.jobs import Job
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems, rows
 from bezierplan.running.inputs import experiments
 from bezierplan.study import jobs, page, reading
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
-from bezierplan.study.jobs import Job, Studies
+from bezierplan.study.jobs import Studies
 
 METHODS = ("pso", "cpso1_singer", "cpso2_singer", "ferguson")
 PLACES = ("equal", "public")

@@ -104,6 +104,6 @@ def test_mutation_changes_one_digit():
 
 def test_figures_may_show_baselines_by_name():
     own = study("elhoseny2017")
-    assert jobs.methods_shown(own, "figure7")["fields100"] == ["straight_line"]
-    assert jobs.methods_shown(own, "figure10")["fields100"] == ["prm", "abc_ep", "ga", "mga"]
+    assert jobs.methods_of_artefact(own, "figure7")["fields100"] == ["straight_line"]
+    assert jobs.methods_of_artefact(own, "figure10")["fields100"] == ["prm", "abc_ep", "ga", "mga"]
     assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"].title)

@@ -14,6 +14,7 @@ from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
 from studies import studies, study
 
+from bezierplan.figures.page import changes
 from bezierplan.running.inputs import BEYOND, PAPER
 from bezierplan.running.jobs import log
 from bezierplan.schema.checked import Fault
@@ -44,9 +45,9 @@ def test_names_of_studies_of_the_project_and_fresh_ones_are_taken(tmp_path):
     ("key", "reason"),
     [
         *((key, f"{key}: not a name of a study") for key in ("x[1]", "{scale}", "a b", "2016")),
-        *((key, f"{key}: the workflow has a target of this name already") for key in RULES),
-        ("song2016_table1", "song2016_table1: study song2016 has a target of this name already"),
-        ("song2016_beyond", "song2016_beyond: study song2016 has a target of this name already"),
+        *((key, f"{key}: a target has this name already") for key in RULES),
+        ("song2016_table1", "song2016_table1: a target has this name already"),
+        ("song2016_beyond", "song2016_beyond: a target has this name already"),
         ("song2016", "has a study song2016 already, whose results this one would overwrite"),
     ],
 )
@@ -66,11 +67,15 @@ def test_caption_is_one_line_that_says_just_what_it_says():
     assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"
 
 
+def _changes(own):
+    return changes(own.key, page.settings_of(own))
+
+
 def test_a_study_with_another_setting_is_marked_as_changed():
     """The others are not: the settings of the outcome are those of today."""
-    assert [own.key for own in studies().values() if page.changed(own)] == []
+    assert [own.key for own in studies().values() if _changes(own)] == []
     turned = SONG.but(settings=SONG.settings | {"population": 198})
-    assert "population of smooth is 198, in the README's outcome 200" in page.changed(turned)
+    assert "population of smooth is 198, in the README's outcome 200" in _changes(turned)
 
 
 # Files that jobs write

@@ -9,9 +9,9 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import kinds
 from bezierplan.commands import studies_of, study_named
 from bezierplan.figures import panels
+from bezierplan.figures.page import in_printed_order
 from bezierplan.planners import known_planners, planner_module, planner_settings
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
 from bezierplan.workspaces import kinds as workspace_kinds
 

@@ -81,15 +81,13 @@ def text_of(file: Path, location: str) -> str:
     of at most `LONGEST_FILE` bytes.
     """
     try:
-        if not file.is_file():
-            raise Fault(f"{location}: {'not a regular file' if file.exists() else 'no such file'}")
         if (size := file.stat().st_size) > LONGEST_FILE:
             raise Fault(f"{location}: {size} bytes; expected at most {LONGEST_FILE}")
         return file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise Fault(f"{location}: cannot be read; expected text in UTF-8") from None
     except OSError as error:
-        raise Fault(f"{location}: cannot be read ({type(error).__name__})") from None
+        raise Fault(f"{location}: {error.strerror}") from None
 
 
 def parse(text: str, location: str) -> Any:

@@ -52,8 +52,6 @@ class Model(BaseModel):
         for key, field in fields.items():
             if field.is_required() and key not in content:
                 raise wrong(f"{key}: missing key; {field.description}")
-            if key in content and content[key] is None:
-                raise wrong(f"{key}: has no value; expected {field.description}")
         return content
 
     @field_validator("*", mode="wrap")
@@ -110,7 +108,10 @@ def sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str
         places = {each["loc"][:2] for each in error.errors(include_url=False)}
     for key, name in sorted((place for place in places if len(place) == 2), reverse=True):
         del content[key][name]
-    return parsed(model, content, location), fault.lines, [str(each[-1]) for each in places]
+    try:
+        return model.model_validate(content), fault.lines, [str(each[-1]) for each in places]
+    except ValidationError:
+        raise fault from None
 
 
 def fault_of(error: ValidationError, *location: str) -> Fault:

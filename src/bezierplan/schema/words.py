@@ -1,22 +1,7 @@
-"""Words for people: those of unknown origin as one line that no terminal and no log is harmed by,
-and amounts with their units.
-"""
+"""Words of unknown origin as one line that no terminal and no log is harmed by."""
 
 LONGEST = 500
 """Characters of the longest text of an exception that is shown."""
-
-# Units with a plural; others are abbreviations, such as m.
-_WORDS = ("unit", "cell", "step")
-
-
-def amount(number: str, unit: str) -> str:
-    """A number, as printed, with its unit.
-
-    >>> amount("1", "cell"), amount("21.83", "cell"), amount("0.5", "m")
-    ('1 cell', '21.83 cells', '0.5 m')
-    """
-    one = abs(float(number.replace(",", ""))) == 1
-    return f"{number} {unit}{'s' if unit in _WORDS and not one else ''}"
 
 
 def plain(text: str, most: int | None = None) -> str:

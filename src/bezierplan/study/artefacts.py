@@ -1,84 +1,16 @@
-"""Models of `artefacts.yaml`: tables and figures, and how names are printed."""
+"""Models of `artefacts.yaml`: tables and figures, and how names are printed; and of the
+configuration. Kinds of table and figures are defined next to the code that makes them.
+"""
 
-import re
-from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError
+from pydantic import Field
 
 from bezierplan.analysis.table_kinds import TABLES, Table
 from bezierplan.figures import style
-from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
-from bezierplan.schema.model import (
-    Line,
-    Model,
-    Name,
-    Setting,
-    expected,
-    listed,
-    mapping_or,
-    one_of,
-    shown,
-    wrong,
-)
+from bezierplan.figures.figure import Figure
+from bezierplan.schema.model import Line, Model, Name, Setting, listed, mapping_or, one_of
 from bezierplan.study.experiments import Settings
-
-_PANELS = TypeAdapter(dict[str, Annotated[Panel, one_of("kind", kinds())]])
-_PARTS = TypeAdapter(
-    Annotated[list[dict[str, Any]], Field(min_length=2)], config=ConfigDict(strict=True)
-)
-
-
-def _joined(part: dict[str, Any], shared: dict[str, Any]) -> dict[str, Any]:
-    """The keys of both; mappings that stand in both are joined likewise."""
-    both = {
-        key: _joined(part[key], shared[key])
-        for key in part.keys() & shared.keys()
-        if isinstance(part[key], dict) and isinstance(shared[key], dict)
-    }
-    return shared | part | both
-
-
-def _expanded(place: int, entry: Any) -> dict[str, Any]:
-    """What an entry at a place in a list of panels stands for, by the keys that lead there."""
-    if not isinstance(entry, dict) or "each" not in entry:
-        return {f"{place}": entry}
-    shared = {key: value for key, value in entry.items() if key != "each"}
-    try:
-        parts = _PARTS.validate_python(entry["each"])
-    except ValidationError:
-        raise wrong(f"each: {shown(entry['each'])}: expected {EACH}") from None
-    return {f"{place}: each: {n}": _joined(part, shared) for n, part in enumerate(parts)}
-
-
-def _panels(entries: Any) -> list[Panel]:
-    """The panels of a figure, each with its place in the list of the file."""
-    if not isinstance(entries, list) or not entries:
-        raise expected("a list of panels")
-    placed: dict[str, Any] = {}
-    for number, entry in enumerate(entries):
-        placed |= _expanded(number, entry)
-    panels = _PANELS.validate_python(placed)
-    for place, panel in panels.items():
-        panel._place = place
-    if len(panels) > MOST_PANELS:
-        raise wrong(f"{len(panels)} panels; expected at most {MOST_PANELS}, one a letter")
-    return [*panels.values()]
-
-
-class Figure(Model):
-    """Panels on one sheet."""
-
-    title: Line = Field(description="one line")
-    columns: Literal[1, 2, 3, 4, 5] = Field(description="panels side by side, 1 to 5")
-    width: Literal["one", "two"] = Field(
-        "two", description="of the sheet, in columns of a journal: one (8.5 cm) or two (17 cm)"
-    )
-    panels: Annotated[list[Panel], PlainValidator(_panels)] = Field(description="a list of panels")
-    mirrors: Line = Field(
-        None,
-        description="for the caption: what the paper's figure shows, and whether this one does",
-    )
 
 
 class ArtefactsFile(Model):
@@ -109,19 +41,3 @@ class ConfigFile(Model):
         description="study → settings that override those of the same name in its "
         "`experiments.yaml`",
     )
-
-
-def in_printed_order(names: Iterable[str]) -> list[str]:
-    """Names of tables and figures with the numbered ones first, tables before figures, each by its
-    number; the others as they were.
-
-    >>> in_printed_order(["work", "figure11", "figure2", "table6", "table4"])
-    ['table4', 'table6', 'figure2', 'figure11', 'work']
-    """
-    numbered = {
-        name: found for name in names if (found := re.fullmatch(r"(table|figure)(\d+)", name))
-    }
-    first = sorted(
-        numbered, key=lambda name: (numbered[name][1] != "table", int(numbered[name][2]))
-    )
-    return [*first, *(name for name in names if name not in numbered)]

@@ -15,6 +15,7 @@ from bezierplan.analysis import metrics, statistics, study_code
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, Table
+from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import columns, worlds
@@ -22,11 +23,10 @@ from bezierplan.running.chunk import conditions
 from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
-from bezierplan.schema.checked import Fault, check_known, closest
+from bezierplan.schema.checked import Fault, check_known
 from bezierplan.schema.model import Model, fault_of, named, one_or_list
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, with_alternative
-from bezierplan.study.artefacts import Figure
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.design import Design, design, together
@@ -152,9 +152,8 @@ class Checks:
         location = f"planner: {method.planner}"
         if is_file(method.planner):
             inside(self.study.folder, method.planner, location)
-        elif method.planner not in known_planners():
-            own = f"one of your own is a file, {method.planner}.py"
-            raise Fault(f"{location}: unknown{closest(method.planner, known_planners())}; {own}")
+        else:
+            check_known(method.planner, known_planners(), "planner", f"{method.planner}.py")
         module = interface.loaded(self.study.planner(name), location)
         for setting in RESERVED & set(planner_settings(module)):
             raise Fault(

@@ -7,7 +7,6 @@ from pydantic import Field, model_validator
 
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.schema.model import (
-    MOST,
     Count,
     Line,
     Model,
@@ -35,21 +34,13 @@ Settings = dict[Name, Setting]
 PART = r"[A-Za-z0-9_.+-]+"
 """What a value must be like to be part of the name of a run or of a folder."""
 PART_EXPECTED = "a word of letters, digits, _, ., + and -"
+Part = Annotated[str, matching(PART, PART_EXPECTED)]
+Scales = Annotated[dict[Literal[SCALES], Count], Field(min_length=len(SCALES))]
+"""A number for each scale."""
 ProblemName = Annotated[
     str, matching(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")
 ]
 Point = Annotated[list[Number], of_length(2, "[x, y]")]
-
-
-class Scales(Model):
-    """A number for each scale."""
-
-    smoke: Count = Field(description=f"a whole number from 1 to {MOST}")
-    full: Count = Field(description=f"a whole number from 1 to {MOST}")
-    extended: Count = Field(description=f"a whole number from 1 to {MOST}")
-
-    def __getitem__(self, scale: str) -> int:
-        return getattr(self, scale)
 
 
 class Method(Model):
@@ -110,7 +101,7 @@ class Problem(Model):
         description="the side of a random field or of a map of blocks in cells, a whole "
         "number from 1 to 5000",
     )
-    route: Annotated[str, matching(PART, PART_EXPECTED)] = Field(
+    route: Part = Field(
         None,
         description="a name for start and target together, a column of the runs table: "
         f"{PART_EXPECTED}",
@@ -154,7 +145,7 @@ class Experiment(Model):
         description="how many repeats one job runs, for smoke, "
         "full and extended, at most all of them"
     )
-    fewer: dict[Name, dict[Annotated[str, matching(PART, PART_EXPECTED)], Count]] = Field(
+    fewer: dict[Name, dict[Part, Count]] = Field(
         {},
         description="where fewer runs suffice at scale extended: `method`, `problem`, or a varied "
         "setting or preset → value → repeats, a multiple of the chunk",
@@ -169,13 +160,13 @@ class Experiment(Model):
                     "always runs whole"
                 )
                 raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {most}")
+        chunk, most = self.chunk["extended"], self.repeats["extended"]
         for factor, fewer in self.fewer.items():
             for name, count in fewer.items():
-                if count % self.chunk.extended or count >= self.repeats.extended:
+                if count % chunk or count >= most:
                     raise wrong(
-                        f"fewer: {factor}: {name}: {count}: expected a multiple of "
-                        f"{self.chunk.extended}, the chunk, below {self.repeats.extended}, the "
-                        "repeats"
+                        f"fewer: {factor}: {name}: {count}: expected a multiple of {chunk}, the "
+                        f"chunk, below {most}, the repeats"
                     )
         for setting, values in self.vary.items():
             if odd := [each for each in values if not re.fullmatch(PART, str(each))]:
@@ -246,7 +237,7 @@ class ExperimentsFile(Model):
         "are no defaults. Under the name of a planner: settings of its methods alone, which take "
         "precedence over the others, such as `prm: {samples: 50}`"
     )
-    presets: dict[Name, dict[Annotated[str, matching(PART, PART_EXPECTED)], Settings]] = Field(
+    presets: dict[Name, dict[Part, Settings]] = Field(
         {},
         description="name → value → settings that go with it: a bundle that an experiment can "
         "vary like a setting, such as "

@@ -10,13 +10,9 @@ def inside(folder: Path, name: str, location: str) -> Path:
     a regular file, or lies outside the folder, also through a link.
     """
     file = folder / name
-    try:
-        lies_inside, missing = file.resolve().is_relative_to(folder.resolve()), not file.is_file()
-    except (OSError, ValueError) as error:
-        raise Fault(f"{location}: cannot be read ({type(error).__name__})") from None
-    if not lies_inside:
+    if not file.resolve().is_relative_to(folder.resolve()):
         raise Fault(f"{location}: lies outside the study's folder; expected a file in it")
-    if missing:
+    if not file.is_file():
         reason = "not a regular file" if file.exists() else "no such file"
         raise Fault(f"{location}: {reason} in {file.parent.name or file.parent}")
     return file

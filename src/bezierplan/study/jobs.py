@@ -25,6 +25,7 @@ from bezierplan.analysis.jobs import (
 )
 from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.figures import style
+from bezierplan.figures.figure import Figure as FigureOfStudy
 from bezierplan.figures.jobs import Figure
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
@@ -32,7 +33,6 @@ from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
-from bezierplan.study.artefacts import Figure as FigureOfStudy
 from bezierplan.study.definition import Study, relative
 
 Studies = dict[str, Study]
@@ -148,7 +148,7 @@ def judgement(study: Study, scale: str, experiment: str, method: str) -> Judgeme
 # Tables and figures
 
 
-def methods_shown(study: Study, artefact: str) -> dict[str, list[str]]:
+def methods_of_artefact(study: Study, artefact: str) -> dict[str, list[str]]:
     """By experiment, the methods whose runs an artefact needs: for a table of the paper's form
     those it selects, for another all (the comparison shows them), for a figure those it selects,
     including baselines if named.
@@ -176,7 +176,7 @@ def shown_by(study: Study, artefact: str, scale: str) -> Shows:
     """The results that a table or figure shows."""
     return {
         name: chunks_of(study, name, methods, scale)
-        for name, methods in methods_shown(study, artefact).items()
+        for name, methods in methods_of_artefact(study, artefact).items()
     }
 
 
@@ -194,7 +194,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     if spec.get("kind") == "function" or any("data" in panel for panel in panels):
         return study.labels
     shown = {panel["method"] for panel in panels if "method" in panel}
-    for experiment in methods_shown(study, artefact):
+    for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
         shown |= {*study.methods_of(experiment), *content.problems}
         shown |= {str(value) for values in content.vary.values() for value in values}
@@ -246,7 +246,7 @@ def latex(study: Study, scale: str, table: str) -> Latex:
 
 def figure(study: Study, scale: str, figure: str) -> Figure:
     """The figure of a name."""
-    spec, shown = study.figures[figure], methods_shown(study, figure)
+    spec, shown = study.figures[figure], methods_of_artefact(study, figure)
     again = {panel.experiment for panel in spec.panels if panel.rerun}
     bare = workspaces_of_figure(study, figure)
     any_method = any(getattr(panel, "data", None) for panel in spec.panels)
@@ -287,7 +287,7 @@ def caption(study: Study, artefact: str, scale: str) -> str:
     """
     spec = study.tables.get(artefact) or study.figures[artefact]
     sentences = [spec.title, getattr(spec, "mirrors", None)]
-    for experiment in methods_shown(study, artefact):
+    for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
         most = "at most " if scale == "extended" and content.fewer else ""
         repeats = content.repeats[scale]

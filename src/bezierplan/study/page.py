@@ -1,13 +1,11 @@
 """The jobs that show all results of a scale: the page, and the check of what it shows."""
 
-import csv
 from pathlib import Path
 
 from bezierplan.analysis.jobs import Verified
 from bezierplan.figures.jobs import Page
-from bezierplan.figures.page import OUTCOME, files
+from bezierplan.figures.page import OUTCOME, changes, files, in_printed_order
 from bezierplan.figures.page.page_job import (
-    AssumptionView,
     Citation,
     FigureView,
     MethodView,
@@ -15,16 +13,12 @@ from bezierplan.figures.page.page_job import (
     StudyView,
     TableView,
 )
-from bezierplan.places import STUDIES, TREE
+from bezierplan.places import STUDIES
 from bezierplan.running.inputs import BEYOND, PAPER, Shows
 from bezierplan.study import jobs
 from bezierplan.study.alternatives import default_of
-from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import Studies
-
-SETTINGS = TREE / "docs" / "outcome" / "settings.csv"
-"""The settings of all studies behind the README's outcome."""
 
 
 def shown_of(study: Study, scale: str, root: str = "") -> list[str]:
@@ -82,19 +76,18 @@ def _outcome(studies: Studies, scale: str) -> list[str]:
     """Files of the README's outcome, of scale extended, which the page of any other scale shows
     first, in a clone that has them; none if it shows none of the papers.
     """
-    papers = any(study.folder.resolve().is_relative_to(STUDIES) for study in studies.values())
+    papers = any(map(_of_project, studies.values()))
     shown = scale != "extended" and papers and all(file.is_file() for file in OUTCOME)
     return [*map(str, OUTCOME)] if shown else []
+
+
+def _of_project(study: Study) -> bool:
+    return study.folder.resolve().is_relative_to(STUDIES)
 
 
 def _study(study: Study, scale: str, root: str) -> StudyView:
     """What the page needs of a study beside its results."""
     names, paper = shown_of(study, scale, root), study.paper
-    there = {
-        "claims": bool(study.claims),
-        "checks": bool(study.claims),
-        "audit": has_audit(study),
-    }
     behind = {
         name: (
             [method for method in study.methods_of(name) if method not in study.baselines],
@@ -128,14 +121,10 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
             if (figure := study.figures.get(name))
         },
         assumptions=[
-            AssumptionView(
-                **{name: getattr(each, name) for name in AssumptionView._fields}
-                | {"default": default_of(study, each)}
-            )
-            for each in study.assumptions
+            dict(each) | {"default": default_of(study, each)} for each in study.assumptions
         ],
-        files=[name for name, of in there.items() if of],
-        changes=changed(study),
+        files=[*(["claims", "checks"] if study.claims else []), *(["audit"] * has_audit(study))],
+        changes=changes(study.key, settings_of(study)) if _of_project(study) else [],
         experiments=behind,
     )
 
@@ -146,19 +135,6 @@ def settings_of(study: Study) -> list[tuple[str, str, str]]:
         (method, setting, str(value))
         for method in study.methods
         for setting, value in study.resolved(method).items()
-    ]
-
-
-def changed(study: Study) -> list[str]:
-    """The settings of a study of this project that are not those of the README's outcome."""
-    if not SETTINGS.is_file() or not study.folder.resolve().is_relative_to(STUDIES):
-        return []
-    with SETTINGS.open(encoding="utf-8", newline="") as rows:
-        before = {(m, s): value for key, m, s, value in csv.reader(rows) if key == study.key}
-    return [
-        f"{setting} of {method} is {value}, in the README's outcome {before.get(place, 'absent')}"
-        for method, setting, value in settings_of(study)
-        if before.get(place := (method, setting)) != value
     ]
 
 

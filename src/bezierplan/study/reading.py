@@ -147,7 +147,7 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
     """Raise Fault for a study whose results or targets would clash with others. taken: names of
     rules and other targets.
     """
-    owners = dict.fromkeys(taken, "the workflow")
+    targets = {*taken}
     for key, study in given.items():
         location = relative(study.folder)
         check_name(key, f"{location}: {key}")
@@ -156,14 +156,10 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
                 f"{location}: config/studies has a study {key} already, whose results this one "
                 "would overwrite; rename the folder"
             )
-        items = ["beyond", *study.tables, *study.figures]
-        for target in [key, *(f"{key}_{item}" for item in items)]:
-            if target in owners:
-                raise Fault(
-                    f"{location}: {target}: {owners[target]} has a target of this name already; "
-                    "rename the folder"
-                )
-            owners[target] = f"study {key}"
+        own = [key, *(f"{key}_{item}" for item in ("beyond", *study.tables, *study.figures))]
+        for target in targets.intersection(own):
+            raise Fault(f"{location}: {target}: a target has this name already; rename the folder")
+        targets.update(own)
 
 
 def check_name(key: str, location: str) -> None:

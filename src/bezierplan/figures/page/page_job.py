@@ -43,18 +43,6 @@ class TableView(NamedTuple):
     """Those with which the table is made."""
 
 
-class AssumptionView(NamedTuple):
-    """A detail that a paper leaves open."""
-
-    id: str
-    detail: str
-    default: Any
-    alternatives: list[Any]
-    reason: str
-    source: str
-    setting: str | None
-
-
 class ExperimentView(NamedTuple):
     """An experiment whose runs the viewer shows."""
 
@@ -88,7 +76,8 @@ class StudyView(NamedTuple):
     """
     tables: dict[str, TableView]
     figures: dict[str, FigureView]
-    assumptions: list[AssumptionView]
+    assumptions: list[dict[str, Any]]
+    """Details that the paper leaves open: the keys of their file, with the default in use."""
     files: list[str]
     """Which of `FILES` there are."""
     changes: list[str]

@@ -71,7 +71,7 @@ def studies(
             tables=own_tables,
             figures=[_figure(key, name, each, folder) for name, each in described.figures.items()],
             methods=[_method(key, name, each) for name, each in described.methods.items()],
-            assumptions=[_assumption(key, each._asdict()) for each in described.assumptions],
+            assumptions=[_assumption(key, each) for each in described.assumptions],
             audit=records(files.get("audit", pd.DataFrame())),
             baseline=with_corners(baseline) if len(baseline) else [],
             baseline_in_words=baseline_comparison.sentence(baseline) if len(baseline) else "",

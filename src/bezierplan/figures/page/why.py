@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from bezierplan.analysis.claims.check import Check, OfRuns, PublishedMargin
 from bezierplan.analysis.claims.kinds import share
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.schema.words import amount
+from bezierplan.figures.amounts import amount
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds import difference, equal_within, function, trend

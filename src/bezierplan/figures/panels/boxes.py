@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import glance, style
+from bezierplan.figures.amounts import amount
 from bezierplan.figures.groups import (
     LIMITS,
     axis_label,
@@ -24,7 +25,6 @@ from bezierplan.figures.groups import (
 )
 from bezierplan.figures.panels import MetricPanel, Note
 from bezierplan.schema.model import Column, Number
-from bezierplan.schema.words import amount
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
+from bezierplan.figures.amounts import amount
 from bezierplan.figures.groups import axis_label, counts, published
 from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, exactly_one, only
 from bezierplan.figures.panels import workspace as workspaces
@@ -30,7 +31,6 @@ from bezierplan.schema.model import (
     PrintedTable,
     wrong,
 )
-from bezierplan.schema.words import amount
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.problem import Path, Workspace

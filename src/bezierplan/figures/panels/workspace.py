@@ -9,10 +9,10 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
+from bezierplan.figures.amounts import amount
 from bezierplan.figures.panels import Note, Panel, RunsPanel, Sources
 from bezierplan.schema.model import Flag
 from bezierplan.schema.model import Workspace as Described
-from bezierplan.schema.words import amount
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells
