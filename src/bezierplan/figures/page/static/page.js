@@ -162,7 +162,7 @@ for (const filter of document.querySelectorAll(".filter")) {
 // Search: entries in which most of the words begin a word of theirs; of these, first the ones whose shown text has the words themselves.
 // An entry is an element with data-finds, its kind and further words that find it; or a run.
 
-let index;
+let index, unpacked = false; // Runs are entries, too: there is no search before they are unpacked.
 const EMPTY = new Set("a an and are by can did do does for how i in is it its me my of on or s should the to was were what which with".split(" "));
 const LATER = ["method", "comparison", "underspecified detail"];
 const wordsOf = (text) => text.toLowerCase().split(/[^\p{L}\p{N}-]+/u).filter(Boolean);
@@ -173,7 +173,7 @@ function shownText(element, more) {
   if (element.tagName === "DT") return `${element.textContent.trim()}: ${element.nextElementSibling.textContent}`;
   if (element.tagName === "TR") return more;
   if (element.tagName === "P") return element.textContent;
-  const parts = [...element.querySelectorAll(":scope > summary > .id, :scope > summary > .statement, :scope > h2, :scope > figcaption > strong")];
+  const parts = [...element.querySelectorAll(":scope > summary > .id, :scope > summary > .statement, :scope > :is(h1, h2), :scope > figcaption > strong")];
   return [...parts.map((part) => part.textContent), element.tagName === "FIGURE" ? more : ""].join(" ");
 }
 
@@ -187,22 +187,23 @@ function entriesOfPage() {
 function entriesOfRuns() {
   return Object.entries(data.studies).flatMap(([study, { shown, labels }]) => shown.flatMap((each) => {
     const name = (word) => labels[word] ?? word.replaceAll("_", " ");
-    const where = each.problem ? `on ${name(each.problem)}` : "on all problems";
+    const where = (run) => (each.problem ? `on ${name(each.problem)}` : `of all problems, on ${name(data.runs[run].problem.split("/").at(-1))}`);
     const runs = [["best feasible run", each.best], ["median feasible run", each.median], ["worst feasible run", each.worst],
       [`failed run (${each.count - each.feasible} of ${each.count} fail), worst`, each.failed[0]]];
     return runs.filter(([, run]) => run).map(([which, run]) => (
-      ["path", run, `${which} of ${name(each.method)} ${where}, ${name(each.experiment)}`, `${study} ${each.method}`, Boolean(each.problem)]));
+      ["path", run, `${which} of ${name(each.method)} ${where(run)}, ${name(each.experiment)}`, `${study} ${each.method}`, Boolean(each.problem)]));
   }));
 }
 
 function search() {
+  if (!unpacked) return;
   const words = wordsOf(query.value).filter((word) => !EMPTY.has(word));
   index ??= [...entriesOfPage(), ...entriesOfRuns()].map(([kind, address, text, more, later]) => (
     { kind, address, text, later, all: ` ${wordsOf(`${kind} ${address} ${text} ${more}`).join(" ")} `, own: ` ${wordsOf(text).join(" ")} ` }));
   const scored = index.map((each) => [words.filter((word) => each.all.includes(/^\d+$/.test(word) ? ` ${word} ` : ` ${word}`)).length, each]);
   const most = Math.max(...scored.map(([score]) => score));
   const matching = most ? scored.filter(([score]) => score === most).map(([, each]) => each) : [];
-  const rank = (each) => (each.kind === "section" ? -1 : 0) + (each.kind === "word" && words.includes(wordsOf(each.text)[0]) ? -3 : 0) + (each.own.startsWith(` ${words.join(" ")} `) ? -3 : 0) + (each.later ? 2 : 0) + (words.every((word) => wordsOf(each.text).includes(word)) ? 0 : 1);
+  const rank = (each) => (each.kind === "section" ? -1 : 0) + (each.kind === "word" && words.includes(wordsOf(each.text)[0]) ? -3 : 0) + (each.own.startsWith(` ${words.join(" ")} `) ? -3 : 0) + (each.later ? 2 : 0) + (words.every((word) => wordsOf(each.text).includes(word)) ? 0 : 3);
   const best = matching.map((each) => [rank(each), each]).sort((one, other) => one[0] - other[0]).slice(0, 30);
   hits.replaceChildren(...best.map(([, each]) => {
     const link = Object.assign(document.createElement("a"), { href: `#${encodeURI(each.address)}`, textContent: each.text });

@@ -14,6 +14,8 @@ async function unpackPictures() {
 }
 
 const data = JSON.parse(await unpack(find("page-data").textContent));
+unpacked = true;
+if (query.value) search();
 const form = document.getElementById("viewer");
 const SVG = "http://www.w3.org/2000/svg";
 const ALL = "all problems";
