@@ -195,7 +195,7 @@ def test_answers_are_two_clicks_or_one_search_from_home(tab, subtests):
 
 
 PAGES = [
-    *("index", "use", "gallery", "cite", "verdicts", "start", "papers/song2016"),
+    *("index", "use", "gallery", "cite", "verdicts", "papers/song2016"),
     *("methods/ant_colony", "methods/index"),
 ]
 
