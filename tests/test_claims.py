@@ -19,7 +19,7 @@ from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import trend
 from bezierplan.analysis.claims.material import Shown
 from bezierplan.analysis.claims.ranks import signed_rank_test
-from bezierplan.analysis.claims.verdicts import Marked
+from bezierplan.analysis.claims.verdicts import Entry
 from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
 from bezierplan.schema import checked
@@ -496,7 +496,7 @@ def test_an_effect_below_the_margin_is_no_support():
 )
 def test_words_for_where_a_claim_holds(holding, words):
     found = [
-        Marked(
+        Entry(
             {"against": rival, "group": "mga", "workspace": workspace},
             "+" if f"{rival} {workspace}" in holding else "-",
         )
@@ -507,23 +507,21 @@ def test_words_for_where_a_claim_holds(holding, words):
 
 def test_words_for_columns_and_for_what_stays_mixed():
     found = [
-        Marked({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)
+        Entry({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)
     ]
     assert verdicts.where_it_holds(found, {}) == "at obstacles other than 5"
     mixed = [
-        Marked({"method": name}, mark)
+        Entry({"method": name}, mark)
         for name, marks in (("a", "++"), ("b", "+-"))
         for mark in marks
     ]
     assert verdicts.where_it_holds(mixed, {}) == "for a; for b in 1 of 2"
-    assert (
-        verdicts.where_it_holds([Marked({}, "+"), Marked({"against": 1}, "-")], {}) == "in 1 of 2"
-    )
+    assert verdicts.where_it_holds([Entry({}, "+"), Entry({"against": 1}, "-")], {}) == "in 1 of 2"
 
 
 def test_words_for_many_rivals_name_the_exceptions():
     maps = [
-        Marked({"against": name}, "-" if name in ("circle", "sinusoidal") else "+")
+        Entry({"against": name}, "-" if name in ("circle", "sinusoidal") else "+")
         for name in ("gauss", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal")
     ]
     labels = {"circle": "Circle", "sinusoidal": "Sinusoidal"}

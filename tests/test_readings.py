@@ -86,7 +86,7 @@ def test_the_search_finds_a_hidden_reading_and_no_excluded_one(monkeypatch):
         def __init__(self):
             self.choices = choices
 
-        def results(self, reading, hidden=None):
+        def results(self, reading, layout=None):
             return None if reading == {"O1": 1, "O2": 1} else reading
 
     def measured(voting, reading):

@@ -13,7 +13,7 @@ __all__ = [  # names of `api`, found by `__getattr__`
     "Answer",
     "Circles",
     "Grid",
-    "Judged",
+    "Judgement",
     "Path",
     "Polygons",
     "Problem",

@@ -43,7 +43,7 @@ Method = str | Callable[..., Any] | ModuleType
 
 
 @dataclass(frozen=True, kw_only=True)
-class Judged:
+class Judgement:
     """A path and the certified checker's verdict on it.
 
     Attributes
@@ -176,7 +176,7 @@ class Judged:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(Judged):
+class Answer(Judgement):
     """What a method answered to a problem, with the certified checker's verdict.
 
     Attributes
@@ -309,7 +309,7 @@ def _bound(problem: Problem) -> tuple[Problem, shortest_paths.Bound]:
     return home, shortest_paths.shortest_path(home)
 
 
-def check(problem: Problem, path: Path) -> Judged:
+def check(problem: Problem, path: Path) -> Judgement:
     """Judge any path by exact geometry.
 
     Parameters
@@ -320,7 +320,7 @@ def check(problem: Problem, path: Path) -> Judged:
 
     Returns
     -------
-    Judged
+    Judgement
 
     Raises
     ------
@@ -343,7 +343,7 @@ def check(problem: Problem, path: Path) -> Judged:
     if not _are_numbers(path.points, len(path.points), 2):
         raise ValueError("path: points: expected an array of numbers, (n, 2)")
     plain = path_of(Path(path.curve, np.array(path.points, dtype=float)))
-    return Judged(**answers.verdict(*_bound(problem), plain) | {"path": path})
+    return Judgement(**answers.verdict(*_bound(problem), plain) | {"path": path})
 
 
 def plan(
@@ -658,6 +658,6 @@ def replay(run: str) -> Answer:
     return answer_of(reproduced, run)
 
 
-def answer_of(reproduced: Any, run: str) -> Answer:
+def answer_of(rerun: Any, run: str) -> Answer:
     """The answer in the results of one run, by its name."""
-    return Answer(**answers.of_run(reproduced, run))
+    return Answer(**answers.of_run(rerun, run))

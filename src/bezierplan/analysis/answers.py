@@ -25,7 +25,7 @@ OF_PLANNERS = {"claimed_feasible": bool, "objective": float, "evaluations": int,
 
 
 def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None) -> dict[str, Any]:
-    """The fields of `api.Judged` for a path, or for none. shortest: the exact shortest path."""
+    """The fields of `api.Judgement` for a path, or for none. shortest: the exact shortest path."""
     grown = grown_of(problem.workspace)
     fields: dict[str, Any] = {
         "problem": problem,

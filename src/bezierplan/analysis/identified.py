@@ -42,7 +42,7 @@ MOST_PATHS = 10_000
 _ROUNDING = 1e-9
 
 
-class Identified(NamedTuple):
+class Identification(NamedTuple):
     """Paths whose length rounds to a printed one.
 
     paths: the cells of each of those with fewest edges, or numbers of moves. chance: share of the
@@ -98,7 +98,7 @@ def applies(entry: Identify, row: dict) -> bool:
     return all(row.get(column) in one_or_list(wanted) for column, wanted in where.items())
 
 
-def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Identified | None:
+def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Identification | None:
     """The free polylines of at most so many edges from start to target whose length is printed so,
     in the problem's unit; None unless both are centres of cells of a grid.
     """
@@ -119,14 +119,14 @@ def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Ide
     every = np.unique(np.concatenate([level[last] for level in reached]))
     paths = _paths(ways, reached, last, printed, half)
     legs = itertools.pairwise(paths[0]) if paths else ()
-    return Identified(
+    return Identification(
         [tuple(int(ways.cells[place]) for place in path) for path in paths],
         _chance(every, printed, half),
         sum(ways.lengths[one, other] for one, other in legs) if paths else math.nan,
     )
 
 
-def of_moves(problem: Problem, value: float, diagonal: float) -> Identified:
+def of_moves(problem: Problem, value: float, diagonal: float) -> Identification:
     """The straight and diagonal moves from start to target whose length is printed so, up to the
     decimals of the diagonal move: those beyond are cut off.
 
@@ -149,10 +149,12 @@ def of_moves(problem: Problem, value: float, diagonal: float) -> Identified:
     paths = [moves[each] for each in np.flatnonzero(_near(lengths, printed, unit / 2))]
     length = paths[0][0] + diagonal * paths[0][1] if paths else math.nan
     chance = _chance(np.sort(lengths), printed, unit / 2)
-    return Identified(paths, chance, length, f"straight moves and diagonal ones of {diagonal:g}:")
+    return Identification(
+        paths, chance, length, f"straight moves and diagonal ones of {diagonal:g}:"
+    )
 
 
-def sought(entry: Identify, problem: Problem, value: float, decimals: int) -> Identified | None:
+def sought(entry: Identify, problem: Problem, value: float, decimals: int) -> Identification | None:
     """The paths that a declaration names, of a length that is printed so."""
     if entry.diagonal is None:
         return in_problem(problem, value, decimals, entry.edges)
@@ -164,7 +166,7 @@ def _ways_of(cells: bytes, shape: tuple[int, int]) -> Ways:
     return ways(Grid(np.frombuffer(cells, dtype=bool).reshape(shape), 1.0, ""))
 
 
-def in_words(identification: Identified) -> str:
+def in_words(identification: Identification) -> str:
     """The paths and the chance of a match."""
     shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
     more = len(identification.paths) - len(shown)

@@ -193,25 +193,23 @@ def under(chunk: Chunk, reading: Reading, choices: list[Choice]) -> Chunk:
 
 
 class Runner(NamedTuple):
-    """Makes the runs of readings. found: experiment -> problems by name, and their bounds, under
-    the default.
-    """
+    """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds."""
 
     choices: list[Choice]
     experiments: dict[str, Experiment]
     folder: Path
-    found: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
+    defaults: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
 
-    def results(self, reading: Reading, hidden: int | None = None) -> dict[str, Results] | None:
+    def results(self, reading: Reading, layout: int | None = None) -> dict[str, Results] | None:
         """By experiment: those that score a reading, or those that print the numbers of a hidden
         one; None if its settings exclude each other.
         """
         results = {}
         for name, each in self.experiments.items():
-            chunks = each.scoring if hidden is None else each.printing
+            chunks = each.scoring if layout is None else each.printing
             chunks = [under(chunk, reading, self.choices) for chunk in chunks.values()]
-            if hidden is not None:
-                chunks = [_in_layout(chunk, hidden) for chunk in chunks]
+            if layout is not None:
+                chunks = [_in_layout(chunk, layout) for chunk in chunks]
             try:
                 for chunk in chunks:
                     for place in chunk.problems.values():
@@ -237,7 +235,7 @@ class Runner(NamedTuple):
             if name in described.workspaces
         }
         if not changed:
-            return self.found[experiment]
+            return self.defaults[experiment]
         wanted = {name: described.problems[name] for name in names}
         homes = {place["workspace"] for place in wanted.values()}
         workspaces = {name: (described.workspaces | changed)[name] for name in sorted(homes)}
@@ -366,7 +364,7 @@ def _printed(
     voting: list[Quantity], runner: Runner, truth: Reading, number: int
 ) -> np.ndarray | None:
     """What an experiment of the paper's size prints under a reading (k,)."""
-    results = runner.results(truth, hidden=number)
+    results = runner.results(truth, layout=number)
     if results is None:
         return None
     values = iter(measured(voting, results)[0, :, 0])

@@ -119,14 +119,14 @@ class Effect(NamedTuple):
 
     of: values (..., k) and the names of the cells (k,) -> effects (...). gradient: values (k,) and
     names -> how the effect changes with each value (k,), None without a linear approximation.
-    claimed: effects (...) and the margin -> whether each is what the claim says. reference: the
+    holds: effects (...) and the margin -> whether each is what the claim says. reference: the
     cell to whose value an effect is relative. statistic: the statistic of a cell if the check names
     none.
     """
 
     of: Callable[[Any, np.ndarray, tuple], np.ndarray]
     gradient: Callable[[Any, np.ndarray, tuple], np.ndarray | None]
-    claimed: Callable[[Any, np.ndarray, float], np.ndarray]
+    holds: Callable[[Any, np.ndarray, float], np.ndarray]
     reference: int = 1
     statistic: str = "mean"
 
@@ -170,7 +170,7 @@ def of_ours(check: OfRuns, comparison: Comparison) -> float:
 
 def claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether an effect is what the claim says, by its value alone."""
-    return kind_of(check).EFFECT.claimed(check, effects, margin)
+    return kind_of(check).EFFECT.holds(check, effects, margin)
 
 
 def margin_of(check: OfRuns, comparison: Comparison) -> float:

@@ -59,7 +59,7 @@ from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
 
 
-class _Judged(NamedTuple):
+class _Judgement(NamedTuple):
     """One comparison; `comparison` is None if no runs are compared. primary: False for a secondary
     check.
 
@@ -163,7 +163,7 @@ def _judge_variant(
         except Untestable as reason:
             if not check.primary:
                 judgements.append(
-                    _Judged(number, check, False, "", "", None, Finding(reason=str(reason)))
+                    _Judgement(number, check, False, "", "", None, Finding(reason=str(reason)))
                 )
             else:
                 obstacle = obstacle or str(reason)
@@ -220,7 +220,7 @@ def _by_own_criterion(claim: Claim, verdict: str) -> str:
     return f"{'holds' if verdict == 'supported' else 'fails'} by our criterion alone"
 
 
-def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str:
+def _less_than(deciding: list[_Judgement], verdict: str, material: Material) -> str:
     """Of a claim without effect: below what size all differences that are shown to be negligible
     lie; empty for any other.
     """
@@ -240,7 +240,7 @@ def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str
     return f"{where}differs by less than {size}"
 
 
-def _one_by_one(findings: list[_Judged], verdict: str) -> str:
+def _one_by_one(findings: list[_Judgement], verdict: str) -> str:
     """Of a sentence without effect that takes comparisons together: how many of these hold."""
     single = [each.mark for each in findings if not each.primary and each.comparison]
     if verdict != "no effect" or "+" not in single:
@@ -250,19 +250,19 @@ def _one_by_one(findings: list[_Judged], verdict: str) -> str:
 
 def _findings(
     number: int, check: Check, claim: Claim, name: str, material: Material
-) -> list[_Judged]:
+) -> list[_Judgement]:
     """The comparisons of one check with their findings. Raises Untestable."""
     primary, kind = check.primary, kind_of(check)
     if not isinstance(check, OfRuns):
         judged = kind.findings(check, claim, material)
         return [
-            _Judged(number, check, primary, condition, words, None, finding)
+            _Judgement(number, check, primary, condition, words, None, finding)
             for condition, words, finding in judged
         ]
     if _is_timed(check) and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
     judged = [
-        _Judged(
+        _Judgement(
             *(number, check, primary, comparison.place, comparison.name, comparison),
             kind.find(check, comparison, f"{name}/{number}/{comparison.name}"),
         )
@@ -271,7 +271,7 @@ def _findings(
     return _together(judged) if check.together else judged
 
 
-def _together(findings: list[_Judged]) -> list[_Judged]:
+def _together(findings: list[_Judgement]) -> list[_Judgement]:
     """The comparisons of each place as one, followed by themselves as secondary ones."""
     places = dict.fromkeys(each.condition for each in findings)
     judged = []
@@ -285,7 +285,7 @@ def _together(findings: list[_Judged]) -> list[_Judged]:
     return judged
 
 
-def _marked(findings: list[_Judged]) -> list[_Judged]:
+def _marked(findings: list[_Judgement]) -> list[_Judgement]:
     """The comparisons with their marks, the primary ones also with their marks in the family."""
     tested = [
         number
@@ -309,7 +309,7 @@ def _marked(findings: list[_Judged]) -> list[_Judged]:
     return marked
 
 
-def _in_words(entry: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
+def _in_words(entry: _Judgement, deciding: list[_Judgement]) -> verdicts.Entry:
     """A comparison with the factors that distinguish it from the others of its claim."""
     factors: dict[str, Any] = {}
     if entry.comparison is not None:
@@ -321,7 +321,7 @@ def _in_words(entry: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
         factors["in"] = entry.condition
     if len({_what(other.check) for other in deciding}) > 1:
         factors["what"] = _what(entry.check)
-    return verdicts.Marked(factors, entry.mark_family)
+    return verdicts.Entry(factors, entry.mark_family)
 
 
 def _what(check: Check) -> str:
@@ -330,7 +330,7 @@ def _what(check: Check) -> str:
     return f"{statistic} {check.metric or check.test}".strip().replace("_", " ")
 
 
-def _where_it_holds(findings: list[_Judged], labels: Mapping[str, str]) -> str:
+def _where_it_holds(findings: list[_Judgement], labels: Mapping[str, str]) -> str:
     """`verdicts.where_it_holds` of the comparisons that decide; if all or none of these hold, which
     they may do because of the closest of several that are taken together, of these one by one.
     """
@@ -352,7 +352,7 @@ def _group_in_words(check: Check, group: Any) -> Any:
     return group if isinstance(group, str) else f"{group:g} {check.cells.replace('_', ' ')}"
 
 
-def _disagreement(findings: list[_Judged]) -> str:
+def _disagreement(findings: list[_Judgement]) -> str:
     """A note where seconds and counted work disagree, one of which is primary and the other
     secondary.
     """
@@ -380,7 +380,7 @@ def _disagreement(findings: list[_Judged]) -> str:
     return f"judged on {judged_on}; {other} disagree in {differing} of {len(pairs)}"
 
 
-def _shown(deciding: list[_Judged], holds: str) -> _Judged:
+def _shown(deciding: list[_Judgement], holds: str) -> _Judgement:
     """The decisive comparison.
 
     If all have to hold, the worst - by effect (of the first check that has one), otherwise that
@@ -388,7 +388,7 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
     smallest p, among those with a + if there are any.
     """
 
-    def p(each: _Judged) -> float:
+    def p(each: _Judgement) -> float:
         return (
             each.finding.p if not math.isnan(each.finding.p) else -1.0 if each.mark == "+" else 2.0
         )
@@ -410,7 +410,7 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
 # The printed numbers, and experiments of the paper's size.
 
 
-def _printed(entry: _Judged) -> tuple[float, bool | None]:
+def _printed(entry: _Judgement) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are
     not printed.
     """
@@ -426,7 +426,7 @@ def _printed(entry: _Judged) -> tuple[float, bool | None]:
     ), held
 
 
-def _published(deciding: list[_Judged]) -> str:
+def _published(deciding: list[_Judgement]) -> str:
     held = [held for _, held in map(_printed, deciding) if held is not None]
     return f"{sum(held)} of {len(held)}" if held else "not printed"
 
@@ -438,14 +438,14 @@ def _is_timed(check: Check) -> bool:
     return check.metric in metrics.METRICS and metrics.METRICS[check.metric].unit == "s"
 
 
-def _reason(each: _Judged) -> str:
+def _reason(each: _Judgement) -> str:
     """Notes for the reader of a row."""
     unexplained = "too few units to tell" if each.mark == "?" else ""
     note = each.comparison.note if each.comparison else ""
     return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
 
 
-def _check_row(entry: _Judged, material: Material) -> dict:
+def _check_row(entry: _Judgement, material: Material) -> dict:
     """A row of claim_checks.csv, whose columns leave out the rest of the finding."""
     check, finding = entry.check, entry.finding
     effect_published, held = _printed(entry)

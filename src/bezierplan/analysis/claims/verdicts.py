@@ -136,7 +136,7 @@ def _partly(marks: Sequence[str]) -> str:
 # Words.
 
 
-class Marked(NamedTuple):
+class Entry(NamedTuple):
     """A comparison for its description in words: factor -> value (`against`, `group`, `in`,
     columns), and its mark.
     """
@@ -145,7 +145,7 @@ class Marked(NamedTuple):
     mark: str
 
 
-def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> str:
+def where_it_holds(comparisons: Sequence[Entry], labels: Mapping[str, str]) -> str:
     """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
 
     They are split by the factor that best separates those that hold from those that do not; of a
@@ -173,7 +173,7 @@ def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> 
     return ("" if sought == "+" else "the contrary ") + "; ".join(words)
 
 
-def _best_factor(comparisons: Sequence[Marked], sought: str) -> str | None:
+def _best_factor(comparisons: Sequence[Entry], sought: str) -> str | None:
     """The factor of all comparisons with the least mixed values (Gini impurity), the first among
     equals; None if none has two values.
     """

@@ -16,7 +16,7 @@ from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.planners.parts.diversity import q_of_rows
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
     from bezierplan.analysis.claims.kinds.function import Options as Check
 
 
@@ -66,7 +66,7 @@ def q_table(published: "Published") -> pd.DataFrame:
     return table.astype(dict.fromkeys(whole, "Int64")).round({"Q": 4})
 
 
-def q_example(check: "Check", results: "Experiments", published: "Published") -> "Judged":
+def q_example(check: "Check", results: "Experiments", published: "Published") -> "Judgement":
     """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest
     difference from a printed value.
     """
@@ -82,7 +82,9 @@ def q_example(check: "Check", results: "Experiments", published: "Published") ->
     return "+" if holds else "-", most, None, len(q_values)
 
 
-def printed_over_bound(check: "Check", results: "Experiments", published: "Published") -> "Judged":
+def printed_over_bound(
+    check: "Check", results: "Experiments", published: "Published"
+) -> "Judgement":
     """Claim C23: whether no printed length of a competing method is larger than such fields
     explain.
 

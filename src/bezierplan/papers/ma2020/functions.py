@@ -12,7 +12,7 @@ from bezierplan.geometry import curves
 from bezierplan.papers.ma2020.metrics import obstacle_clearance
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
     from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # Number of parameters at which the speed of a curve is sampled, and the share of its maximum below
@@ -23,7 +23,7 @@ STILL = 1e-6
 
 def drawn_farther(
     check: "Check", results: "Experiments", published: "Published", *, method: str, other: str
-) -> "Judged":
+) -> "Judgement":
     """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles
     than that drawn of another, on every map.
 
@@ -45,7 +45,7 @@ def drawn_farther(
 
 def printed_rise(
     check: "Check", results: "Experiments", published: "Published", *, parameter: str, rise: float
-) -> "Judged":
+) -> "Judgement":
     """Claim C16: whether a printed parameter rises from environment 1 to environment 2 by as much
     as the text says. The effect is the rise.
     """
@@ -54,7 +54,7 @@ def printed_rise(
     return "+" if math.isclose(second - first, rise) else "-", float(second - first), None, 0
 
 
-def printed_minima(check: "Check", results: "Experiments", published: "Published") -> "Judged":
+def printed_minima(check: "Check", results: "Experiments", published: "Published") -> "Judgement":
     """Claim C18: whether every shortest length in the text is that in Table 1 or 2. The effect is
     the largest difference, the units are the lengths.
     """
@@ -70,7 +70,7 @@ def printed_minima(check: "Check", results: "Experiments", published: "Published
 
 def continuous_curvature(
     check: "Check", results: "Experiments", published: "Published"
-) -> "Judged":
+) -> "Judgement":
     """Claim C20: whether every feasible path is one polynomial piece with non-zero speed
     everywhere, so that its curvature is continuous.
 

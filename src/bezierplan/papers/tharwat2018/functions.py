@@ -19,7 +19,7 @@ from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds.function import Experiments, Judged, Published
+    from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
     from bezierplan.analysis.claims.kinds.function import Options as Check
 
 # The three control points (x, y), in units, of the best known single Bézier curves, by workspace:
@@ -75,7 +75,7 @@ def chaotic_sequences(
 
 def gauss_above(
     check: "Check", results: "Experiments", published: "Published", *, limit: float
-) -> "Judged":
+) -> "Judgement":
     """Claim C39: the share of values above a limit in long sequences of the Gauss map, without
     their first values.
 
@@ -102,7 +102,7 @@ def sensitive_to_start(
     apart: float,
     iterations: int,
     singer_mu: float,
-) -> "Judged":
+) -> "Judgement":
     """Claim C46: whether a map of the paper is sensitive to its first value.
 
     The effect is the map's Lyapunov exponent: the mean logarithm by which a difference grows in an
@@ -133,7 +133,7 @@ def _exponent(rng: np.random.Generator, name: str, apart: float, singer_mu: floa
 
 def bowl_with_local_minima(
     check: "Check", results: "Experiments", published: "Published"
-) -> "Judged":
+) -> "Judgement":
     """Claim C16: whether the fitness over one control point is a bowl with several local minima.
 
     The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the
@@ -330,7 +330,7 @@ def valleys(values: np.ndarray) -> np.ndarray:
 
 def several_homotopy_classes(
     check: "Check", results: "Experiments", published: "Published"
-) -> "Judged":
+) -> "Judgement":
     """Claim C17: the number of classes in which runs converge; two paths of one class pass every
     circle on the same side.
 
@@ -349,7 +349,7 @@ def several_homotopy_classes(
 
 def least_above(
     check: "Check", results: "Experiments", published: "Published", *, limit: int
-) -> "Judged":
+) -> "Judgement":
     """Claim C3: whether the least mean value belongs to more particles than a limit.
 
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal
@@ -372,7 +372,7 @@ def fewer_outliers(
     *,
     runs_drawn: int,
     margin: float,
-) -> "Judged":
+) -> "Judgement":
     """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less
     often than for the other maps.
 

@@ -59,7 +59,7 @@ def claimed(check: Options, values: np.ndarray, margin: float) -> np.ndarray:
     return np.abs(values - check.target) <= margin
 
 
-EFFECT = effects.BETWEEN_GROUPS._replace(claimed=claimed)
+EFFECT = effects.BETWEEN_GROUPS._replace(holds=claimed)
 
 
 def find(check: Options, comparison: Comparison, name: str) -> Finding:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     Experiments = dict[str, Results]
     Published = dict[str, pd.DataFrame]
-    Judged = tuple[str, float, tuple[float, float] | None, int]
+    Judgement = tuple[str, float, tuple[float, float] | None, int]
 
 
 class Options(Check):
