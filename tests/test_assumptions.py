@@ -11,7 +11,7 @@ from studies import built, studies
 from bezierplan.geometry.region import region
 from bezierplan.running import execution
 from bezierplan.running.chunk import conditions
-from bezierplan.study.alternatives import alternatives, concerned, with_alternative
+from bezierplan.study.alternatives import concerned, with_alternative
 from bezierplan.study.jobs import job
 
 STUDIES = studies()
@@ -37,6 +37,16 @@ def found(study, experiment, method, place=-1):
         row = execution.row(described, condition, repeat, plan, problem, blocked)
         rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
+
+
+def alternatives(study):
+    """Every alternative of a setting by name, such as `O2_8`."""
+    return {
+        f"{assumption.id}_{value}": (assumption, value)
+        for assumption in study.assumptions
+        if assumption.setting
+        for value in assumption.alternatives
+    }
 
 
 def home(study, method):
@@ -66,7 +76,7 @@ def test_alternative_changes_what_a_run_finds(key, name):
             for method, settings in under.items()
         }
         study = study.but(methods=study.methods | methods)
-    changed = with_alternative(study, name)
+    changed = with_alternative(study, *alternatives(study)[name])
     assert any(
         found(changed, home(study, method), method, place)
         != (

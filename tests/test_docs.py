@@ -90,7 +90,7 @@ def test_fault_in_the_configuration_of_a_module_is_told_in_one_line(own):
         ),
         (
             {"settings": {"song": {"population": 20}}},
-            "settings: song: not one of the studies to run; did you mean song2016?",
+            "settings: song: unknown; did you mean song2016?",
         ),
         ({"settings": {"song2016": 20}}, "settings: song2016: 20: expected a mapping"),
         (

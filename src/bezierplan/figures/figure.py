@@ -63,3 +63,33 @@ class Figure(Model):
         None,
         description="for the caption: what the paper's figure shows, and whether this one does",
     )
+
+    @property
+    def workspaces(self) -> list[str]:
+        """Names of the workspaces that it draws without runs."""
+        return sorted({name for each in self.panels if (name := getattr(each, "workspace", None))})
+
+    @property
+    def rerun(self) -> list[str]:
+        """Names of the experiments whose runs it repeats, to draw what no table keeps."""
+        return sorted({panel.experiment for panel in self.panels if panel.rerun})
+
+    @property
+    def code(self) -> list[str]:
+        """Parts of a study's code that it needs."""
+        own = any(panel.kind == "own" for panel in self.panels)
+        return ["metrics", *(["functions"] if self.calls else []), *(["panels"] if own else [])]
+
+    @property
+    def calls(self) -> bool:
+        """Whether it draws tables of functions, which may show any method."""
+        return any(getattr(panel, "data", None) for panel in self.panels)
+
+    def draws(self, table: str) -> bool:
+        """Whether it draws the numbers of a published table: a panel names it, or a function that
+        asks for all.
+        """
+        return any(
+            getattr(panel, "published", False) or getattr(panel, "printed", None) == table
+            for panel in self.panels
+        )

@@ -226,14 +226,6 @@ Count = Annotated[int, whole(1, MOST)]
 Decimals = Annotated[int, whole(0, 15)]
 Flag = bool
 Line = Annotated[str, value(is_line, "one line of text, not blank")]
-Scalar = Annotated[
-    str | float | bool,
-    value(
-        lambda entry: isinstance(entry, bool) or is_number(entry) or is_line(entry),
-        "a word or a number",
-    ),
-]
-"""A value of a column: a word, a number, true or false."""
 Setting = Annotated[
     str | float | bool | None,
     value(
@@ -245,7 +237,7 @@ Setting = Annotated[
         "a word, a number, true or false",
     ),
 ]
-"""A value of a planner's setting, which may be infinite."""
+"""A value of a planner's setting, which may be infinite, or of a column."""
 
 
 def matching(pattern: str, wanted: str) -> PlainValidator:
@@ -303,7 +295,7 @@ def _distinct(entry: list) -> list:
     return entry
 
 
-Values = listed(Scalar, single=True)
+Values = listed(Setting, single=True)
 """A value of a column or a list of them."""
 
 

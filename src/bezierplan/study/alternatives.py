@@ -11,16 +11,6 @@ from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study
 
 
-def alternatives(study: Study) -> dict[str, tuple[Assumption, Any]]:
-    """Every alternative that governs a setting: name, such as `O2_8`, -> assumption and value."""
-    return {
-        f"{assumption.id}_{value}": (assumption, value)
-        for assumption in study.assumptions
-        if assumption.setting
-        for value in assumption.alternatives
-    }
-
-
 def concerned(study: Study, assumption: Assumption) -> list[str]:
     """Methods whose setting an assumption governs, except baselines and variants; only those that
     it names, if any.
@@ -56,17 +46,12 @@ def default_of(study: Study, assumption: Assumption) -> Any:
     return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 
 
-def with_alternative(study: Study, name: str) -> Study:
-    """The study under one alternative of `alternatives`."""
-    assumption, value = alternatives(study)[name]
+def with_alternative(study: Study, assumption: Assumption, value: Any) -> Study:
+    """The study under one alternative of a setting."""
     methods = dict(study.methods)
-    for method in concerned(study, assumption):
-        changed = (
-            methods[method].settings
-            | {assumption.setting: value}
-            | assumption.along.get(method, {})
-        )
-        methods[method] = methods[method].but(settings=changed)
+    for name in concerned(study, assumption):
+        more = {assumption.setting: value} | assumption.along.get(name, {})
+        methods[name] = methods[name].but(settings=methods[name].settings | more)
     return study.but(methods=methods)
 
 
@@ -81,20 +66,20 @@ def experiments_of_claims(claims: list[Claim]) -> list[str]:
 
 def choices(study: Study, methods: Iterable[str]) -> list[Choice]:
     """What the paper leaves open for some methods, for `analysis.readings`."""
-    found = []
-    for each in study.assumptions:
-        changed = [name for name in concerned(study, each) if name in methods]
-        along = {name: each.along.get(name, {}) for name in changed} if each.setting else {}
-        if each.alternatives and (along or each.workspace):
-            found.append(
+    chosen = []
+    for assumption in study.assumptions:
+        concern = [name for name in concerned(study, assumption) if name in methods]
+        along = {name: assumption.along.get(name, {}) for name in concern if assumption.setting}
+        if assumption.alternatives and (along or assumption.workspace):
+            chosen.append(
                 Choice(
-                    each.id,
-                    each.alternatives,
-                    each.setting,
+                    assumption.id,
+                    assumption.alternatives,
+                    assumption.setting,
                     along,
-                    each.problems,
-                    each.workspace,
-                    each.excluded_by or "",
+                    assumption.problems,
+                    assumption.workspace,
+                    assumption.excluded_by or "",
                 )
             )
-    return found
+    return chosen

@@ -26,7 +26,7 @@ from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_known
 from bezierplan.schema.model import Model, fault_of, named, one_or_list
 from bezierplan.study import published
-from bezierplan.study.alternatives import alternatives, concerned, with_alternative
+from bezierplan.study.alternatives import concerned, with_alternative
 from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.design import Design, design, together
@@ -114,7 +114,8 @@ class Checks:
             if self.faults:
                 return
             self.shared_settings()
-            self.each("methods", study.methods, self.settings)
+            resolved = {name: study.resolved(name) for name in study.methods}
+            self.each("methods", resolved, self.settings)
             self.each("workspaces", study.workspaces, self.workspace)
             self.each("problems", study.problems, self.problem)
             self.each("experiments", study.experiments, self.experiment)
@@ -184,10 +185,9 @@ class Checks:
             for value, settings in values.items():
                 check_all(settings, used, f"presets: {preset}: {value}")
 
-    def settings(self, name: str, method: Method) -> None:
+    def settings(self, name: str, settings: dict[str, Any]) -> None:
         """Each setting of a method has a value that its planner accepts."""
-        module = planner_module(self.study.planner(name))
-        interface.check_settings(module, self.study.resolved(name), "settings")
+        interface.check_settings(planner_module(self.study.planner(name)), settings, "settings")
 
     def workspace(self, name: str, workspace: Workspace) -> None:
         """It can be read."""
@@ -434,15 +434,11 @@ class Checks:
         for method, settings in assumption.along.items():
             check_known(method, methods, "with")
             check_all(settings, study.accepted(method), f"with: {method}")
-        for name, (of, value) in alternatives(study).items():
-            if of.id == assumption.id:
-                changed = with_alternative(study, name)
-                for method in methods:
-                    interface.check_settings(
-                        planner_module(study.planner(method)),
-                        changed.resolved(method),
-                        f"alternatives: {value}: {method}: settings",
-                    )
+        for value in assumption.alternatives:
+            changed = with_alternative(study, assumption, value)
+            for method in methods:
+                with self.at("alternatives", str(value), method):
+                    self.settings(method, changed.resolved(method))
 
 
 def check_all(names: Iterable[Any], known: Iterable[Any], location: str) -> None:

@@ -145,16 +145,6 @@ class Study(ExperimentsFile, ArtefactsFile):
         """The tables of runs that have published numbers."""
         return {name: table for name, table in self.compared().items() if table.published}
 
-    def published_drawn(self, figure: str) -> list[str]:
-        """Files of published numbers that a figure draws: the tables that its panels name, or all
-        for functions that ask for them.
-        """
-        panels, files = self.figures[figure].panels, self.published_files()
-        if any(getattr(panel, "published", False) for panel in panels):
-            return files
-        tables = {getattr(panel, "printed", None) for panel in panels}
-        return [file for file in files if Path(file).stem in tables]
-
     def verdict_file(self) -> str | None:
         """Its sentences of what follows, relative to the working folder, or None."""
         file = self.folder / "verdict.yaml"

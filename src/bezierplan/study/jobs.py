@@ -246,39 +246,31 @@ def latex(study: Study, scale: str, table: str) -> Latex:
 
 def figure(study: Study, scale: str, figure: str) -> Figure:
     """The figure of a name."""
-    spec, shown = study.figures[figure], methods_of_artefact(study, figure)
-    again = {panel.experiment for panel in spec.panels if panel.rerun}
-    bare = workspaces_of_figure(study, figure)
-    any_method = any(getattr(panel, "data", None) for panel in spec.panels)
-    own = {"functions": any_method, "panels": any(panel.kind == "own" for panel in spec.panels)}
-    parts = ["metrics", *(part for part, needed in own.items() if needed)]
-    methods = {method for name in shown for method in study.methods_of(name)}
-    homes = [study.problems[study.experiments[name].problems[0]].workspace for name in shown]
+    spec, behind = study.figures[figure], methods_of_artefact(study, figure)
+    methods = {method for name in behind for method in study.methods_of(name)}
+    homes = [study.problems[study.experiments[name].problems[0]].workspace for name in behind]
     return Figure(
         study=study.key,
         columns=spec.columns,
         width=spec.width,
         panels=spec.panels,
         labels=labels_of(study, figure),
-        looks={name: look for name, look in looks(study).items() if any_method or name in methods},
-        workspaces={name: study.workspaces[name].plain() for name in bare},
-        repeats={name: study.experiments[name].repeats[scale] for name in shown},
+        looks={name: look for name, look in looks(study).items() if spec.calls or name in methods},
+        workspaces={name: study.workspaces[name].plain() for name in spec.workspaces},
+        repeats={name: study.experiments[name].repeats[scale] for name in behind},
         chunks={
-            name: {method: job(study, name, method, scale, 0) for method in shown[name]}
-            for name in sorted(again)
+            name: {method: job(study, name, method, scale, 0) for method in behind[name]}
+            for name in spec.rerun
         },
-        unit=study.workspaces[[*homes, *bare, *study.workspaces][0]].unit,
+        unit=study.workspaces[[*homes, *spec.workspaces, *study.workspaces][0]].unit,
         folder=relative(study.folder),
-        sources=[*study.maps(bare), *study.published_drawn(figure)],
+        sources=[
+            *study.maps(spec.workspaces),
+            *(file for file in study.published_files() if spec.draws(Path(file).stem)),
+        ],
         shows=shown_by(study, figure, scale),
-        code=study.code_for(*parts),
+        code=study.code_for(*spec.code),
     )
-
-
-def workspaces_of_figure(study: Study, figure: str) -> list[str]:
-    """Names of the workspaces that a figure draws without runs."""
-    panels = study.figures[figure].panels
-    return sorted({panel.workspace for panel in panels if getattr(panel, "workspace", None)})
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:

@@ -86,7 +86,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         for column, values in known.items():
             if row[column] not in values and _read(row[column]) not in values:
                 check_known(row[column], values, f"{where}: {column}")
-        own = metrics.unit(row["metric"], unit)
+        of_metric = metrics.unit(row["metric"], unit)
         for column, fits, wanted in (
             ("value", row["value"], "a number"),
             (
@@ -94,7 +94,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
                 (row["n"].isdecimal() and row["n"] > "0") or not row["n"],
                 "how many runs the paper made",
             ),
-            ("unit", row["unit"] == own, f"{own}, the unit of {row['metric']}"),
+            ("unit", row["unit"] == of_metric, f"{of_metric}, the unit of {row['metric']}"),
         ):
             if not fits:
                 raise Fault(f"{where}: {column}: {row[column]!r}; expected {wanted}")

@@ -12,7 +12,7 @@ from bezierplan.analysis import study_code
 from bezierplan.machine.modules import code_of
 from bezierplan.places import STUDIES, TREE
 from bezierplan.schema import checked
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import parsed, sound_part
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
@@ -43,12 +43,8 @@ def read_config(config: Mapping[str, Any]) -> Folders:
                 f"{relative(folder)}{closest(name, known)}"
             )
         folders[folder] = content.settings.get(folder.resolve().name, {})
-    names = [folder.resolve().name for folder in folders]
     for name in content.settings:
-        if name not in names:
-            raise Fault(
-                f"{location}: settings: {name}: not one of the studies to run{closest(name, names)}"
-            )
+        check_known(name, [folder.resolve().name for folder in folders], f"{location}: settings")
     return folders
 
 

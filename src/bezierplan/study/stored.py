@@ -1,6 +1,6 @@
 """What each file of runs is to hold, by the studies."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -33,21 +33,7 @@ def tasks(studies: Studies, folder: Path) -> list[Task]:
     FileNotFoundError without runs.
     """
     scale = folder.resolve().name
-    listed = [*_runs(studies, folder, scale)]
-    if not listed:
-        raise FileNotFoundError(
-            f"{folder}: no runs here; expected a folder of results, such as results/full"
-        )
-    for file in sorted(folder.glob("*/problems/*.bounds.parquet")):
-        listed.append(Task(str(file).replace(".bounds.", "."), {}, str(file)))
-    return listed
-
-
-def _problems(folder: Path, study: str, experiment: str) -> str:
-    return str(folder / study / "problems" / f"{experiment}.parquet")
-
-
-def _runs(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
+    listed = []
     for place in sorted(folder.glob("*/runs/*/*")):
         key, _, experiment, method = place.relative_to(folder).parts
         check_known(scale, SCALES, f"{folder}: scale")
@@ -55,4 +41,11 @@ def _runs(studies: Studies, folder: Path, scale: str) -> Iterator[Task]:
         check_known(method, studies[key].methods_of(experiment), f"{place}: method")
         chunks = jobs.judgement(studies[key], scale, experiment, method).chunks
         files = {str(place / f"{number}.parquet"): chunk for number, chunk in enumerate(chunks)}
-        yield Task(_problems(folder, key, experiment), files)
+        listed.append(Task(str(folder / key / "problems" / f"{experiment}.parquet"), files))
+    if not listed:
+        raise FileNotFoundError(
+            f"{folder}: no runs here; expected a folder of results, such as results/full"
+        )
+    for file in sorted(folder.glob("*/problems/*.bounds.parquet")):
+        listed.append(Task(str(file).replace(".bounds.", "."), {}, str(file)))
+    return listed
