@@ -5,12 +5,14 @@ import pandas as pd
 import pytest
 from studies import built, studies
 
-from bezierplan.analysis import readings
+from bezierplan.analysis import outcome, readings
 from bezierplan.analysis.choices import Choice
+from bezierplan.places import TREE
 from bezierplan.running import problems
 from bezierplan.study import jobs
 
 STUDIES = studies()
+READ = [key for key, study in STUDIES.items() if study.votes]
 
 
 def job(key):
@@ -102,3 +104,17 @@ def test_the_search_finds_a_hidden_reading_and_no_excluded_one(monkeypatch):
     assert (paper["found"], paper["best"] < paper["default"] + 1) == ("default", True)
     assert [*hidden["place"]] == [1] * len(hidden)
     assert paper["best"] < hidden["score"].min()
+
+
+@pytest.mark.parametrize("key", READ)
+def test_the_kept_calibration_is_of_this_search(key):
+    scores, calibration = (
+        pd.read_csv(TREE / outcome.KEPT / f"{key}_{name}") for name in outcome.READINGS
+    )
+    made, voting = job(key)
+    names = [readings.name_of(each) for each in readings.listed(key, made.choices)]
+    assert set(names) & set(scores["reading"]) >= {"default", names[1]}
+    assert (scores["numbers"] == sum(len(each.printed) for each in voting)).all()
+    paper = calibration[~calibration["hidden"]].iloc[0]
+    assert paper["found"] in [*scores.loc[scores["excluded_by"].isna(), "reading"]]
+    assert calibration["hidden"].sum() >= 12

@@ -21,7 +21,9 @@ def kept():
     }
     tables = {name: pd.read_csv(KEPT / file) for name, file in files.items()}
     audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in studies_of()]
-    return tables | {"wholes": wholes.of_numbers(tables["numbers"]), "audit": pd.concat(audits)}
+    tables |= {"wholes": wholes.of_numbers(tables["numbers"]), "audit": pd.concat(audits)}
+    files = KEPT.glob(f"*_{outcome.READINGS[1]}")
+    return tables | {"calibration": pd.concat(map(pd.read_csv, files))}
 
 
 @pytest.mark.parametrize("study", ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"])

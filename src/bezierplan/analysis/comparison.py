@@ -33,8 +33,8 @@ number. Columns:
 - identified: cells or moves of the paths whose length the published number is (`identified`), and
   the chance of a match
 - verdict: identified; disagrees; inconclusive; agrees
-- why: why it is inconclusive: not defined by the paper, or the interval has no end there, or
-  contains most of the numbers that matter
+- why: why it is inconclusive: not defined by the paper, on a map that it does not print, or the
+  interval has no end there, or contains most of the numbers that matter
 - possible: whether the metric can have the published value, and ranks add up. A length below the
   bound of our map is judged all the same
 - share_claimed: share of all runs whose path passed the planner's own test
@@ -89,6 +89,9 @@ UNDEFINED = "quantity that the paper does not define"
 alone.
 """
 
+NO_MAP, ONE_DRAW = "map that the paper does not print", "one draw of a random map"
+"""Why a number is inconclusive however far it lies: our runs are on another map."""
+
 COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published"),
     *("n_ours", "n_asked", "value_ours", "value_ours_scaled"),
@@ -124,6 +127,7 @@ def compare(
     variant_of: dict[str, str],
     baselines: list[str],
     name: str,
+    reconstructed: bool = False,
 ) -> pd.DataFrame:
     """The published numbers of a table next to ours, in the order of the table; the columns are
     described above.
@@ -167,9 +171,14 @@ def compare(
     found = table["identified"].notna()
     table["verdict"] = table["verdict"].astype(object).mask(found, "identified")
     vague = {entry.metric for entry in spec.values if not entry.defined}
-    undefined = both["metric"].isin(vague) & table["in_range"].notna()
-    table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
-    table["why"] = table["why"].astype(object).mask(undefined, UNDEFINED)
+    for reason, whose in (
+        (ONE_DRAW, both["draws"].eq(1) & ~found),
+        (NO_MAP, ~found & reconstructed),
+        (UNDEFINED, both["metric"].isin(vague)),
+    ):
+        whose &= table["in_range"].notna()
+        table["verdict"] = table["verdict"].mask(whose, "inconclusive")
+        table["why"] = table["why"].astype(object).mask(whose, reason)
     table["primary"] = _is_primary(table, spec.primary, variant_of)
     whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "can_fail", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))

@@ -24,11 +24,11 @@ COLUMNS = {
 LEGEND = (
     "*agree*: inside our 95 % prediction interval for an experiment of the paper's size, which "
     "must exclude a number that a run could have, such as most of those printed for competing "
-    "methods; or *identified*, the length of a path that we can name. *open*: the interval is too "
-    "wide, or the paper does not define the quantity; a claim is open if it is undecided, "
-    "untestable, or depends on what the paper leaves open. *fail*: contradicted, or no effect. "
-    "Length and CPU time of the proposed method are medians over those of the exact shortest path "
-    "with rounded corners, which needs no search and is always free."
+    "methods; or *identified*, the length of a path that we can name. *open*: the paper does not "
+    "print the map or define the quantity, or the interval is too wide; a claim is open if it is "
+    "undecided, untestable, or depends on what the paper leaves open. *fail*: contradicted, or no "
+    "effect. Length and CPU time of the proposed method are medians over those of the exact "
+    "shortest path with rounded corners, which needs no search and is always free."
 )
 
 CLOSE = 0.1

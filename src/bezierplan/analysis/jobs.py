@@ -166,6 +166,7 @@ class TableOfRuns(Job):
     variants: dict[str, str]
     """Method -> the method whose published numbers it is compared with."""
     baselines: list[str]
+    reconstructed: bool
     repeats: int
 
     def run(self, input_files, output_files, threads):
@@ -181,7 +182,13 @@ class TableOfRuns(Job):
         file = input_files.sources[0] if self.sources else None
         published = comparison.read_published(file, self.spec)
         compared = comparison.compare(
-            runs, self.spec, published, self.variants, self.baselines, self.name
+            runs,
+            self.spec,
+            published,
+            self.variants,
+            self.baselines,
+            self.name,
+            self.reconstructed,
         )
         table = tables.pivot(runs, self.spec, self.labels)
         table.to_csv(output_files.table, lineterminator="\n")

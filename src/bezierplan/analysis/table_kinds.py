@@ -174,11 +174,6 @@ class Pivot(Table):
         description="orders that the published numbers must keep, which the audit checks: "
         "{metric, statistic, along, direction, because}",
     )
-    fitted: Flag = Field(
-        False,
-        description="true if the workspaces were reconstructed so that the published lengths are "
-        "possible: the audit does not compare them with its bounds; left out: false",
-    )
     identify: list[Identify] = Field(
         [],
         description="published lengths on grids that may be those of free polylines through cell "
@@ -261,23 +256,23 @@ def table_of(given: dict[str, Any]) -> Table:
 
 class Layout(Model):
     """What the audit needs to know of a table: columns within whose values rows are ranked, metrics
-    of only some runs, required orders, whether its workspaces were fitted to it, and where paths
-    are sought whose lengths it prints.
+    of only some runs, required orders, whether its maps are reconstructed, and where paths are
+    sought whose lengths it prints.
     """
 
     columns: list[Column] = Field([])
     selected: list[Metric] = Field([])
     monotone: list[Monotone] = Field([])
-    fitted: Flag = False
+    reconstructed: Flag = False
     identify: list[Identify] = Field([])
 
     @classmethod
-    def of(cls, table: Pivot) -> Self:
+    def of(cls, table: Pivot, reconstructed: bool) -> Self:
         """That of a table of runs."""
         return cls(
             columns=table.across,
             selected=sorted({entry.metric for entry in table.values if entry.where}),
             monotone=table.monotone,
-            fitted=table.fitted,
+            reconstructed=reconstructed,
             identify=table.identify,
         )

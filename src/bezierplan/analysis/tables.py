@@ -54,7 +54,7 @@ def cells(
     of the column `within`, None without that key; least, most: the range of the metric for one run
     (`least` of an entry is stronger than that of its metric); and over all runs of the group: runs
     (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones)
-    of the metric's kind of length.
+    of the metric's kind of length; draws (of random maps; 0 on others).
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values("id", ignore_index=True)
@@ -90,6 +90,7 @@ def cells(
         same = {
             **dict(zip(keys, key)),
             "runs": len(positions),
+            "draws": runs["layout"].iloc[positions].nunique() if "layout" in runs else 0,
             "share_claimed": claimed[positions].mean(),
             "share_feasible": feasible[positions].mean(),
         }
@@ -118,7 +119,7 @@ def cells(
                 "groups": groups,
             }
             rows += [cell | {"statistic": statistic} for statistic in entry.statistics]
-    of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
+    of_runs = ["runs", "draws", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
     of_cell = ["value", "metric", "statistic", "decimals", "asked", "numbers", "groups"]
     columns = [*keys, *of_runs, *of_cell]
     # Of type object, so that integers stay integers next to published numbers without runs.

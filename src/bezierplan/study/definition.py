@@ -11,6 +11,7 @@ from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.machine.modules import code_of
 from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.running.inputs import PAPER, tree
+from bezierplan.schema.model import one_or_list
 from bezierplan.study.artefacts import ArtefactsFile
 from bezierplan.study.claims import Assumption
 from bezierplan.study.experiments import ExperimentsFile
@@ -134,6 +135,14 @@ class Study(ExperimentsFile, ArtefactsFile):
         printed = self.compared()[spec.extends]
         shared = ("published", "reads", "within", "primary", "identify")
         return spec.but(**{name: getattr(printed, name) for name in shared})
+
+    def reconstructed(self, table: Pivot) -> bool:
+        """Whether runs of a table are on a map that the paper does not print."""
+        problems = self.experiments[table.experiment].problems
+        shown = one_or_list(table.where.get("problem", problems))
+        return any(
+            self.workspace_of(name).origin == "reconstructed" for name in problems if name in shown
+        )
 
     def published_file(self, table: str) -> str | None:
         """The file of a table's published numbers relative to the working folder, or None."""

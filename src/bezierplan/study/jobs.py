@@ -220,10 +220,11 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     file = study.published_file(table)
     return TableOfRuns(
         name=f"{study.key}/{spec.extends or table}",
-        spec=spec.but(title=table, note=None, labels={}, monotone=[], fitted=[], where=where),
+        spec=spec.but(title=table, note=None, labels={}, monotone=[], where=where),
         labels=labels_of(study, table),
         variants={name: method for name, method in more.items() if name in experiment.methods},
         baselines=[name for name in baselines if name in study.baselines],
+        reconstructed=study.reconstructed(spec),
         repeats=experiment.repeats[scale],
         sources=[file] if file else [],
         shows=shown_by(study, table, scale),
@@ -410,7 +411,7 @@ def audit(study: Study, scale: str) -> Audit:
         study.key,
         {name: table.experiment for name, table in tables.items()},
         {name: table.primary for name, table in tables.items()},
-        {name: Layout.of(table) for name, table in tables.items()},
+        {name: Layout.of(table, study.reconstructed(table)) for name, table in tables.items()},
         sorted({table.experiment for table in tables.values() if table.identify}),
         sources=study.published_files(),
         code=study.code_for("metrics", "audit"),

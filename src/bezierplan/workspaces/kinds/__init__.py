@@ -23,7 +23,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, Field
 
@@ -109,6 +109,12 @@ class Workspace(Model):
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/workspaces/kinds`")
     unit: Unit = Field(description="the name of the unit of length, up to 20 letters")
+    origin: Literal["printed", "reconstructed"] = Field(
+        "printed",
+        description="printed, or reconstructed: a map that the paper does not print, so that none "
+        "of its numbers agrees or disagrees with ours, and none is compared with our bounds; "
+        "left out: printed",
+    )
 
 
 class World(Workspace):
