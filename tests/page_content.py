@@ -9,7 +9,6 @@ from pivots import pivot_of
 from bezierplan.analysis.claims import kinds
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
-    AssumptionView,
     Citation,
     FigureView,
     MethodView,
@@ -70,6 +69,10 @@ LOWER = {"test": "lower", "experiment": "e", "metric": "length", "groups": ["b"]
 LOWER |= {"margin": 0.5, "direction": "lower"}
 
 
+OPEN_DETAIL = {"id": "O1", "detail": HOSTILE, "default": 5, "alternatives": [8]}
+OPEN_DETAIL |= {"reason": "it fits", "source": "inferred", "setting": "genes"}
+
+
 def job() -> PageJob:
     """A study `one` with three claims, four numbers, three tables, a figure, an open choice."""
     values = [{"metric": metric, "statistic": "mean"} for metric in ("length", "objective")]
@@ -89,7 +92,7 @@ def job() -> PageJob:
             "listed": TableView("a list", "a list.", SimpleNamespace(), {}),
         },
         figures={"figure1": FigureView("Lengths", f"Lengths. {HOSTILE}")},
-        assumptions=[AssumptionView("O1", HOSTILE, 5, [8], "it fits", "inferred", "genes")],
+        assumptions=[OPEN_DETAIL],
         files=["claims", "checks", "audit"],
         experiments={},
         changes=[],

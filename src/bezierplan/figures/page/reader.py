@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import baseline_comparison, tables
+from bezierplan.analysis import baseline_comparison, comparison, tables
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import why
@@ -217,11 +217,14 @@ def _numbers(
 
 
 def nearness(cell: Row) -> Row:
-    """Of a number: beside, apart and near (`_numbers`)."""
+    """Of a number: beside, apart and near (`_numbers`), None for a quantity that the paper does not
+    define.
+    """
     scaled, number = cell["value_ours_scaled"], cell["value_published"]
     beside = cell["value_ours"] if scaled is None else scaled
     apart = beside / number - 1 if number and beside is not None else None
     near = apart is not None and abs(apart) <= NEAR + 1e-9
+    near = None if cell.get("why") == comparison.UNDEFINED else near
     return {"beside": beside, "apart": apart, "near": near}
 
 
