@@ -118,7 +118,7 @@ def warm_up(seconds):
 
     def once():
         taken.append(seconds[min(len(taken), len(seconds) - 1)])
-        return worker.Made(-1, None, taken[-1], taken[-1])
+        return worker.Reply(-1, None, taken[-1], taken[-1])
 
     worker.warm_up(once)
     return len(taken)

@@ -92,7 +92,7 @@ def made(
     again: worker.Task | None = None,
     worlds: dict[str, World] | None = None,
     function: str = "plan",
-) -> Iterator[worker.Made]:
+) -> Iterator[worker.Reply]:
     """`worker.made` of a chunk's planner. Raises PlannerFailure, naming the run."""
     work = worker.Work(chunk.planner, problems, function, worlds, chunk.policy)
     if is_file(chunk.planner):
@@ -116,7 +116,7 @@ def run(
     name, tasks = condition.problem, [task(chunk, condition, repeat)]
     worlds = {name: world} if world else None
     (only,) = made(chunk, {name: problem}, tasks, worlds=worlds, function=function)
-    return only.found
+    return only.result
 
 
 def tracked(chunk: Chunk, row: Mapping[str, Any], problem: Problem) -> list[np.ndarray]:
@@ -217,7 +217,7 @@ def rows_again(
     met = {condition.problem: problems[condition.problem] for condition, _ in runs}
     judged = _judge(chunk, met, worlds)
     return [
-        judged(*run, each.found)[0]
+        judged(*run, each.result)[0]
         for run, each in zip(runs, made(chunk, met, tasks, worlds=worlds))
     ]
 
@@ -228,12 +228,12 @@ def _judge(
     """A function that makes, of what a run has found, a row, and of a drive its trace."""
     regions = {} if worlds else {name: region(each.workspace) for name, each in problems.items()}
 
-    def judged(condition: Condition, repeat: int, found: Any) -> tuple[dict, dict]:
+    def judged(condition: Condition, repeat: int, result: Any) -> tuple[dict, dict]:
         name = condition.problem
         if not worlds:
-            return row(chunk, condition, repeat, found, problems[name], regions[name]), {}
+            return row(chunk, condition, repeat, result, problems[name], regions[name]), {}
         known = identity(chunk, condition, repeat)
-        outcome, trace = rides.judged(found, problems[name], worlds[name])
+        outcome, trace = rides.judged(result, problems[name], worlds[name])
         return known | outcome, {"id": known["id"]} | trace
 
     return judged
@@ -259,9 +259,9 @@ def run_chunk(
     # What needs no random numbers must not be changed by others.
     warm_up = task(chunk, planned[order[0][0]], order[0][1] + deterministic)
     warm, done = [], {}
-    for number, found, cpu, wall in made(chunk, met, tasks, warm_up, moving):
+    for number, result, cpu, wall in made(chunk, met, tasks, warm_up, moving):
         k, repeat = order[max(number, 0)]
-        outcome, trace = judged(planned[k], repeat, found)
+        outcome, trace = judged(planned[k], repeat, result)
         if number < 0:
             warm.append(outcome)
             continue
@@ -269,7 +269,7 @@ def run_chunk(
             refuse_unrepeatable(warm, outcome, chunk, deterministic)
         times = Times(outcome["id"], cpu, wall)._asdict()
         if moving:
-            times |= rides.replan_times(found, chunk.policy["step_seconds"])._asdict()
+            times |= rides.replan_times(result, chunk.policy["step_seconds"])._asdict()
         done[k, repeat] = outcome, times, trace
         if (number + 1) % _LOGGED == 0:
             logger.info("%d runs done", number + 1)

@@ -39,9 +39,9 @@ class Files(NamedTuple):
         return [chunk for chunks in self.runs.values() for chunk in chunks]
 
 
-def experiments(shows: Shows, given: Any) -> dict[str, Files]:
+def experiments(shows: Shows, inputs: Any) -> dict[str, Files]:
     """The files of each experiment, from a job's inputs `runs`, `problems` and `bounds`."""
-    runs = iter(getattr(given, "runs", ()))
+    runs = iter(getattr(inputs, "runs", ()))
     return {
         name: Files(
             {method: list(islice(runs, number)) for method, number in methods.items()},
@@ -49,7 +49,7 @@ def experiments(shows: Shows, given: Any) -> dict[str, Files]:
             bounds,
         )
         for (name, methods), problems, bounds in zip(
-            shows.items(), given.problems, given.bounds, strict=True
+            shows.items(), inputs.problems, inputs.bounds, strict=True
         )
     }
 

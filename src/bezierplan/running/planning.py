@@ -87,7 +87,7 @@ def planned(
         problems = {str(number): part for number, part in enumerate(parts)}
         tasks = [worker.Task(name, each, seed, settings) for each in problems]
         made = [*process.made(worker.Work(file, problems), tasks, None, name)]
-        answers, seconds = [each.found for each in made], sum(each.cpu for each in made)
+        answers, seconds = [each.result for each in made], sum(each.cpu for each in made)
     else:
         answers, seconds, _ = worker.timed(
             lambda: [plan(part, np.random.default_rng(seed), **settings) for part in parts]

@@ -125,33 +125,33 @@ def drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
 def _findings(
     planner: str, module: ModuleType, settings: dict[str, Any], elsewhere: bool
 ) -> Iterator[Finding]:
-    met = {problem.name: problem for problem in problems(module)}
+    by_name = {problem.name: problem for problem in problems(module)}
     hashing = 0 if is_file(planner) else None
     try:
-        made = _made(planner, settings, met, SEEDS, hashing)
-        again = _made(planner, settings, met, SEEDS[:1], 1) if elsewhere else {}
+        made = _made(planner, settings, by_name, SEEDS, hashing)
+        again = _made(planner, settings, by_name, SEEDS[:1], 1) if elsewhere else {}
         differ = any(len({*map(repr, plans[1:])}) > 1 for plans in made.values())
         # Plans may all be the same because the problems are easy.
-        left = _made(planner, settings, met, SEEDS[1:], hashing, "left")
+        left = _made(planner, settings, by_name, SEEDS[1:], hashing, "left")
     except PlannerFailure as failure:
         yield Finding("all problems", "plan", False, str(failure))
         return
     columns = next(iter(made.values()))[0].extra.keys()
     fresh = {str([np.random.default_rng(seed).random(), 0]) for seed in SEEDS}
     states = [{*map(str, each)} for each in left.values()]
-    drawn = differ or any(len(each) > 1 and each.isdisjoint(fresh) for each in states)
+    draws = differ or any(len(each) > 1 and each.isdisjoint(fresh) for each in states)
     for name, plans in made.items():
         for fact, detail, fault in (
-            ("plan", *_is_valid(plans, met[name], {*TAKEN, *settings}, columns)),
+            ("plan", *_is_valid(plans, by_name[name], {*TAKEN, *settings}, columns)),
             ("history", "", _history_fault(plans, getattr(module, "keeps_best", True))),
             ("budget", *_budget(plans, settings.get("evaluations", math.inf))),
-            ("claims", *_claims(plans, met[name], getattr(module, "exact", False))),
+            ("claims", *_claims(plans, by_name[name], getattr(module, "exact", False))),
             ("random numbers", "", _repeats(plans, again.get(name, ()))),
         ):
             yield Finding(name, fact, not fault, fault or detail)
     fault = (
         ""
-        if drawn
+        if draws
         else "the same plans from every generator; draw from rng as it comes, or say "
         "deterministic = True"
     )
@@ -163,7 +163,7 @@ def _findings(
 def _made(
     planner: str,
     settings: dict[str, Any],
-    met: dict[str, Problem],
+    by_name: dict[str, Problem],
     seeds: tuple[int, ...],
     hashing: int | None,
     function: str = "plan",
@@ -171,27 +171,27 @@ def _made(
     """Plans by problem, one from each generator; in a process of its own with a seed of `hash`, if
     there is one. function: as in `worker.Work`. Raises PlannerFailure.
     """
-    name, work = f"planner {planner}", worker.Work(planner, met, function)
-    tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in met for seed in seeds]
+    name, work = f"planner {planner}", worker.Work(planner, by_name, function)
+    tasks = [worker.Task(f"{name}: {at}", at, seed, settings) for at in by_name for seed in seeds]
     by_problem: dict[str, list[Any]] = {}
-    for each in (
+    for reply in (
         worker.made(work, tasks)
         if hashing is None
         else process.made(work, tasks, None, name, LIMIT, hashing)
     ):
-        task = tasks[each.number]
+        task = tasks[reply.number]
         with answer.of(task.name):
-            found = answer.plain(each.found) if function == "plan" else each.found
+            found = answer.plain(reply.result) if function == "plan" else reply.result
             by_problem.setdefault(task.problem, []).append(found)
     return by_problem
 
 
 def _is_valid(
-    plans: list[Plan], problem: Problem, taken: set[str], columns: Any
+    plans: list[Plan], problem: Problem, names: set[str], columns: Any
 ) -> tuple[str, str]:
     for plan in plans:
         try:
-            answer.accepted(plan, problem, taken)
+            answer.accepted(plan, problem, names)
         except answer.Unfit as fault:
             return "", str(fault)
         if plan.extra.keys() != columns:

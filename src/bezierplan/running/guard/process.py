@@ -46,12 +46,12 @@ def made(
     name: str,
     limit: float | None = None,
     hashing: int = 0,
-) -> Iterator[worker.Made]:
+) -> Iterator[worker.Reply]:
     """`worker.made` in a process of its own, with plain values; before them that of `again` in a
     process with another seed of `hash`, which must not count. hashing: that seed. Raises
     PlannerFailure as `answers` does.
     """
-    given = work._asdict() | {
+    content = work._asdict() | {
         "planner": str(Path(work.planner).resolve()) if is_file(work.planner) else work.planner,
         "problems": worker.packed_problems(work.problems),
         "worlds": {key: to_json(world) for key, world in (work.worlds or {}).items()},
@@ -59,12 +59,12 @@ def made(
     if again:
         for each in made(work, [again], None, name, limit, hashing + 1):
             yield each._replace(number=-1)
-    parts = given | {"tasks": list(tasks), "again": again}
+    parts = content | {"tasks": list(tasks), "again": again}
     for number, found, cpu, wall in answers(
         "guard.worker.plain_answers", parts, name, limit, hashing
     ):
         with plain_values(name):
-            yield worker.Made(number, plain.unpacked(found), seconds(cpu), seconds(wall))
+            yield worker.Reply(number, plain.unpacked(found), seconds(cpu), seconds(wall))
 
 
 def answers(
@@ -139,7 +139,7 @@ def _log(printed: Path, name: str) -> None:
         )
 
 
-def _read(lines: Path, name: str, ended: str, took: float) -> list[Any]:
+def _read(lines: Path, name: str, end: str, took: float) -> list[Any]:
     """The answers among the lines of a process. Raises PlannerFailure."""
     answers_read, done = [], False
     with plain_values(name):
@@ -158,7 +158,7 @@ def _read(lines: Path, name: str, ended: str, took: float) -> list[Any]:
                 done = True
                 by_clock = seconds(value)
     if not done:
-        raise PlannerFailure(f"{name}: {ended}")
+        raise PlannerFailure(f"{name}: {end}")
     share, least = _CLOCKS
     if abs(by_clock - took) > share * took + least:
         raise PlannerFailure(

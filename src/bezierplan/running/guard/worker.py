@@ -101,26 +101,26 @@ def _planned(
     rng: np.random.Generator,
     settings: dict[str, Any],
     warm: bool,
-    seen: Problem,
+    view: Problem,
     last: Any,
 ) -> tuple[Plan, Any]:
     """A plan of a robot for what it sees, as plain values, and what the next one gets as last."""
     if not warm:
-        return answer.accepted(module.plan(seen, rng, **settings), seen), None
-    pair = module.resume(seen, rng, last, **settings)
+        return answer.accepted(module.plan(view, rng, **settings), view), None
+    pair = module.resume(view, rng, last, **settings)
     if not isinstance(pair, tuple) or len(pair) != 2:
         raise TypeError(
             f"resume returns a {type(pair).__name__}; expected a Plan and what the next call gets "
             "as last"
         )
-    return answer.accepted(pair[0], seen), pair[1]
+    return answer.accepted(pair[0], view), pair[1]
 
 
-class Made(NamedTuple):
+class Reply(NamedTuple):
     """What a planner has made. number: of its task, -1 of a warm-up. cpu, wall: seconds."""
 
     number: int
-    found: Any
+    result: Any
     cpu: float
     wall: float
 
@@ -130,16 +130,16 @@ def made(
     tasks: Iterable[Task],
     again: Task | None = None,
     begin: Callable[[str], None] = lambda name: None,
-) -> Iterator[Made]:
+) -> Iterator[Reply]:
     """What a planner makes of tasks, one after the other. again: the task of warm-up runs before
     them, of which the first and the last are yielded. begin: told the name of each run. Raises
     PlannerFailure, naming the run.
     """
 
-    def one(number: int, task: Task) -> Made:
+    def one(number: int, task: Task) -> Reply:
         begin(task.name)
         with answer.of(task.name):
-            return Made(number, *timed(partial(work.once, task)))
+            return Reply(number, *timed(partial(work.once, task)))
 
     if again:
         yield from warm_up(partial(one, -1, again))
@@ -154,12 +154,12 @@ def timed(once: Callable[[], T]) -> tuple[T, float, float]:
     return found, cpu_time() - cpu, time.perf_counter() - wall
 
 
-def warm_up(once: Callable[[], Made]) -> list[Made]:
+def warm_up(once: Callable[[], Reply]) -> list[Reply]:
     """The first and the last of some runs, which are made until their CPU time is stable or they
     are long: the first ones of a process load code and wake the processor.
     """
     taken: list[float] = []
-    made: list[Made] = []
+    made: list[Reply] = []
     while len(taken) < _ALIKE or max(taken[-_ALIKE:]) > (1 + _STABLE) * min(taken[-_ALIKE:]):
         made[1:] = [once()]
         taken.append(made[-1].cpu)
@@ -180,12 +180,12 @@ def packed_problems(problems: dict[str, Problem]) -> dict[str, list[Any]]:
     }
 
 
-def unpacked_problems(packed: dict[str, list[Any]]) -> dict[str, Problem]:
+def unpacked_problems(content: dict[str, list[Any]]) -> dict[str, Problem]:
     """The reverse; problems in one workspace share its object."""
-    workspaces = {text: files.from_json(text) for text in {each[1] for each in packed.values()}}
+    workspaces = {text: files.from_json(text) for text in {each[1] for each in content.values()}}
     return {
         key: Problem(name, workspaces[text], tuple(start), tuple(target))
-        for key, (name, text, start, target) in packed.items()
+        for key, (name, text, start, target) in content.items()
     }
 
 
