@@ -96,15 +96,8 @@ def _name(name: str, field: FieldInfo) -> str:
     return f"**`{name}`**" if field.is_required() else f"`{name}`"
 
 
-# How the type of a column's values is printed.
-_PRINTED = {
-    columns.RunName: "word",
-    str: "word",
-    int: "whole number",
-    float: "number",
-    bool: "flag",
-    list[float]: "numbers",
-}
+# How the type of a column's values is printed: a name is a word.
+_PRINTED = {kind: word for word, kind in columns.VALUES.items()} | {columns.RunName: "word"}
 
 
 def columns_of(table: columns.Table) -> str:

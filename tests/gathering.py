@@ -128,7 +128,7 @@ def write_runs(study: Study) -> None:
     for file in (files.problems, *files.chunks):
         Path(file).parent.mkdir(parents=True, exist_ok=True)
     problems.write(made, described.homes, files.problems)
-    parquet.write_table(problems.bounds_of(problems.read(files.problems)), files.bounds)
+    rows.write(problems.bounds_of(problems.read(files.problems)), files.bounds)
     for method in study.methods_of("all"):
         runs, times = execution.run_chunk(
             made, jobs.job(study, "all", method, SCALE, 0)._replace(repeats=[0, MADE])

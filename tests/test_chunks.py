@@ -2,11 +2,7 @@
 compared pair by pair.
 """
 
-from dataclasses import fields
-from pathlib import Path
-
 import numpy as np
-import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
@@ -38,13 +34,7 @@ def experiment(repeats, chunk, **others):
     [(10, 4, 3), (8, 4, 2), (1, 1, 1), (9, 3, 3), (100, 1, 100), (4, 4, 1)],
 )
 def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
-    empty = {field.name: {} for field in fields(definition.Study)} | {
-        "key": "s",
-        "folder": Path(),
-        "title": "A study",
-        "claims": [],
-    }
-    own = definition.Study(**empty | {"experiments": {"first": experiment(repeats, chunk)}})
+    own = definition.Study.model_construct(experiments={"first": experiment(repeats, chunk)})
     assert list(jobs.chunks(own, "first", "mine", "full")) == list(range(count))
 
 
@@ -102,7 +92,7 @@ def chunks(tmp_path):
     grid = from_lines(["..", ".."], 1.0, "m")
     described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
     problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
-    parquet.write_table(problems.bounds_of(described), tmp_path / "bounds.parquet")
+    rows.write(problems.bounds_of(described), str(tmp_path / "bounds.parquet"))
     for method in ("mine", "other"):
         folder = tmp_path / "runs" / "first" / method
         folder.mkdir(parents=True)
@@ -115,15 +105,14 @@ def chunks(tmp_path):
                 | {"id": f"{method}{n}", "repeat": int(n), "length": 2.0, "feasible": True}
                 for n in repeats
             ]
-            times = pd.DataFrame(
-                {"id": [run["id"] for run in runs], "cpu_s": repeats / 100, "wall_s": repeats / 50}
-            )
+            times = [
+                {"id": run["id"], "cpu_s": run["repeat"] / 100, "wall_s": run["repeat"] / 50}
+                for run in reversed(runs)
+            ]
             rows.write(
                 rows.table(runs, columns.Planned, columns.Outcome), str(folder / f"{chunk}.parquet")
             )
-            parquet.write_table(
-                pa.Table.from_pandas(times[::-1]), folder / f"{chunk}.times.parquet"
-            )
+            parquet.write_table(rows.table(times, columns.Times), folder / f"{chunk}.times.parquet")
     return tmp_path
 
 

@@ -220,11 +220,6 @@ def test_problems_are_legal_and_only_the_sealed_one_has_no_way(kind):
         )
 
 
-def test_many_missing_settings_are_named_without_their_meanings():
-    with pytest.raises(Fault, match=r"are missing: curve, .*, collision_surcharge; `list --sett"):
-        contract.check_planner("bca", {})
-
-
 CHECK = (
     'def check(settings):\n    raise ValueError("evaluations: 20; an odd number is '
     'needed")\n\n\ndef plan('

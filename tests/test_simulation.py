@@ -9,17 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, rounded_shortest_path, shortest_path
 from bezierplan.running.simulation import bounds, cells, evasion, motion_check
 from bezierplan.running.simulation.circles import comes_near
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.running.simulation.regions import region_of
 from bezierplan.running.simulation.robot import drive
 from bezierplan.running.simulation.ways import way
 from bezierplan.workspaces import worlds
-from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
@@ -344,21 +342,6 @@ def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
     expected = 0.25 + math.dist((0.5, 1.5), (1.5, 2.5)) + math.dist((1.5, 2.5), (2.5, 2.5)) + 1.0
     assert cells.least_plan(motion, grid, (3.5, 2.5)) == pytest.approx(expected)
     assert math.isnan(cells.least_plan(motion, grid, (3.4, 2.5)))
-
-
-@given(
-    st.lists(st.integers(0, 1), min_size=12, max_size=12),
-    st.sampled_from([(3, 4), (4, 3)]),
-    st.sampled_from([0.5, 1.0]),
-    st.sampled_from([(0.0, 0.0), (2.0, -1.0)]),
-)
-def test_the_region_that_is_kept_of_a_map_is_the_map_s_own(occupied, shape, cell, origin):
-    grid = Grid(np.array(occupied, dtype=bool).reshape(shape), cell, "m", origin)
-    kept, own = region_of(grid), region(grid)
-    assert (kept.cell, kept.bins.side) == (own.cell, own.bins.side)
-    for name in ("origin", "blocked", "counts", "edges"):
-        assert np.array_equal(getattr(kept, name), getattr(own, name))
-    assert region_of(Grid(grid.occupied.copy(), cell, "m", origin)) is kept
 
 
 # What no robot can beat

@@ -135,7 +135,7 @@ def unlisted(folder):
 def test_untouched_results_are_sound_and_all_runs_can_be_made_again(results, capsys):
     status, lines, _ = verified(capsys, results, "--all")
     assert (status, lines[-1]) == (0, "sound")
-    assert lines[0] == "12 runs in 4 files: 7 different paths judged again, 1 bounds computed again"
+    assert lines[0] == "12 runs in 4 files: 7 different paths judged again"
     assert lines[1] == "12 runs made again"
     page = (results / "index.html").read_text()
     assert recheck.sha256(results / "verified.json") in page
@@ -197,13 +197,16 @@ def test_a_list_that_is_none_and_a_missing_file_are_one_line(results, capsys):
     assert told[-1].startswith(f"{results / 'verified.json'}: not a list of digests")
 
 
-def test_a_claim_that_was_edited_together_with_the_list_is_named(results, capsys):
-    file = results / "bend/claims.csv"
-    file.write_text(file.read_text().replace("shorter", "longer"))
-    listed(results, "bend/claims.csv")
+def test_a_claim_or_a_bound_that_was_edited_together_with_the_list_is_named(results, capsys):
+    bounds, claims = "bend/problems/bends.bounds.parquet", "bend/claims.csv"
+    edited(results / bounds, "bound", lambda values: [value + 0.1 for value in values])
+    listed(results, bounds)
+    (results / claims).write_text((results / claims).read_text().replace("shorter", "longer"))
+    listed(results, claims)
     status, lines, _ = verified(capsys, results)
     assert status == 1
-    assert any(line.startswith(f"{file}: all bytes: ") for line in lines)
+    for name in (bounds, claims):
+        assert any(line.startswith(f"{results / name}: all bytes: ") for line in lines)
 
 
 FORGED = {
@@ -336,22 +339,20 @@ DRIVES = CHUNK._replace(
 
 @pytest.fixture(scope="module")
 def tasks(tmp_path_factory):
-    """What is to be judged: runs and drives, and the bounds of each."""
+    """What is to be judged: runs and drives."""
     folder = tmp_path_factory.mktemp("files")
     files = {name: str(folder / f"{name}.parquet") for name in ("e", "d")}
     problems.write(MADE, dict.fromkeys(MADE, "field"), files["e"])
     worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, files["d"])
-    bounds = {"e": problems.bounds_of(MADE), "d": worlds.bounds_of(MET, WORLDS)}
     runs = {
         "e": (CHUNK, execution.run_chunk(MADE, CHUNK)[0]),
         "d": (DRIVES, execution.run_chunk(MET, DRIVES, WORLDS)[0]),
     }
     made = {}
     for name, (chunk, table) in runs.items():
-        file, bound = str(folder / f"{name}.runs.parquet"), str(folder / f"{name}.bounds.parquet")
+        file = str(folder / f"{name}.runs.parquet")
         rows.write(table, file)
-        parquet.write_table(bounds[name], bound)
-        made[name] = recheck.Task(files[name], {file: chunk}), recheck.Task(files[name], {}, bound)
+        made[name] = recheck.Task(files[name], {file: chunk})
     return made
 
 
@@ -360,10 +361,10 @@ def each(request, tasks):
     return tasks[request.param]
 
 
-def test_runs_drives_and_bounds_are_sound_and_can_be_made_again(each):
-    verdict = recheck.verify([*each], 1)
-    assert (verdict.faults, verdict.files, verdict.runs, verdict.bounds) == ((), 1, 4, 2)
-    assert recheck.made_again([*each], 1, verdict.digest, every=True) == (4, [])
+def test_runs_and_drives_are_sound_and_can_be_made_again(each):
+    verdict = recheck.verify([each], 1)
+    assert (verdict.faults, verdict.files, verdict.runs) == ((), 1, 4)
+    assert recheck.made_again([each], 1, verdict.digest, every=True) == (4, [])
 
 
 EDITS: dict[tuple[str, str, str], Callable] = {
@@ -371,10 +372,10 @@ EDITS: dict[tuple[str, str, str], Callable] = {
     ("e", "length", "length"): lambda values: [value - 1e-6 for value in values],
     ("e", "clearance", "clearance"): lambda values: [value + 1e-6 for value in values],
     ("e", "path_points", "length"): lambda values: [[1.0, 8.0, 5.0, 9.0, 9.0, 8.0]] * len(values),
-    ("e", "path_points", "path_points (target)"): lambda values: [
+    ("e", "path_points", "path_points"): lambda values: [
         [*points[:-1], points[-1] + 0.5] for points in values
     ],
-    ("e", "path_points", "path_points"): lambda values: [[1.0, 8.0, 9.0]] * len(values),
+    ("e", "path_curve", "path_points"): lambda values: [""] * len(values),
     ("e", "repeat", "repeat"): lambda values: [value + 1 for value in values],
     ("e", "method", "method"): lambda values: ["other"] * len(values),
     ("e", "generations", "generations"): lambda values: [7] * len(values),
@@ -389,7 +390,7 @@ EDITS: dict[tuple[str, str, str], Callable] = {
 
 @pytest.mark.parametrize(("name", "column", "named"), EDITS)
 def test_an_edit_is_told_with_file_run_column_and_both_values(tasks, tmp_path, name, column, named):
-    task = tasks[name][0]
+    task = tasks[name]
     ((file, chunk),) = task.runs.items()
     copy = shutil.copy(file, tmp_path)
     edited(copy, column, EDITS[name, column, named])
@@ -399,26 +400,12 @@ def test_an_edit_is_told_with_file_run_column_and_both_values(tasks, tmp_path, n
 
 
 def test_motion_that_was_edited_shows_when_it_is_made_again(tasks, tmp_path):
-    task = tasks["d"][0]
+    task = tasks["d"]
     ((file, chunk),) = task.runs.items()
     copy = shutil.copy(file, tmp_path)
     edited(copy, "steps", lambda values: [value + 1 for value in values])
     _, faults = recheck.made_again([task._replace(runs={copy: chunk})], 1, "", every=True)
     assert {fault.column for fault in faults} == {"steps"}
-
-
-@pytest.mark.parametrize(
-    ("name", "column"),
-    [("e", "bound"), ("d", "least_arrival"), ("d", "bound"), ("d", "bound_path")],
-)
-def test_an_edited_bound_is_told(tasks, tmp_path, name, column):
-    task = tasks[name][1]
-    copy = shutil.copy(task.bounds, tmp_path)
-    edited(
-        copy, column, lambda values: [np.multiply(value, 1.001).tolist() for value in values], False
-    )
-    faults = recheck.judged(task._replace(bounds=copy)).faults
-    assert {(fault.file, fault.column) for fault in faults} == {(copy, column)}
 
 
 FOREIGN = {
@@ -435,10 +422,10 @@ FOREIGN = {
 @pytest.mark.parametrize("case", FOREIGN)
 def test_a_foreign_table_is_refused(tasks, tmp_path, case):
     change, fault = FOREIGN[case]
-    task = tasks["e"][0]
+    task = tasks["e"]
     ((file, chunk),) = task.runs.items()
     copy = str(tmp_path / "0.parquet")
-    parquet.write_table(change(parquet.read_table(file)), copy)
+    rows.write(change(parquet.read_table(file)), copy)
     with pytest.raises(ValueError, match=fault):
         recheck.judged(task._replace(runs={copy: chunk}))
 
@@ -450,9 +437,8 @@ def test_wrong_input_is_one_line_with_status_2(tasks, tmp_path, capsys):
     cut = tmp_path / "cut.parquet"
     cut.write_bytes(b"PAR1")
     for task, fault in (
-        (tasks["e"][0]._replace(problems=str(cut)), "not a whole file of problems"),
-        (tasks["e"][1]._replace(bounds=str(cut)), "not a whole Parquet file"),
-        (tasks["e"][0]._replace(problems=tasks["d"][0].problems), "not of the problems that"),
+        (tasks["e"]._replace(problems=str(cut)), "not a whole file of problems"),
+        (tasks["e"]._replace(problems=tasks["d"].problems), "not of the problems that"),
     ):
         with pytest.raises(ValueError, match=f".parquet: {fault}"):
             recheck.judged(task)

@@ -216,12 +216,6 @@ EDITS = {
         "        0\n        compared = comparison.compare(\n",
         dict.fromkeys(("table table1", "latex table1", *SUMMARY), 1),
     ),
-    "what another job does": (
-        "src/bezierplan/analysis/jobs.py",
-        "        return again.with_chunks(",
-        "        0\n        return again.with_chunks(",
-        {},
-    ),
     "how a job is logged": (
         "src/bezierplan/running/jobs/log.py",
         'LAST = "CRITICAL "',

@@ -101,8 +101,7 @@ SUMMARY = expand(
 )
 
 
-# What was judged again of all that the page shows, every bound computed again, and a digest of
-# every file.
+# What was judged again of all that the page shows, and a digest of every file.
 rule verified:
     input:
         runs=read(
@@ -125,7 +124,6 @@ rule verified:
         "results/{scale}/verified.log",
     conda:
         "../envs/bezierplan.yaml"
-    threads: 2
     params:
         **params(page.verified, root=PREFIX),
     script:

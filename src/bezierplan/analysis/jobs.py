@@ -103,13 +103,10 @@ class Bounds(Job):
 
     def run(self, input_files, output_files, threads):
         """Compute the bounds."""
-        import pyarrow.parquet as parquet
-
-        from bezierplan.running import problems, worlds
+        from bezierplan.running import problems, rows, worlds
 
         file = input_files.problems
-        bounds = worlds.bounds_of(problems.read(file), worlds.read(file))
-        parquet.write_table(bounds, output_files[0])
+        rows.write(worlds.bounds_of(problems.read(file), worlds.read(file)), output_files[0])
 
 
 @dataclass(frozen=True)
@@ -424,33 +421,20 @@ class Verdict(Job):
 
 @dataclass(frozen=True)
 class Verified(Job):
-    """What was judged again of all that the page shows: runs (judgements), and every bound; and the
-    digest of every file.
-    """
+    """What was judged again of all that the page shows, and the digest of every file."""
 
     folder: str
     """That of the scale."""
 
     def run(self, input_files, output_files, threads):
-        """Compute the bounds again, and list the files."""
+        """List the files."""
         import json
 
-        from bezierplan.running import inputs
         from bezierplan.running.judge import recheck
 
-        tasks = [
-            recheck.Task(files.problems, {}, files.bounds)
-            for files in inputs.experiments(self.shows, input_files).values()
-        ]
         judgements = [json.loads(Path(file).read_text()) for file in input_files.judgements]
         verdict = recheck.merged(
-            [
-                recheck.verify(tasks, threads),
-                *(
-                    recheck.Verdict(**each | {"digests": tuple(each["digests"])})
-                    for each in judgements
-                ),
-            ]
+            recheck.Verdict(**each | {"digests": tuple(each["digests"])}) for each in judgements
         )
         # The times and traces of a chunk lie beside it.
         beside = [

@@ -19,12 +19,12 @@ _FOLLOW = (
     *("*/problems/*.parquet", "*/paper/*", "*/beyond/*", "*/*.csv", "*/verdict.md"),
     *("*.csv", "summary.md", "index.html"),
 )
-"""Files that follow from the studies, from runs and from bounds."""
+"""Files that follow from the studies and from runs."""
 _ENDINGS = {".csv", ".tex", ".md", ".html", ".parquet"}
 """Those by which Snakemake is asked for all of them."""
 _RULES = (
-    *("problems", "table", "unprinted_table", "listing", "latex", "figure", "claims", "audit"),
-    *("baseline_comparison", "summary", "verdict", "page"),
+    *("problems", "bounds", "table", "unprinted_table", "listing", "latex", "figure", "claims"),
+    *("audit", "baseline_comparison", "summary", "verdict", "page"),
 )
 
 
@@ -55,18 +55,13 @@ def unlisted(folder: Path) -> list[Fault]:
 def differing(
     folder: Path, config: dict[str, Any], places: dict[str, str], processes: int
 ) -> tuple[int, list[Fault]]:
-    """How many files follow from studies, runs and bounds, and which of them are others if they are
+    """How many files follow from studies and runs, and which of them are others if they are
     made again. places: of the studies. Raises ValueError if that fails.
     """
     with tempfile.TemporaryDirectory() as away:
         again = Path(away, "results", folder.resolve().name)
         shutil.copytree(folder, again, ignore=shutil.ignore_patterns("logs"))
-        files = [
-            file
-            for pattern in _FOLLOW
-            for file in sorted(again.glob(pattern))
-            if ".bounds." not in file.name
-        ]
+        files = [file for pattern in _FOLLOW for file in sorted(again.glob(pattern))]
         before = {file: sha256(file) for file in files}
         # What lies above all studies is of those that the list names.
         listed = {name.split("/")[0] for name in _listed(folder)}

@@ -96,14 +96,14 @@ _DRIVEN = {"runs": "arrival", "times": "replan_mean_s", "bounds": "least_arrival
 
 
 def _read(file: str, kind: str) -> pd.DataFrame:
-    """The rows of a file. Raises ValueError, naming the file, if its runs were edited, or if it
-    lacks a declared column or has it in another type.
+    """The rows of a file. Raises ValueError, naming the file, if its runs or bounds were edited,
+    or if it lacks a declared column or has it in another type.
     """
     table, declared = row_files.read(file), TABLES[kind]
     drives = [declared.drives] if _DRIVEN[kind] in table.column_names else []
     if fault := row_files.fault(table.schema, *declared.every, *drives):
         raise row_files.misplaced(file, fault)
-    if kind == "runs" and row_files.kept_digest(table) != row_files.rows_digest(table):
+    if kind != "times" and row_files.kept_digest(table) != row_files.rows_digest(table):
         raise row_files.misplaced(file, "its rows are not those that were written")
     return table.to_pandas()
 

@@ -17,8 +17,8 @@ def main(
     outcome: bool = False,
 ) -> None:
     """Print a line for each stored value or file that differs from what is made again, and what was
-    checked: runs are judged again, bounds computed again, one run in a hundred and all files that
-    follow from runs made again.
+    checked: runs are judged again, one run in a hundred, bounds and all files that follow from runs
+    made again.
 
     Ends with status 1 if anything differs. Raises ValueError or FileNotFoundError for a folder
     without results or a file that cannot be read.
@@ -79,7 +79,7 @@ def from_runs(
     faults += verdict.faults
     lines = [
         f"{verdict.runs} runs in {verdict.files} files: {verdict.paths} different paths judged "
-        f"again, {verdict.bounds} bounds computed again"
+        "again"
     ]
     if not faults:
         runs, faults = recheck.made_again(tasks, processes, verdict.digest, every)

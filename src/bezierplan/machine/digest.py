@@ -215,7 +215,10 @@ def _reached(*modules: str) -> tuple[str, set[str]]:
     while todo:
         module = todo.pop()
         if module not in texts and module.file() and module.name not in NEUTRAL:
-            texts[module] = f"{module.name} {_syntax(module.file()).tree}"
+            # What a module declares may stand in a file of data with its name.
+            beside = module.file().with_suffix(".csv")
+            data = beside.read_text(encoding="utf-8") if beside.is_file() else ""
+            texts[module] = f"{module.name} {_syntax(module.file()).tree}{data}"
             todo += _imports(module)
             libraries.update(
                 base.split(".")[0]

@@ -10,7 +10,7 @@ import math
 from collections.abc import Collection, Iterator
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -180,7 +180,7 @@ def read(file: str) -> dict[str, Problem]:
     """The problems of a file, by name, in file order; those in one workspace share its object."""
     from bezierplan.running import rows
 
-    table = rows.read_alone(file).to_pylist()
+    table = rows.read(file, threads=False).to_pylist()
     drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
     return {
         row["problem"]: Problem(
@@ -202,18 +202,18 @@ def bounds_of(problems: dict[str, Problem]) -> "pa.Table":
         bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem))
         for name, problem in problems.items()
     ]
-    return rows.table([each._asdict() for each in bounds], Bound)
+    return rows.table(bounds, Bound)
 
 
 def bound_row(
     name: str, problem: Problem, bound: "shortest_paths.Bound", octile_bound: float
-) -> Bound:
+) -> dict[str, Any]:
     """A row of a file of bounds. bound: the shortest path, in units; octile_bound: in units, NaN
     where there is none.
     """
     from bezierplan.geometry import shortest_paths
 
-    return Bound(
+    row = Bound(
         problem=name,
         straight_line=math.dist(problem.start, problem.target),
         bound=bound.length,
@@ -221,6 +221,7 @@ def bound_row(
         bound_path=bound.points.ravel().tolist(),
         octile_bound=octile_bound,
     )
+    return row._asdict()
 
 
 def _cell_bound(problem: Problem) -> float:

@@ -51,10 +51,7 @@ def fault(schema: pa.Schema, *declared: type) -> str:
         if name not in schema.names:
             return f"no column {name}"
         found = schema.field(name).type
-        # What wrote a file chooses between the two types of text.
-        if found != _TYPES[kind] and not (
-            pa.types.is_large_string(found) and pa.types.is_string(_TYPES[kind])
-        ):
+        if found != _TYPES[kind]:
             return f"column {name} is of type {found}, not {_TYPES[kind]}"
     return ""
 
@@ -65,10 +62,14 @@ def write(table: pa.Table, file: str) -> None:
     parquet.write_table(table.replace_schema_metadata(metadata), file)
 
 
-def read(file: str) -> pa.Table:
-    """The table of a Parquet file. Raises ValueError, naming it, unless it is a whole one."""
+def read(file: str, threads: bool = True) -> pa.Table:
+    """The table of a Parquet file; without pyarrow's threads this process can be forked. Raises
+    ValueError, naming it, unless it is a whole one.
+    """
     try:
-        return parquet.read_table(file)
+        content = pa.BufferReader(Path(file).read_bytes())
+        with parquet.ParquetFile(content, pre_buffer=False) as source:
+            return source.read(use_threads=threads)
     except (OSError, pa.ArrowException):
         raise misplaced(file, "not a whole Parquet file") from None
 
@@ -76,13 +77,6 @@ def read(file: str) -> pa.Table:
 def misplaced(file: str, what: str) -> ValueError:
     """The exception for a file of results that is not what belongs in its place."""
     return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
-
-
-def read_alone(file: str) -> pa.Table:
-    """A small table, read without pyarrow's threads, so that this process can be forked."""
-    content = pa.BufferReader(Path(file).read_bytes())
-    with parquet.ParquetFile(content, pre_buffer=False) as source:
-        return source.read(use_threads=False)
 
 
 def kept_digest(table: pa.Table) -> str | None:

@@ -69,7 +69,7 @@ def write(
 
 def read(file: str) -> dict[str, World]:
     """The worlds of a file of problems, by problem; empty if nothing moves there."""
-    table = rows.read_alone(file)
+    table = rows.read(file, threads=False)
     if "world" not in table.column_names:
         return {}
     made = zip(table["problem"].to_pylist(), table["world"].to_pylist())
@@ -86,7 +86,5 @@ def bounds_of(problems: dict[str, Problem], moving: dict[str, World]) -> pa.Tabl
     for name, problem in problems.items():
         least = bounds.least_way(moving[name], problem)
         arrival = DriveBound(bounds.least_arrival(moving[name], problem))
-        made.append(
-            problem_files.bound_row(name, problem, least, math.nan)._asdict() | arrival._asdict()
-        )
+        made.append(problem_files.bound_row(name, problem, least, math.nan) | arrival._asdict())
     return rows.table(made, Bound, DriveBound)

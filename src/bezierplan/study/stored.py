@@ -32,8 +32,7 @@ def tasks(studies: Studies, folder: Path) -> list[Task]:
     """What is to be judged below a scale's folder. Raises Fault for what no study makes, and
     FileNotFoundError without runs.
     """
-    scale = folder.resolve().name
-    listed = []
+    scale, listed = folder.resolve().name, []
     for place in sorted(folder.glob("*/runs/*/*")):
         key, _, experiment, method = place.relative_to(folder).parts
         check_known(scale, SCALES, f"{folder}: scale")
@@ -46,6 +45,4 @@ def tasks(studies: Studies, folder: Path) -> list[Task]:
         raise FileNotFoundError(
             f"{folder}: no runs here; expected a folder of results, such as results/full"
         )
-    for file in sorted(folder.glob("*/problems/*.bounds.parquet")):
-        listed.append(Task(str(file).replace(".bounds.", "."), {}, str(file)))
     return listed

@@ -19,7 +19,7 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from typing import Any, TextIO
 
@@ -170,18 +170,6 @@ class Forks:
             ).pid
 
 
-@contextlib.contextmanager
-def _measured(process: int, benchmark: Any) -> Iterator[None]:
-    """Fill Snakemake's record of what a process takes, if there is one."""
-    if benchmark is None:
-        yield
-        return
-    from snakemake.benchmark import benchmarked
-
-    with benchmarked(process, benchmark):
-        yield
-
-
 def _watched(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
     """What a job had under way last, how it ended as the operating system says, None if there is no
     telling, and why it was ended here, if it was: it had taken longer than it may.
@@ -206,7 +194,10 @@ def _watched(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
                     return under_way, int(text), ended
                 if kind == PROCESS:
                     process = int(text)
-                    measuring.enter_context(_measured(process, benchmark))
+                    if benchmark is not None:
+                        from snakemake.benchmark import benchmarked
+
+                        measuring.enter_context(benchmarked(process, benchmark))
                 elif not ended:
                     under_way = text
                     job.settimeout(None if kind == "inf" else float(kind))

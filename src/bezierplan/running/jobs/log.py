@@ -2,7 +2,6 @@
 files, report a failure in one line.
 """
 
-import errno
 import glob
 import logging
 import os
@@ -10,7 +9,7 @@ import shutil
 import sys
 import tempfile
 import traceback
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -18,8 +17,6 @@ from typing import Any
 from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
 from bezierplan.schema.words import plain, told
 
-FULL = (errno.ENOSPC, errno.EDQUOT)
-"""What an operating system says of a full disk, or of a user's full share of it."""
 LAST = "CRITICAL "
 """What comes, in the log of a job that has failed, before the line that says why."""
 MOST_FRAMES, MOST_LINES, LONGEST_LINE = 100, 400, 2000
@@ -47,15 +44,10 @@ def job(snakemake: Any) -> Iterator[Any]:
         with whole_files(snakemake.output) as output:
             yield output
     except Exception as error:
-        if isinstance(error, OSError) and error.errno in FULL:
-            logging.raiseExceptions = False  # the log may lie on the same disk
+        logging.raiseExceptions = False  # the disk of the log may be full
         logging.error("failed\n%s", account(error))
         said = str(error) if isinstance(error, PlannerFailure) else told(error)
-        line = (
-            full_disk(error, snakemake.output)
-            or damaged(snakemake.input)
-            or f"{said} (full account: {log})"
-        )
+        line = f"{said} (full account: {log})"
         logging.critical(line)
         # With its end, or what another job says could stand on its line.
         print(f"{line}\n", end="", file=sys.stderr, flush=True)
@@ -100,29 +92,3 @@ def whole_files(files: Any) -> Iterator[Any]:
         yield parts
         for part, file in zip(parts, files, strict=True):
             os.replace(part, file)
-
-
-def full_disk(error: Exception, files: Any) -> str:
-    """What to do about a disk without space for a job's files; empty for another error."""
-    if not (isinstance(error, OSError) and error.errno in FULL):
-        return ""
-    return (
-        f"{Path(files[0]).parent}: no space left on this disk; free some and start again: "
-        "finished jobs are kept"
-    )
-
-
-def damaged(files: Iterable[str]) -> str:
-    """What to do about the first Parquet file that is cut off; empty if there is none."""
-    import pyarrow as pa
-    import pyarrow.parquet as parquet
-
-    for file in files:
-        try:
-            _ = file.endswith(".parquet") and parquet.read_schema(file)
-        except (OSError, pa.ArrowException):
-            return (
-                f"{file}: not a whole Parquet file; delete it and start again: the workflow "
-                "reproduces it"
-            )
-    return ""

@@ -79,20 +79,18 @@ def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
 def accepted(answer: Any, problem: Problem, taken: Collection[str] = ()) -> Plan:
     """`plain`, of an answer whose path joins the problem's start and target. Raises Unfit."""
     plan = plain(answer, taken)
-    check_ends(plan, problem)
+    check_ends(plan.path, problem)
     return plan
 
 
-def check_ends(plan: Plan, problem: Problem) -> None:
-    """Raise Unfit if an end of a plan's path differs from the problem's.
+def check_ends(path: Path | None, problem: Problem) -> None:
+    """Raise Unfit if an end of a path differs from the problem's.
 
     The comparison is bitwise, without a tolerance: a curve begins and ends at control points, into
     which a planner copies the problem's own numbers, so nothing is rounded.
     """
-    if plan.path is None:
-        return
-    for end, place in zip(("start", "target"), curves.ends(plan.path.curve)):
-        wanted, point = getattr(problem, end), tuple(plan.path.points[place].tolist())
+    for end, place in zip(("start", "target"), curves.ends(path.curve) if path else ()):
+        wanted, point = getattr(problem, end), tuple(path.points[place].tolist())
         if point != wanted:
             raise Unfit(f"path: {end}: {point}; expected exactly {wanted}")
 

@@ -1,5 +1,5 @@
-"""Are the results of a scale what their own points say? Every stored path is judged again, every
-bound computed again, and some runs are made again.
+"""Are the runs of a scale what their own points say? Every stored path is judged again, and some
+runs are made again.
 
 To judge, nothing here calls a planner: a path is read from its row, and judged on the workspace of
 the file of problems, in a process that no planner was in. What no path determines, such as a
@@ -14,19 +14,19 @@ import multiprocessing
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from itertools import chain
 from pathlib import Path as File
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 
-from bezierplan.geometry import curves
-from bezierplan.geometry.region import Region, region
+from bezierplan.geometry.region import region
 from bezierplan.machine.digest import COMPUTING, library_version
 from bezierplan.planners import is_file
 from bezierplan.running import execution, problems, rows, worlds
 from bezierplan.running.chunk import Chunk, Condition
-from bezierplan.running.columns import Bound, DriveBound, DriveOutcome, Outcome, Planned
+from bezierplan.running.columns import DriveOutcome, Outcome, Planned
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import end_with_parent
 from bezierplan.running.judge import answer
@@ -66,26 +66,21 @@ class Fault(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Files of runs of an experiment, each with the chunk that it is to hold; or, with a file of
-    bounds, that file.
-    """
+    """Files of runs of an experiment, each with the chunk that it is to hold."""
 
     problems: str
     runs: dict[str, Chunk]
-    bounds: str = ""
 
 
 class Verdict(NamedTuple):
     """faults: in order of files. files, runs: how many files of runs, and rows in them. paths:
-    different paths among these. bounds: how many were computed again. digests: a line for each file
-    of runs.
+    different paths among these. digests: a line for each file.
     """
 
     faults: tuple[Fault, ...] = ()
     files: int = 0
     runs: int = 0
     paths: int = 0
-    bounds: int = 0
     digests: tuple[str, ...] = ()
 
     @property
@@ -98,8 +93,8 @@ def verify(
     tasks: list[Task], processes: int, told: Callable[[str], None] = lambda line: None
 ) -> Verdict:
     """The verdict on tasks, in several processes. told: gets a line of progress now and then."""
-    # The largest first, so that no process ends long after the others: bounds take longest.
-    largest = sorted(tasks, key=lambda task: (not task.bounds, -len(task.runs)))
+    # The largest first, so that no process ends long after the others.
+    largest = sorted(tasks, key=lambda task: -len(task.runs))
     done = []
     for n, each in enumerate(_mapped(judged, largest, processes), start=1):
         done.append(each)
@@ -163,41 +158,33 @@ def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
 def judged(task: Task) -> Verdict:
     """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
     made, moving = _problems(task.problems)
-    if task.bounds:
-        return _bounds_judged(task.bounds, made, moving)
-    faults, files, lines = [], {}, []
+    faults, lines, files = [], [], {}
     for file, chunk in task.runs.items():
         if not chunk.problems.keys() <= made.keys():
             raise rows.misplaced(task.problems, "not of the problems that the runs are of")
-        table = _table(file, chunk)
-        digest = rows.rows_digest(table)
+        table = rows.read(file)
+        declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
+        kept, digest = rows.kept_digest(table), rows.rows_digest(table)
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
-        of_file = [
-            Fault(file, "all rows", "digest", kept or "none: another program wrote it", digest)
-            for kept in [rows.kept_digest(table)]
-            if kept != digest
-        ] or [*_identity_faults(file, table, chunk)]
+        if kept != digest:
+            stored = kept or "none: another program wrote it"
+            of_file = [Fault(file, "all rows", "digest", stored, digest)]
+        elif fault := rows.fault(table.schema, *declared):
+            raise rows.misplaced(file, fault)
+        else:
+            files[file] = table.to_pylist()
+            of_file = [*_identity_faults(file, files[file], chunk)]
+        if of_file:
+            files.pop(file, None)
         faults += of_file
-        files |= {} if of_file else {file: table}
-    known: dict[tuple[str, str, bytes], _Judged] = {}
-    for file, table in files.items():
-        faults += (
-            _drive_faults(file, table, made, moving)
-            if moving
-            else _path_faults(file, table, made, known)
-        )
+    known: dict[tuple, dict[str, tuple[Any, float]]] = {}
+    for file, stored in files.items():
+        for row in stored:
+            faults += _row_faults(file, row, made[row["problem"]], moving, known)
     faults += _alike(files, task.runs)
-    runs = sum(map(len, files.values()))
-    return Verdict(tuple(faults), len(task.runs), runs, len(known), 0, tuple(lines))
-
-
-def _table(file: str, chunk: Chunk) -> pa.Table:
-    """The runs of a file. Raises ValueError for one without their columns."""
-    table = rows.read(file)
-    declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
-    if fault := rows.fault(table.schema, *declared):
-        raise rows.misplaced(file, fault)
-    return table
+    return Verdict(
+        tuple(faults), len(task.runs), sum(map(len, files.values())), len(known), tuple(lines)
+    )
 
 
 def _runs(chunk: Chunk) -> list[tuple[Condition, int]]:
@@ -205,32 +192,28 @@ def _runs(chunk: Chunk) -> list[tuple[Condition, int]]:
     return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
 
 
-def _identity_faults(file: str, table: pa.Table, chunk: Chunk) -> Iterator[Fault]:
+def _identity_faults(file: str, stored: list[dict[str, Any]], chunk: Chunk) -> Iterator[Fault]:
     """Whether a file has the rows that it is to have, and what is known before their runs."""
     planned = [execution.identity(chunk, *each) for each in _runs(chunk)]
-    if len(table) != len(planned):
-        yield Fault(file, "all rows", "id", f"{len(table)} rows", f"{len(planned)} rows")
+    if len(stored) != len(planned):
+        yield Fault(file, "all rows", "id", f"{len(stored)} rows", f"{len(planned)} rows")
         return
-    known = rows.table(planned, Planned).to_pydict()
-    # What a run finds out takes the place of a setting of that name.
-    for name, values in ((name, known[name]) for name in known.keys() - {*Outcome._fields}):
-        stored = table[name].to_pylist() if name in table.column_names else [None] * len(table)
-        for row, one, other in zip(planned, stored, values):
-            if one != other:
-                yield Fault(file, row["id"], name, one, other)
+    for row, known in zip(stored, planned):
+        for name, value in known.items():
+            # What a run finds out takes the place of a setting of that name.
+            if name not in Outcome._fields and row.get(name) != value:
+                yield Fault(file, known["id"], name, row.get(name), value)
 
 
-def _alike(files: dict[str, pa.Table], chunks: dict[str, Chunk]) -> Iterator[Fault]:
+def _alike(files: dict[str, list[dict[str, Any]]], chunks: dict[str, Chunk]) -> Iterator[Fault]:
     """A planner of its author's own that is said to draw random numbers, but whose repeats are all
     alike, on every condition.
     """
     first = next(iter(chunks.values()))
     if not files or not is_file(first.planner) or interface.traits(first.planner).deterministic:
         return
-    names = ["condition", "repeat", "history", "path_points"]
-    every = [row for table in files.values() for row in table.select(names).to_pylist()]
     by_condition: dict[str, list[str]] = {}
-    for row in every:
+    for row in chain(*files.values()):
         found = repr([row["history"], row["path_points"]])
         by_condition.setdefault(row["condition"], []).append(found)
     if all(len(each) >= _ALIKE and len(set(each)) == 1 for each in by_condition.values()):
@@ -238,159 +221,82 @@ def _alike(files: dict[str, pa.Table], chunks: dict[str, Chunk]) -> Iterator[Fau
             next(iter(files)),
             f"planner {first.planner}",
             "history, path_points",
-            f"the same in all {len(every) // len(by_condition)} repeats",
+            f"the same in all {max(map(len, by_condition.values()))} repeats",
             "another with each rng: a planner draws from the rng that it is given, or says "
             "deterministic = True",
         )
 
 
-def _numbers(table: pa.Table, name: str) -> np.ndarray:
-    return table[name].to_numpy().astype(float)
-
-
-def _lists(table: pa.Table, name: str) -> list[np.ndarray]:
-    column = table[name].combine_chunks()
-    return np.split(column.flatten().to_numpy(), np.cumsum(column.value_lengths().to_numpy())[:-1])
-
-
-def _differing(
-    file: str, table: pa.Table, again: dict[str, tuple[np.ndarray, Any]]
+def _row_faults(
+    file: str,
+    row: dict[str, Any],
+    problem: Problem,
+    moving: dict[str, World],
+    known: dict[tuple, dict[str, tuple[Any, float]]],
 ) -> Iterator[Fault]:
-    """Values of a file that differ from those computed again, by column, with its tolerance."""
-    for name, (values, tolerance) in again.items():
-        stored = _numbers(table, name)
-        for row in np.flatnonzero(~same(stored, values, tolerance)):
-            before, after = table[name][row].as_py(), float(values[row])
-            yield Fault(
-                file,
-                table["id"][row].as_py(),
-                name,
-                before,
-                bool(after) if isinstance(before, bool) else after,
-            )
+    """What of a run differs from what its points say. known: what different paths say."""
+    points = row["path_points"]
+    try:
+        if moving:
+            again = _drive_judged(row, np.reshape(points, (-1, 2)), problem, moving[problem.name])
+        else:
+            key = problem.name, row["path_curve"], tuple(points)
+            if key not in known:
+                known[key] = _path_judged(row["path_curve"], points, problem)
+            again = known[key] | {"generations": (len(row["history"]) - 1, 0.0)}
+    except (ValueError, IndexError) as error:
+        again = {}
+        yield Fault(file, row["id"], "path_points", "a path", error)
+    for name, (value, tolerance) in again.items():
+        if row[name] is None or not same(row[name], value, tolerance):
+            yield Fault(file, row["id"], name, row[name], value)
 
 
-def same(stored: np.ndarray, again: np.ndarray, tolerance: Any) -> np.ndarray:
-    """Whether numbers (n,) equal those computed again, up to a tolerance, relative and absolute;
+def same(stored: float, again: float, tolerance: float) -> bool:
+    """Whether a number equals one that is computed again, up to a tolerance, relative and absolute;
     not a number equals itself.
     """
-    with np.errstate(invalid="ignore"):
-        size = np.maximum(1.0, np.maximum(np.abs(stored), np.abs(again)))
-        close = (np.abs(stored - again) <= tolerance * size) & np.isfinite(size)
-    return (stored == again) | close | (np.isnan(stored) & np.isnan(again))
+    return math.isclose(stored, again, rel_tol=tolerance, abs_tol=tolerance) or (
+        math.isnan(stored) and math.isnan(again)
+    )
 
 
-# --------------------------------------------------------------------------------------------------
-# Paths and drives
-
-
-class _Judged(NamedTuple):
-    """What the points of a path say. verdict: length, feasible, collision_at, depth, clearance,
-    tolerance. faults: column, stored value, and what would be right.
+def _path_judged(curve: str, points: list[float], problem: Problem) -> dict[str, tuple[Any, float]]:
+    """What the points of a path say, by column, with its tolerance. Raises ValueError for points
+    that are none, or of no path of the problem.
     """
-
-    verdict: tuple[float, ...]
-    faults: tuple[tuple[str, Any, Any], ...]
-
-
-def _path_faults(
-    file: str,
-    table: pa.Table,
-    made: dict[str, Problem],
-    known: dict[tuple[str, str, bytes], _Judged],
-) -> Iterator[Fault]:
-    """What of runs differs from what their points say. known: what different paths say."""
-    verdicts = np.full((len(table), 6), math.nan)
-    words = (table[name].to_pylist() for name in ("id", "problem", "path_curve"))
-    for row, (run, name, curve, points) in enumerate(zip(*words, _lists(table, "path_points"))):
-        key = name, curve, points.tobytes()
-        if key not in known:
-            known[key] = _path_judged(curve, points, made[name], region(made[name].workspace))
-        verdicts[row], faults = known[key]
-        yield from (Fault(file, run, *fault) for fault in faults)
-    length, feasible, collision_at, depth, clearance, tolerance = verdicts.T
-    slack = 2 * np.nan_to_num(tolerance) + _SAME
-    again = {
+    path = answer.restored(curve, points)
+    if path is None and points:
+        raise ValueError("none without a curve")
+    answer.check_ends(path, problem)
+    length, check = answer.verdict(path, region(problem.workspace))
+    slack = 2 * (check.tolerance if path else 0.0) + _SAME
+    return {
         "length": (length, _SAME),
-        "feasible": (feasible, 0.0),
-        "collision_at": (collision_at, _SAME_PLACE),
-        "collision_depth": (depth, slack),
-        "clearance": (clearance, slack),
-        "clearance_error": (tolerance, slack),
-        "generations": (np.array([len(each) - 1.0 for each in _lists(table, "history")]), 0.0),
+        "feasible": (check.feasible, 0.0),
+        "collision_at": (check.collision_at, _SAME_PLACE),
+        "collision_depth": (check.depth, slack),
+        "clearance": (check.clearance, slack),
+        "clearance_error": (check.tolerance, slack),
     }
-    yield from _differing(file, table, again)
 
 
-def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Region) -> _Judged:
-    """What the points of a path say. Points that are none, or of no path, are a fault."""
-    try:
-        path = answer.restored(curve, points)
-        length, check = answer.verdict(path, blocked)
-    except ValueError as error:
-        return _Judged((math.nan,) * 6, (("path_points", "a path", error),))
-    faults = []
-    if path is None and len(points):
-        faults.append(("path_points", f"{len(points)} numbers", "none without a curve"))
-    for end, place in zip(("start", "target"), curves.ends(curve) if path else ()):
-        point = tuple(path.points[place].tolist())
-        if point != getattr(problem, end):
-            faults.append((f"path_points ({end})", point, getattr(problem, end)))
-    return _Judged((length, *check[:5]), tuple(faults))
-
-
-def _drive_faults(
-    file: str, table: pa.Table, made: dict[str, Problem], moving: dict[str, World]
-) -> Iterator[Fault]:
-    """What of drives differs from what their ways say."""
-    measured = np.full((len(table), 3), math.nan)
-    for row, (name, flat) in enumerate(
-        zip(table["problem"].to_pylist(), _lists(table, "path_points"))
-    ):
-        points, ends = flat.reshape(-1, 2), (made[name].start, made[name].target)
-        measured[row] = (
-            np.hypot(*np.diff(points, axis=0).T).sum(),
-            (tuple(points[0].tolist()), tuple(points[-1].tolist())) == ends,
-            moving[name].pace,
-        )
-    length, joins, pace = measured.T
-    arrival, least = _numbers(table, "arrival"), _numbers(table, "clearance_least")
-    arrived, free = ~np.isnan(arrival), np.isnan(_numbers(table, "collision_at"))
-    again = {
+def _drive_judged(
+    row: dict[str, Any], points: np.ndarray, problem: Problem, world: World
+) -> dict[str, tuple[Any, float]]:
+    """What the way of a drive says, likewise."""
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    arrived = not math.isnan(row["arrival"])
+    joins = (tuple(points[0]), tuple(points[-1])) == (problem.start, problem.target)
+    free = math.isnan(row["collision_at"])
+    return {
         "length": (length, _SAME),
         "travelled": (length, _SAME),
         "claimed_feasible": (arrived, 0.0),
-        "feasible": (arrived & (joins == 1.0) & free, 0.0),
-        "objective": (np.where(arrived, arrival * pace, math.inf), _SAME),
-        "clearance": (np.maximum(least, 0.0), _SAME),
+        "feasible": (arrived and joins and free, 0.0),
+        "objective": (row["arrival"] * world.pace if arrived else math.inf, _SAME),
+        "clearance": (max(row["clearance_least"], 0.0), _SAME),
     }
-    yield from _differing(file, table, again)
-
-
-# --------------------------------------------------------------------------------------------------
-# Bounds
-
-
-def _bounds_judged(file: str, made: dict[str, Problem], moving: dict[str, World]) -> Verdict:
-    kept = rows.read(file)
-    if fault := rows.fault(kept.schema, Bound, *([DriveBound] if moving else [])):
-        raise rows.misplaced(file, fault)
-    again = worlds.bounds_of(made, moving)
-    stored = {row["problem"]: row for row in kept.to_pylist()}
-    faults = []
-    for row in again.to_pylist():
-        name, own = row["problem"], stored.pop(row["problem"], {})
-        for column, value in row.items():
-            if column != "problem" and not _alike_numbers(own.get(column), value):
-                faults.append(Fault(file, name, column, own.get(column), value))
-    faults += [Fault(file, name, "problem", name, "no problem of that name") for name in stored]
-    return Verdict(tuple(faults), bounds=len(again))
-
-
-def _alike_numbers(one: Any, other: Any) -> bool:
-    """Whether two numbers, or two lists of them, are the same up to a tolerance."""
-    stored, again = (np.atleast_1d(np.array(each, dtype=float)) for each in (one, other))
-    return len(stored) == len(again) and bool(same(stored, again, _SAME).all())
 
 
 # --------------------------------------------------------------------------------------------------

@@ -9,12 +9,11 @@ from typing import Literal
 import numpy as np
 
 from bezierplan.geometry import checker, shortest_paths
-from bezierplan.geometry.region import blocks, from_origin
+from bezierplan.geometry.region import blocks, from_origin, region
 from bezierplan.running.simulation import ways
 from bezierplan.running.simulation.circles import ARRIVED, BLOCKED, DUE, ENDED, STOPPED
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.running.simulation.regions import region_of
 from bezierplan.running.simulation.ways import Way
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
@@ -82,7 +81,7 @@ def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 def free_length(grid: Grid, way: Way, s: float) -> float:
     """The length from s on at which a way first enters an occupied cell; infinite if never."""
     points = way.part(s, way.length)
-    obstacles = region_of(grid)
+    obstacles = region(grid)
     collision_at, _ = checker.first_collision(
         from_origin(np.stack([points[:-1], points[1:]], axis=1), obstacles), obstacles
     )
@@ -96,7 +95,7 @@ def way_out(grid: Grid, way: Way) -> float:
     """The length of a way after which it first leaves the occupied cells; 0 if it does not begin in
     one, or does not leave them.
     """
-    cells = region_of(grid)
+    cells = region(grid)
     if not blocks(cells, tuple(way.points[0])):
         return 0.0
     for begin, (start, end) in zip(way.at, itertools.pairwise(way.points)):
@@ -157,7 +156,7 @@ def _start(
 ) -> np.ndarray | None:
     """Where a plan begins for a robot at a place, or None if that is occupied."""
     if start == "position":
-        return None if blocks(region_of(grid), tuple(place)) else place
+        return None if blocks(region(grid), tuple(place)) else place
     row, column = grid.cell_of(*place)
     return (
         None

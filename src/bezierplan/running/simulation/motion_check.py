@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.geometry import checker
+from bezierplan.geometry.region import region
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.running.simulation.regions import region_of
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
 TOUCHING = 2 * checker.TOLERANCE
@@ -131,7 +131,7 @@ def _relative(points, i, share, before, after, moved):
 
 def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     first, last = math.floor(motion.times[0]), math.ceil(motion.times[-1])
-    regions = [region_of(each) for each in world.maps]
+    regions = [region(each) for each in world.maps]
     clearance = np.full(max(last - first, 1), np.inf)
     collision_at = math.nan
     depth = 0.0

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.region import blocks
+from bezierplan.geometry.region import blocks, region
 from bezierplan.planners import Plan
 from bezierplan.running.jobs.watchdog import cpu_time
 from bezierplan.running.simulation import cells, circles
@@ -15,7 +15,6 @@ from bezierplan.running.simulation.circles import ARRIVED, STOPPED
 from bezierplan.running.simulation.evasion import refuge
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.running.simulation.regions import region_of
 from bezierplan.running.simulation.ways import Way, drivable, way
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
@@ -164,7 +163,7 @@ def _plan(
     if policy.start == "centre" or isinstance(world, ChangingCells):
         approach = cells.way_to_start(motion, world.workspace(time), policy.start)
     margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
-    obstacles = region_of(world.obstacles(looked))
+    obstacles = region(world.obstacles(looked))
     for margin in margins:
         position = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
@@ -200,4 +199,4 @@ def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool
     if isinstance(world, MovingCircles) and isinstance(seen, Grid):
         cell = seen.cell_of(*point)
         return cell is not None and not seen.occupied[cell]
-    return not blocks(region_of(seen), point)
+    return not blocks(region(seen), point)
