@@ -360,24 +360,35 @@ def test_published_minimum_between_the_bound_and_ours_cannot_fail():
     )
 
 
-def test_what_the_paper_does_not_define_is_inconclusive_wherever_it_lies():
-    values = [
-        entry | ({"defined": False} if entry["metric"] == "length" else {})
-        for entry in SPEC["values"]
-    ]
-    ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
-    for value in (ours.median(), 10 * ours.median()):
+@pytest.mark.parametrize(
+    ("why", "changed", "defined", "reconstructed"),
+    [
+        (comparison.UNDEFINED, {}, False, False),
+        (comparison.NO_MAP, {}, True, True),
+        (comparison.ONE_DRAW, {"layout": 3}, True, False),
+    ],
+)
+def test_what_is_not_the_paper_s_quantity_or_map_is_inconclusive_wherever_it_lies(
+    why, changed, defined, reconstructed
+):
+    values = [entry | {"defined": defined} for entry in SPEC["values"]]
+    ours = results()._replace(runs=results().runs.assign(**changed))
+    median = ours.runs.query("feasible and problem == 'long' and method == 'plain'")[
+        "length"
+    ].median()
+    for value in (median, 10 * median):
         before = row(compare(results(), plain=f"{value}"), "long", "plain", "length")
-        found = row(
-            compare(results(), spec=SPEC | {"values": values}, plain=f"{value}"),
-            "long",
-            "plain",
-            "length",
+        table = comparison.compare(
+            ours,
+            pivot_of(SPEC | {"values": values}),
+            published(f"{value}"),
+            {"faster": "fast"},
+            [],
+            "study/table1",
+            reconstructed,
         )
-        assert (found["verdict"], found["why"]) == (
-            "inconclusive",
-            "quantity that the paper does not define",
-        )
+        found = row(table, "long", "plain", "length")
+        assert (found["verdict"], found["why"]) == ("inconclusive", why)
         assert (found["in_range"], found["power"]) == (before["in_range"], before["power"])
     assert before["verdict"] == "disagrees"
 
