@@ -149,6 +149,14 @@ def test_a_cell_is_its_column_and_its_row():
     assert values("occupied_points", *paths, problems=grid) == [1, 0]
 
 
+def test_a_polygon_may_be_blocked_where_its_path_is_free():
+    grid = map_of("..#..", ".....", ".....", ".....", ".....")
+    over, under = ([[5, 5], [25, height], [45, 5]] for height in (48, 38))
+    paths = [("bezier", points) for points in (over, under, under)]
+    found = values("free_polygon", *paths, problems=grid, feasible=[True, True, False])
+    assert found == [False, True, False]
+
+
 @pytest.mark.parametrize("name", ["distinct_points", "occupied_points", "max_curvature"])
 def test_run_without_a_path_has_no_value(name):
     found = values(name, ("", []), ("bezier", [[5, 5], [5, 35]]))

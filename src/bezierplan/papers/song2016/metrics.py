@@ -11,6 +11,7 @@ from bezierplan.analysis.measures import (
     CURVATURE_SAMPLES,
     curvature_samples,
     first_generation_within,
+    free_cells,
     held_history,
 )
 from bezierplan.analysis.metric import (
@@ -18,6 +19,7 @@ from bezierplan.analysis.metric import (
     metric,
     of_path,
     on_map,
+    on_maps,
     register,
 )
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
@@ -69,6 +71,14 @@ def occupied_points(path: Path, grid: Grid) -> int:
     columns, rows = np.floor(grid.in_cells(path.points) + ON_LINE).astype(int).T
     last = np.array(occupied.shape) - 1
     return int(occupied[np.minimum(rows, last[0]), np.minimum(columns, last[1])].sum())
+
+
+@metric("-", "whether the path is free and so is its control polygon", step=1.0, on=("grid",))
+def free_polygon(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a run's path is free and its control polygon touches no occupied cell."""
+    polygons = runs.assign(path_curve=np.where(runs["path_curve"] == "", "", "polyline"))
+    free = on_maps(lambda path, grid: free_cells(path, grid) is not None, polygons, problems)
+    return runs["feasible"].to_numpy() & (np.array(free) == 1)
 
 
 @of_path("u", "length of the control polygon", least="bound")
