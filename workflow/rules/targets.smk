@@ -65,9 +65,10 @@ rule report_pdf:
     conda:
         "../envs/bezierplan.yaml"
     params:
+        python=sys.executable,
         script=str(Path(SOURCE).with_name("docs") / "report.py"),
     shell:
-        "{sys.executable} {params.script:q} {output:q} 2> {log:q} || (cat {log:q} >&2; false)"
+        "{params.python} {params.script:q} {output:q} 2> {log:q} || (cat {log:q} >&2; false)"
 
 
 for study in STUDIES:
