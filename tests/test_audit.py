@@ -87,7 +87,7 @@ def test_fewer_runs_than_printed_can_spread_more():
     assert marks(audited(*cells), "(max - min)") == [True]
     cells = [("a", "cpu_s", *each[2:]) for each in cells]
     assert marks(audited(*cells), "(max - min)") == [False]
-    assert marks(audited(*cells, selected=["cpu_s"]), "(max - min)") == [True]
+    assert marks(audited(*cells, picks=["cpu_s"]), "(max - min)") == [True]
     assert audited(*cells[2:], n=np.nan) == []
 
 

@@ -16,7 +16,7 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import blocks, region
 from bezierplan.running import problems
 from bezierplan.running.descriptions import Descriptions
-from bezierplan.workspaces import files, kinds
+from bezierplan.workspaces import files
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.kinds import random_circles
 
@@ -383,7 +383,3 @@ def test_problems_in_random_circles_have_free_ends():
 def test_layout_that_cannot_be_drawn_is_given_up():
     with pytest.raises(ValueError, match="radius: no circle keeps 40 away from start and target"):
         random_circles.layout(RANDOM | {"radius": 40.0}, "study/random", 0, [(0, 0), (4, 6)])
-
-
-def test_files_that_a_description_may_leave_out_are_files_of_the_study():
-    assert kinds.file_keys(kinds.kinds()["grid"]) == ["file", "heights"]

@@ -56,10 +56,10 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
     }
 
 
-def of_run(reproduced: Results, name: str) -> dict[str, Any]:
+def of_run(results: Results, name: str) -> dict[str, Any]:
     """The fields of `api.Answer` for the results of one run, by its name."""
-    row, (study, _, _, method, _) = reproduced.runs.iloc[0], name.split("/")
-    problem = reproduced.problems[row["problem"]]
+    row, (study, _, _, method, _) = results.runs.iloc[0], name.split("/")
+    problem = results.problems[row["problem"]]
     return verdict(
         problem,
         shortest_paths.shortest_path(problem),

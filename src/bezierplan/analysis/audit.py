@@ -110,19 +110,19 @@ def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, Layout]) ->
     """All rows of the rules that hold for any paper.
 
     tables: published numbers, by table, as from `read_published`. layouts: of each table,
-    `columns`, the key columns within whose values its rows are ranked; `selected`, metrics of which
+    `columns`, the key columns within whose values its rows are ranked; `picks`, metrics of which
     only some runs count; `monotone`, the orders that its rows must keep.
     """
     rows = []
     for name, table in tables.items():
-        rows += of_cells(name, table, layouts[name].selected)
+        rows += of_cells(name, table, layouts[name].picks)
         rows += of_ranks(name, table, layouts[name].columns)
         for rule in layouts[name].monotone:
             rows += of_orders(name, table, rule)
     return [*rows, *of_middles(tables), *of_digits(tables)]
 
 
-def of_cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[dict]:
+def of_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]:
     """What the statistics of one metric in one place can be beside each other."""
     keys = _keys(table)
     for rows in groups(table, [*keys, "metric"]):
@@ -133,7 +133,7 @@ def of_cells(item: str, table: pd.DataFrame, selected: list[str]) -> Iterator[di
         # Otherwise only some of these runs count, and how many is not printed.
         whole = (
             not metric.feasible_only
-            and rows["metric"].iloc[0] not in selected
+            and rows["metric"].iloc[0] not in picks
             and sizes.nunique() == 1
         )
         for name, rule, limit, fits, told in _of_cell(texts, n, metric, whole):

@@ -35,4 +35,4 @@ class Experiment(NamedTuple):
 
     scoring: dict[str, Chunk]
     printing: dict[str, Chunk]
-    described: Descriptions
+    descriptions: Descriptions

@@ -343,7 +343,7 @@ def _judged(
     row: dict[str, Any],
     in_range: bool | None,
     ours: float,
-    predicted: tuple[float, float],
+    prediction: tuple[float, float],
     size: int | None,
     rivals: np.ndarray,
 ) -> dict[str, Any]:
@@ -358,8 +358,8 @@ def _judged(
     judged = {"possible": not (published < limits[0] - half or published > limits[1] + half)}
     if in_range is None:
         return judged | {"can_fail": None}
-    ends = (predicted[0] - half, predicted[1] + half)
-    can_fail = not in_range or statistics.can_fail(published, ours, predicted, limits)
+    ends = (prediction[0] - half, prediction[1] + half)
+    can_fail = not in_range or statistics.can_fail(published, ours, prediction, limits)
     # To exclude a number that no run can have, or one on the other side of ours, says nothing.
     least = row["bound"] if row["metric"] in metrics.AT_LEAST_A_LENGTH else -math.inf
     near = np.array([ours * (1 + math.copysign(MATTERS, (published - ours) * ours))])

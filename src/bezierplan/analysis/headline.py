@@ -73,18 +73,18 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
 
 
 def headline(
-    numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str]
+    numbers: pd.DataFrame, claims: pd.DataFrame, measures: pd.DataFrame, titles: dict[str, str]
 ) -> Headline:
     """The headline of some studies.
 
-    numbers: as from `summary.numbers`. claims: as from `claims.judge`. measured: as from
+    numbers: as from `summary.numbers`. claims: as from `claims.judge`. measures: as from
     `baseline_comparison.measured`, of all studies. titles: of the studies, by name.
     """
     counts = outcome(numbers, claims)
     sentences = [
         _sentence("published number", counts[list(comparison.VERDICTS)].sum()),
         _sentence("claim", counts[list(VERDICTS)].sum()) + _by_our_criterion(claims),
-        beside_baseline(measured),
+        beside_baseline(measures),
     ]
     counted = numbers[numbers["counted"].astype(bool)]
     rows = {
@@ -94,7 +94,7 @@ def headline(
             ),
             "close": _close(deviations(counted[counted["study"] == study])),
             "claims": _of(_fewer(row)),
-            **_measured(measured[measured["study"] == study]),
+            **_measured(measures[measures["study"] == study]),
         }
         for study, row in counts.loc[sorted(counts.index, key=list(titles).index)].iterrows()
     }
@@ -102,10 +102,10 @@ def headline(
     return Headline([sentence for sentence in sentences if sentence], table)
 
 
-def markdown(found: Headline) -> str:
+def markdown(head: Headline) -> str:
     """The headline as markdown: the sentences, the table, and what its words mean."""
-    shown = found.table.loc[:, (found.table != "").any()].rename(columns=COLUMNS)
-    return "\n\n".join([f"**{' '.join(found.sentences)}**", table_text(shown), LEGEND])
+    shown = head.table.loc[:, (head.table != "").any()].rename(columns=COLUMNS)
+    return "\n\n".join([f"**{' '.join(head.sentences)}**", table_text(shown), LEGEND])
 
 
 def deviations(numbers: pd.DataFrame) -> np.ndarray:
@@ -122,15 +122,15 @@ def deviations(numbers: pd.DataFrame) -> np.ndarray:
     )
 
 
-def beside_baseline(measured: pd.DataFrame) -> str:
+def beside_baseline(measures: pd.DataFrame) -> str:
     """Whether a method that is feasible as often as the baseline gives a shorter path; empty
     without methods.
     """
-    reliable = measured[measured["feasible"] >= measured["feasible_baseline"]]
+    reliable = measures[measures["feasible"] >= measures["feasible_baseline"]]
     shorter = int((reliable["length"] < 1 - baseline_comparison.EQUAL).sum())
     return (
         ""
-        if measured.empty
+        if measures.empty
         else (
             f"Of {baseline_comparison.counted(len(reliable), 'method')} feasible as often as the "
             f"baseline, {baseline_comparison.BASELINE}, {shorter or 'none'} "

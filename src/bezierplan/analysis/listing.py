@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 import pandas as pd
 
 from bezierplan.analysis.results import published_table
-from bezierplan.analysis.table_kinds import FunctionTable, Transcribed
+from bezierplan.analysis.table_kinds import FunctionTable, Transcript
 
 
 def table(
-    spec: Transcribed | FunctionTable,
+    spec: Transcript | FunctionTable,
     files: Mapping[str, str],
     functions: Mapping[str, Callable[..., pd.DataFrame]],
 ) -> pd.DataFrame:
@@ -20,7 +20,7 @@ def table(
 
     files: of published numbers, by table; for a transcribed table its only file.
     """
-    if isinstance(spec, Transcribed):
+    if isinstance(spec, Transcript):
         (file,) = files.values()
         return pd.read_csv(file, dtype=str, keep_default_na=False)
     published = {name: published_table(file) for name, file in files.items()}

@@ -226,7 +226,7 @@ class Runner(NamedTuple):
         self, experiment: str, reading: Reading, names: Iterable[str]
     ) -> tuple[dict[str, Problem], pd.DataFrame]:
         """Problems under a reading, and their bounds."""
-        described = self.experiments[experiment].described
+        described = self.experiments[experiment].descriptions
         changed = {
             name: described.workspaces[name] | {key: reading[each.id]}
             for each in self.choices

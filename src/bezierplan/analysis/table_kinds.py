@@ -223,7 +223,7 @@ class Pivot(Table):
         return [name for name in self.columns if name not in WORDS]
 
 
-class Transcribed(Table):
+class Transcript(Table):
     """A published file, unchanged."""
 
     kind: Literal["transcribed"] = Field(description="transcribed")
@@ -249,9 +249,9 @@ TABLES = {
 """Kind -> its model."""
 
 
-def table_of(given: dict[str, Any]) -> Table:
+def table_of(values: dict[str, Any]) -> Table:
     """The table of a job, from its plain values."""
-    return TABLES[given["kind"]].model_validate(given)
+    return TABLES[values["kind"]].model_validate(values)
 
 
 class Layout(Model):
@@ -261,7 +261,7 @@ class Layout(Model):
     """
 
     columns: list[Column] = Field([])
-    selected: list[Metric] = Field([])
+    picks: list[Metric] = Field([])
     monotone: list[Monotone] = Field([])
     reconstructed: Flag = False
     identify: list[Identify] = Field([])
@@ -271,7 +271,7 @@ class Layout(Model):
         """That of a table of runs."""
         return cls(
             columns=table.across,
-            selected=sorted({entry.metric for entry in table.values if entry.where}),
+            picks=sorted({entry.metric for entry in table.values if entry.where}),
             monotone=table.monotone,
             reconstructed=reconstructed,
             identify=table.identify,

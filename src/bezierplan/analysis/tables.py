@@ -59,24 +59,24 @@ def cells(
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values("id", ignore_index=True)
     entries = spec.values
-    described = [metrics.METRICS[entry.metric] for entry in entries]
-    wanted = {metric.gap for metric in described} | {
-        entry.metric for entry, metric in zip(entries, described) if not metric.among_rows
+    specs = [metrics.METRICS[entry.metric] for entry in entries]
+    wanted = {metric.gap for metric in specs} | {
+        entry.metric for entry, metric in zip(entries, specs) if not metric.among_rows
     }
-    measured = {name: _measured(runs, name, results, beside).to_numpy() for name in sorted(wanted)}
+    measures = {name: _measured(runs, name, results, beside).to_numpy() for name in sorted(wanted)}
     # What compares methods compares those that the entry's `where` leaves.
-    taken = [
+    places = [
         _measured(select(runs, entry.where), entry.metric, results, beside)
         .reindex(runs.index)
         .to_numpy()
         if metric.among_rows
-        else measured[entry.metric]
-        for entry, metric in zip(entries, described)
+        else measures[entry.metric]
+        for entry, metric in zip(entries, specs)
     ]
-    leasts = [entry.least or metric.least for entry, metric in zip(entries, described)]
+    leasts = [entry.least or metric.least for entry, metric in zip(entries, specs)]
     named = {
         name
-        for metric, least in zip(described, leasts)
+        for metric, least in zip(specs, leasts)
         for name in (metric.bound, least)
         if isinstance(name, str)
     }
@@ -94,11 +94,11 @@ def cells(
             "share_claimed": claimed[positions].mean(),
             "share_feasible": feasible[positions].mean(),
         }
-        for value, (entry, metric) in enumerate(zip(entries, described)):
+        for value, (entry, metric) in enumerate(zip(entries, specs)):
             of_entry = positions[asked[value][positions]]
             # A run without a value counts nowhere.
-            chosen = of_entry[~np.isnan(taken[value][of_entry])]
-            numbers = taken[value][chosen]
+            chosen = of_entry[~np.isnan(places[value][of_entry])]
+            numbers = places[value][chosen]
             least, groups = leasts[value], None
             if units is not None:
                 own = units[chosen]
@@ -108,7 +108,7 @@ def cells(
                 least = np.fmin.reduce(bounds[least][positions])
             cell = same | {
                 "bound": _median(bounds[metric.bound][positions]),
-                "gap": _median(measured[metric.gap][positions]),
+                "gap": _median(measures[metric.gap][positions]),
                 "least": least,
                 "most": metric.most,
                 "value": value,
@@ -216,12 +216,12 @@ def alike(
 
 
 def _with_counts(
-    wide: pd.DataFrame, counted: pd.DataFrame, asked: pd.DataFrame, stems: list[str]
+    wide: pd.DataFrame, counted: pd.DataFrame, whole: pd.DataFrame, stems: list[str]
 ) -> pd.DataFrame:
     """A table with a column such as `20 of 30` beside the values of which some runs have none, for
     example because they failed.
 
-    counted, asked: how many runs have a value, and of how many, at the places of the table. stems:
+    counted, whole: how many runs have a value, and of how many, at the places of the table. stems:
     the name of each column without its statistic. Neighbouring columns with equal counts share one
     column.
     """
@@ -230,10 +230,10 @@ def _with_counts(
         columns.append(wide.iloc[:, row])
         last = row + 1 == len(stems)
         if not last and all(
-            table.iloc[:, row].equals(table.iloc[:, row + 1]) for table in (counted, asked)
+            table.iloc[:, row].equals(table.iloc[:, row + 1]) for table in (counted, whole)
         ):
             continue
-        have, of = counted.iloc[:, row], asked.iloc[:, row]
+        have, of = counted.iloc[:, row], whole.iloc[:, row]
         if (have < of).any():
             texts = [f"{n:.0f} of {total:.0f}" if total > 0 else "" for n, total in zip(have, of)]
             of_what = " to ".join(filter(None, dict.fromkeys([stems[first], stems[row]])))

@@ -13,14 +13,14 @@ _PARTS = TypeAdapter(
 )
 
 
-def _joined(part: dict[str, Any], shared: dict[str, Any]) -> dict[str, Any]:
+def _joined(part: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
     """The keys of both; mappings that stand in both are joined likewise."""
     both = {
-        key: _joined(part[key], shared[key])
-        for key in part.keys() & shared.keys()
-        if isinstance(part[key], dict) and isinstance(shared[key], dict)
+        key: _joined(part[key], common[key])
+        for key in part.keys() & common.keys()
+        if isinstance(part[key], dict) and isinstance(common[key], dict)
     }
-    return shared | part | both
+    return common | part | both
 
 
 def _expanded(place: int, entry: Any) -> dict[str, Any]:

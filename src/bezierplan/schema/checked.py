@@ -102,21 +102,21 @@ def parse(text: str, location: str) -> Any:
         raise Fault(f"{location}: not YAML ({str(error).splitlines()[0]})") from None
 
 
-def check_known(name: Any, known: Iterable[Any], location: str, home: str = "") -> None:
+def check_known(name: Any, names: Iterable[Any], location: str, home: str = "") -> None:
     """Raise Fault, beginning with a location, for a name that is not among those known. home: the
     file of a study's folder in which it would stand.
     """
-    known = list(known)
-    if name not in known:
+    names = list(names)
+    if name not in names:
         where = f"; one of your own stands in {home} of the study's folder" if home else ""
-        raise Fault(f"{location}: {name}: unknown{closest(name, known)}{where}")
+        raise Fault(f"{location}: {name}: unknown{closest(name, names)}{where}")
 
 
-def closest(word: Any, known: Iterable[Any]) -> str:
+def closest(word: Any, names: Iterable[Any]) -> str:
     """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence
     about an unknown one.
     """
-    words = sorted(map(str, known))
+    words = sorted(map(str, names))
     near = difflib.get_close_matches(str(word), words, n=1)
     hint = f"; did you mean {near[0]}?" if near else ";"
     if len(words) > 40:

@@ -177,12 +177,12 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
 # Types of values. Numbers stay as they are written: 20 is part of names, and 20.0 another one.
 
 
-def value(fits: Callable[[Any], bool], wanted: str) -> PlainValidator:
+def value(fits: Callable[[Any], bool], form: str) -> PlainValidator:
     """A type of single value, kept as written."""
 
     def check(entry: Any) -> Any:
         if not fits(entry):
-            raise expected(wanted)
+            raise expected(form)
         return entry
 
     return PlainValidator(check)
@@ -240,11 +240,11 @@ Setting = Annotated[
 """A value of a planner's setting, which may be infinite, or of a column."""
 
 
-def matching(pattern: str, wanted: str) -> PlainValidator:
+def matching(pattern: str, form: str) -> PlainValidator:
     """A type of text that a regular expression matches as a whole."""
     return value(
         lambda entry: isinstance(entry, str) and bool(re.fullmatch(pattern, entry)),
-        wanted,
+        form,
     )
 
 

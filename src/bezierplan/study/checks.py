@@ -44,12 +44,12 @@ a setting of that name adds nothing.
 """
 
 
-def faults_of(study: Study, lost: Iterable[str] = ()) -> list[str]:
+def faults_of(study: Study, invalid: Iterable[str] = ()) -> list[str]:
     """Everything that is wrong in a study whose files are each valid on their own, one line each.
 
-    lost: names of entries that are left out, because they are not valid.
+    invalid: names of entries that are left out, because they are not valid.
     """
-    checks = Checks(study, lost)
+    checks = Checks(study, invalid)
     checks.check()
     return checks.faults
 
@@ -59,7 +59,7 @@ class Checks:
     faults that they find.
     """
 
-    def __init__(self, study: Study, lost: Iterable[str]) -> None:
+    def __init__(self, study: Study, invalid: Iterable[str]) -> None:
         self.study = study
         self.faults: list[str] = []
         self._place: tuple[str, ...] = ()
@@ -78,8 +78,8 @@ class Checks:
             "world": study_code.part_of(study.code_for("worlds")),
             "drawing": study_code.part_of(study.code_for("panels")),
             "statistic": statistics.STATISTICS,
-            "compared": [*study.with_published(), *lost],
-            "artefact": [*study.tables, *study.figures, *lost],
+            "compared": [*study.with_published(), *invalid],
+            "artefact": [*study.tables, *study.figures, *invalid],
             "printed table": [Path(file).stem for file in study.published_files()],
         }
 
@@ -192,7 +192,7 @@ class Checks:
     def workspace(self, name: str, workspace: Workspace) -> None:
         """It can be read."""
         self.names(workspace)
-        if not workspace.drawn and not workspace.moves:
+        if not workspace.draws and not workspace.moves:
             files.load(workspace.plain(), self.study.folder)
 
     def problem(self, name: str, problem: ProblemOfStudy) -> None:
@@ -200,7 +200,7 @@ class Checks:
         self.names(problem)
         check_all(problem.settings, self.known["setting"], "settings")
         home = self.study.workspace_of(name)
-        for key, needed in (("layouts", bool(home.drawn)), ("side", home.with_side)):
+        for key, needed in (("layouts", bool(home.draws)), ("side", home.with_side)):
             if needed != (getattr(problem, key) is not None):
                 raise Fault(
                     f"workspace: {problem.workspace}: of kind {home.kind}, which "
@@ -213,7 +213,7 @@ class Checks:
         ValueError.
         """
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
-        drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
+        drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
         described = Descriptions(
             study.key,
             {name: problem.plain("settings", "layouts") | drawn},

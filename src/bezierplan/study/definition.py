@@ -86,7 +86,7 @@ class Study(ExperimentsFile, ArtefactsFile):
     def kind_of(self, problem: str) -> str:
         """The kind of workspace that planners see in a problem."""
         workspace = self.workspace_of(problem)
-        return workspace.drawn or workspace.made or workspace.kind
+        return workspace.draws or workspace.gives or workspace.kind
 
     def problems_of(self, experiment: str, scale: str, repeat: int = 0) -> dict[str, dict]:
         """Descriptions of an experiment's problems that have a repeat, by name, as plain values.

@@ -358,7 +358,7 @@ def readings(study: Study, scale: str) -> Readings:
         for name in dict.fromkeys(each.experiment for each in tables.values())
     }
     methods = {method for each in experiments.values() for method in each.scoring}
-    homes = {home for each in experiments.values() for home in each.described.workspaces}
+    homes = {home for each in experiments.values() for home in each.descriptions.workspaces}
     return Readings(
         study.key,
         tables,

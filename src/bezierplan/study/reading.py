@@ -100,11 +100,11 @@ def read_study(folder: Path) -> Study:
     return study
 
 
-def _read(folder: Path, changed: Mapping[str, Any]) -> tuple[Study, list[str], list[str]]:
+def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], list[str]]:
     """The study in a folder, as far as its files are sound, the faults of the rest, and the names
     of entries that are left out for them. Raises Fault if they are in experiments.yaml.
 
-    changed: settings that take the place of those of the same name there; those of one planner are
+    changes: settings that take the place of those of the same name there; those of one planner are
     taken one by one.
     """
     key = folder.resolve().name
@@ -125,7 +125,7 @@ def _read(folder: Path, changed: Mapping[str, Any]) -> tuple[Study, list[str], l
             faults += fault.lines
     if "methods" not in content:
         raise Fault(*faults)
-    for name, value in changed.items():
+    for name, value in changes.items():
         own = content["settings"].get(name)
         content["settings"][name] = (
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
@@ -139,12 +139,12 @@ def _read(folder: Path, changed: Mapping[str, Any]) -> tuple[Study, list[str], l
     return Study.model_construct(key=key, folder=folder, **content), faults, lost
 
 
-def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
-    """Raise Fault for a study whose results or targets would clash with others. taken: names of
+def check_names(studies: Mapping[str, Study], others: Iterable[str]) -> None:
+    """Raise Fault for a study whose results or targets would clash with others. others: names of
     rules and other targets.
     """
-    targets = {*taken}
-    for key, study in given.items():
+    targets = {*others}
+    for key, study in studies.items():
         location = relative(study.folder)
         check_name(key, f"{location}: {key}")
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):

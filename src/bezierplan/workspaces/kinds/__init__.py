@@ -96,14 +96,14 @@ CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 
 
 class Workspace(Model):
-    """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see;
-    made: for one converted from files of another format, the kind that planners see; with_side:
+    """Keys common to all workspaces. draws: for a random workspace, the kind that planners see;
+    gives: for one converted from files of another format, the kind that planners see; with_side:
     whether its problems have a `side`; moves: whether it is a world, in which runs are simulated
     drives.
     """
 
-    drawn: ClassVar[str | None] = None
-    made: ClassVar[str | None] = None
+    draws: ClassVar[str | None] = None
+    gives: ClassVar[str | None] = None
     with_side: ClassVar[bool] = False
     moves: ClassVar[bool] = False
 
@@ -163,7 +163,7 @@ def kinds() -> dict[str, type[Workspace]]:
     """Kind of workspace -> the keys of its descriptions; fixed ones, random ones, then worlds."""
     found = {name: module(place).Options for name, place in _places().items()}
     return dict(
-        sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].drawn), each[0]))
+        sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].draws), each[0]))
     )
 
 

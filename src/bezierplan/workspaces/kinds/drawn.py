@@ -29,7 +29,7 @@ class Options(Workspace):
     arguments: Arguments = Field({}, description=ARGUMENTS)
 
     @property
-    def drawn(self) -> str:  # type: ignore[override]
+    def draws(self) -> str:  # type: ignore[override]
         """The kind of workspace that planners see."""
         return self.sees
 

@@ -29,7 +29,7 @@ def _is_radius(entry: Any) -> bool:
 class Options(Workspace):
     """Keys of a workspace."""
 
-    drawn: ClassVar[str] = "circles"
+    draws: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
     radius: Annotated[Any, value(_is_radius, RADIUS)] = Field(description=RADIUS)

@@ -15,7 +15,7 @@ from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, t
 class Options(Workspace):
     """Keys of a workspace."""
 
-    made: ClassVar[str] = "grid"
+    gives: ClassVar[str] = "grid"
 
     file: File = Field(description="a GeoJSON file in the study's folder")
     margin: NotNegative | None = Field(None, description=MARGIN)

@@ -12,7 +12,7 @@ from bezierplan.workspaces.kinds import Workspace
 class Options(Workspace):
     """Keys of a workspace."""
 
-    drawn: ClassVar[str] = "grid"
+    draws: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
 
     radius: Positive = Field(

@@ -21,7 +21,7 @@ MOST_BLOCKS = 4000
 class Options(Workspace):
     """Keys of a workspace."""
 
-    drawn: ClassVar[str] = "grid"
+    draws: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
 
     largest_block: Count = Field(
