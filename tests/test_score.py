@@ -44,7 +44,9 @@ def test_a_planner_and_its_paths_score_as_the_paper_s_runs_of_it(scored, tmp_pat
     }
     pd.DataFrame(paths).to_csv(file, index=False)
     rows = scored(file, "song2016/shortest_path", "--repeats", 1, "--problems", tmp_path / "p.csv")
-    stored, own, again = (rows[n] for n in ("shortest_path", str(file), "song2016/shortest_path"))
+    stored, own, again = (
+        rows[n] for n in ("shortest_path", f"here:{file}", "here:song2016/shortest_path")
+    )
     assert own == again == [stored[0], "6", *stored[2:]]
     listed = pd.read_csv(tmp_path / "p.csv")
     assert listed["bound"].to_list() == pytest.approx([each.length for each in answers])

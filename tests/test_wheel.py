@@ -110,7 +110,7 @@ def test_the_core_plans_by_a_paper_s_method_and_says_what_it_lacks(away):
 
 def test_the_papers_can_be_run_by_name_in_any_folder(away):
     place = prepared(away / "names")
-    assert "song2016: " in shell(away, "bezierplan list", place)
+    assert "song2016, tables: " in shell(away, "bezierplan list", place)
     assert "page" in shell(away, "bezierplan run smoke -n", place)
     assert "song2016" in shell(away, "bezierplan run song2016_figure4 -n", place)
     said = shell(away, "bezierplan replay song2016/routes/15_240/smooth/3", place)

@@ -56,5 +56,5 @@ def main(
                 for seed in range(repeats)
                 for answer in [api.plan(problem, candidate, seed=seed, **(settings or {}))]
             ]
-        tables.append(benchmark.summaries(pd.DataFrame(runs).assign(method=candidate)))
+        tables.append(benchmark.summaries(pd.DataFrame(runs).assign(method=f"here:{candidate}")))
     print(benchmark.scores(pd.concat(tables)).to_string(float_format="%.4g"))
