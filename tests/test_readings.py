@@ -33,17 +33,17 @@ def test_a_reading_changes_its_settings_on_its_problems_and_what_goes_along():
     assert (both["generations"], both["stall"]) == (200, 10)
 
 
-def quantity(counted, sizes, decimals=2):
+def quantity(statistic, sizes, decimals=2):
     printed = pd.DataFrame({"n": sizes, "value": 0.0})
-    return readings.Quantity("", {}, {}, "", counted, decimals, None, [], printed)
+    return readings.Quantity("", {}, {}, "", statistic, decimals, None, [], printed)
 
 
 def test_densities_are_densities_of_relative_errors_and_of_counts():
-    counts = [quantity(True, [100] * 101, 0)]
+    counts = [quantity("count", [100] * 101, 0)]
     ours = np.tile([0.3, 0.0, 0.0], (101, 1))
     assert np.exp(readings._densities(counts, np.arange(101.0), ours)).sum() == pytest.approx(1)
     errors = np.linspace(-20, 20, 400_001)
-    means = [quantity(False, [1] * len(errors))]
+    means = [quantity("mean", [1] * len(errors))]
     ours = np.column_stack([10 * (1 - errors), *2 * [np.full(len(errors), 0.5)]])
     found = np.exp(readings._densities(means, np.full(len(errors), 10.0), ours))
     assert np.trapezoid(found, errors) == pytest.approx(1, abs=1e-4)
@@ -81,7 +81,7 @@ def test_the_search_finds_a_hidden_reading_and_no_excluded_one(monkeypatch):
         Choice(name, [1, 2], "tries", {"mine": {}}, [], {}, "Section 1" if name == "O3" else "")
         for name in ("O1", "O2", "O3")
     ]
-    voting = [quantity(False, [10.0] * 3)]
+    voting = [quantity("mean", [10.0] * 3)]
     voting[0].printed["value"] = [10.0, 10.0, 14.0]
 
     class Runner:

@@ -3,11 +3,12 @@
 A reading gives some choices that the paper leaves open another value than the default. Its score is
 the mean, over the printed numbers that vote, of the logarithm of their density under our runs:
 
-- A mean: its relative error has a Student t of `FREEDOM` degrees of freedom, whose scale holds the
-  standard error of the printed number, that of ours, and `DISCREPANCY`: no model of an experiment
-  is exact. So a number that is far off says that the reading is wrong, and not by how much.
-- A count: beta-binomial, as if ours came from `WORTH` runs, however many there are; with the
-  probability `ANY`, it can be any.
+- A mean or median: its relative error has a Student t of `FREEDOM` degrees of freedom, whose scale
+  holds the standard error of the printed number, that of ours, and `DISCREPANCY`: no model of an
+  experiment is exact. So a number that is far off says that the reading is wrong, and not by how
+  much.
+- A count or share: beta-binomial, as if ours came from `WORTH` runs, however many there are; with
+  the probability `ANY`, it can be any.
 
 Extremes and seconds have no vote. The search tries each alternative alone, combinations of a
 space-filling design, and then adds to the best reading, one by one, what was best alone.
@@ -50,6 +51,12 @@ logger = logging.getLogger(__name__)
 DISCREPANCY, FREEDOM = 0.03, 4
 WORTH, ANY = 50, 0.05
 BLOCKS = 5
+VOTING = {
+    **{name: name for name in ("mean", "median", "count")},
+    "unstated": "median",
+    "share": "count",
+}
+"""Statistics of printed numbers that vote -> what ours are."""
 DESIGN, CHANGED = 16, 0.25
 """Combinations that are tried, and the share of the choices that each changes."""
 CLIMB = 2
@@ -65,7 +72,7 @@ class Quantity(NamedTuple):
     where: dict[str, Any]
     of_runs: dict[str, Any]
     metric: str
-    counted: bool
+    statistic: str
     decimals: int
     within: str | None
     keys: list[str]
@@ -94,17 +101,22 @@ def quantities(
                 chosen = printed[
                     (printed["metric"] == entry.metric) & (printed["statistic"] == statistic)
                 ]
+                chosen = chosen.assign(n=chosen["n"].fillna(1))
+                if statistic == "share":
+                    chosen = chosen.assign(value=chosen["value"] * chosen["n"])
+                if statistic not in VOTING:
+                    continue
                 all_quantities.append(
                     Quantity(
                         spec.experiment,
                         spec.where | spec.primary,
                         entry.where,
                         entry.metric,
-                        statistic == "count",
+                        VOTING[statistic],
                         entry.decimals,
                         spec.within,
                         keys,
-                        chosen.assign(n=chosen["n"].fillna(1)),
+                        chosen,
                     )
                 )
     return all_quantities
@@ -133,16 +145,16 @@ def measured(voting: list[Quantity], results: dict[str, Results]) -> np.ndarray:
 
 
 def _moments(runs: pd.DataFrame, size: float, of: Quantity) -> tuple[float, float, float]:
-    values = runs["value"].dropna()
-    if of.counted or len(values) < 2:
-        return values.sum() / max(len(runs), 1) if of.counted else math.nan, 0.0, 0.0
-    counted = max(size * len(values) / len(runs), 1)
+    values, counts = runs["value"].dropna(), of.statistic == "count"
+    if counts or len(values) < 2:
+        return values.sum() / max(len(runs), 1) if counts else math.nan, 0.0, 0.0
+    counted, centre = max(size * len(values) / len(runs), 1), values.agg(of.statistic)
     if of.within is None:
         variance = values.var()
-        return values.mean(), variance / counted, variance / len(values)
+        return centre, variance / counted, variance / len(values)
     groups = values.groupby(runs[of.within])
     between = groups.mean().var()
-    return values.mean(), between + groups.var().mean() / counted, between / len(groups)
+    return centre, between + groups.var().mean() / counted, between / len(groups)
 
 
 def scored(voting: list[Quantity], printed: np.ndarray, ours: np.ndarray) -> tuple[float, float]:
@@ -158,7 +170,7 @@ def _densities(voting: list[Quantity], printed: np.ndarray, ours: np.ndarray) ->
     """Logarithms of the densities of printed numbers (k,). ours: (k, 3)."""
     from scipy import stats
 
-    counted = np.concatenate([[each.counted] * len(each.printed) for each in voting])
+    counted = np.concatenate([[each.statistic == "count"] * len(each.printed) for each in voting])
     size = np.concatenate([each.printed["n"] for each in voting])
     step = np.concatenate([[10.0**-each.decimals] * len(each.printed) for each in voting])
     unit = np.maximum(np.abs(printed), step)
@@ -370,7 +382,9 @@ def _printed(
     values = iter(measured(voting, results)[0, :, 0])
     return np.array(
         [
-            round(next(values) * size, 0) if each.counted else round(next(values), each.decimals)
+            round(next(values) * size, 0)
+            if each.statistic == "count"
+            else round(next(values), each.decimals)
             for each in voting
             for size in each.printed["n"]
         ]
