@@ -17,7 +17,7 @@ from bezierplan.analysis.claims import judge as judging
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import trend
-from bezierplan.analysis.claims.material import Shown
+from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.claims.verdicts import Entry
 from bezierplan.analysis.metrics import Metric
@@ -89,7 +89,7 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
         results,
         given.pop("published"),
         {
-            name: [Shown.model_validate(part) for part in parts]
+            name: [Display.model_validate(part) for part in parts]
             for name, parts in given.pop("artefacts").items()
         },
         "study",

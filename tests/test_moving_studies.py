@@ -16,7 +16,7 @@ from bezierplan.figures import animation
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import execution, problems, rides, worlds
 from bezierplan.running.simulation.motion_check import Motion
-from bezierplan.running.simulation.robot import Planned, Ride
+from bezierplan.running.simulation.robot import DrivePlan, Ride
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
@@ -242,7 +242,7 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_pat
     made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     around = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end])
     times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
-    plan = Planned(0.0, None, float(times[-1]), 0.0, 0.0, 1)
+    plan = DrivePlan(0.0, None, float(times[-1]), 0.0, 0.0, 1)
     ride = Ride(Motion(around, times), True, 0.0, [plan])
     row, _ = rides.judged(ride, made["across"], found["across"])
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
@@ -258,7 +258,9 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(
     study = reading.load([written(tmp_path)])["mystudy"]
     made, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
     points = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)])
-    ride = Ride(Motion(points, np.arange(4.0)), True, 0.0, [Planned(0.0, None, 10.0, 0.0, 0.0, 1)])
+    ride = Ride(
+        Motion(points, np.arange(4.0)), True, 0.0, [DrivePlan(0.0, None, 10.0, 0.0, 0.0, 1)]
+    )
     verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
     monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
     row, _ = rides.judged(ride, made["across"], found["across"])
@@ -273,7 +275,7 @@ def a_row(tmp_path, points, times, arrived=True):
         Motion(np.array(points), np.array(times)),
         arrived,
         0.0,
-        [Planned(0.0, None, 6.0, 0.0, 0.0, 1)],
+        [DrivePlan(0.0, None, 6.0, 0.0, 0.0, 1)],
     )
     return rides.judged(ride, made["across"], found["across"])[0]
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from bezierplan.analysis.choices import Choice, Experiment
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.claims.material import Shown
+from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.table_kinds import Layout, Pivot, Table
 from bezierplan.machine.digest import content_digest, function_digest, module_of
 from bezierplan.running.chunk import Chunk
@@ -248,7 +248,7 @@ class Claims(Job):
 
     study: str
     claims: list[Claim]
-    artefacts: dict[str, list[Shown]]
+    artefacts: dict[str, list[Display]]
     """What each table and figure shows of runs."""
     variant_of: dict[str, str]
     """Method -> the method whose published numbers count."""
@@ -328,7 +328,7 @@ class Audit(Job):
     """By table, the rows that count as the paper's interpretation: column -> value."""
     layouts: dict[str, Layout]
     """By table."""
-    identified: list[str]
+    identify: list[str]
     """Experiments among whose paths printed lengths are sought."""
 
     def run(self, input_files, output_files, threads):
@@ -341,7 +341,7 @@ class Audit(Job):
         table = audit.audited(
             self,
             study_code.audit(self.code),
-            {name: files[name].problems for name in self.identified},
+            {name: files[name].problems for name in self.identify},
             {name: each.bounds for name, each in files.items()},
             inputs.by_table(input_files.sources),
         )
@@ -420,7 +420,7 @@ class Verdict(Job):
 
 
 @dataclass(frozen=True)
-class Verified(Job):
+class Verification(Job):
     """What was judged again of all that the page shows, and the digest of every file."""
 
     folder: str

@@ -54,7 +54,7 @@ class Sentence(Model):
     holds: list[str] = Field([])
 
 
-class Shown(Model):
+class Display(Model):
     """The small table: rows of a table of results, and its columns by heading."""
 
     of: Source
@@ -66,7 +66,7 @@ class Verdict(Model):
     """What follows for a paper."""
 
     sentences: list[Sentence]
-    table: Shown
+    table: Display
 
 
 class Follows(NamedTuple):

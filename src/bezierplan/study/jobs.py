@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.choices import Experiment
-from bezierplan.analysis.claims.material import Shown
+from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.jobs import (
     Audit,
     BaselineComparison,
@@ -328,14 +328,14 @@ def claims(study: Study, scale: str) -> Claims:
     )
 
 
-def _shown(artefact: Table | FigureOfStudy) -> list[Shown]:
+def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
     """What a table or figure shows of runs."""
     if isinstance(artefact, Pivot):
-        entry = {name: each for name, each in artefact.plain().items() if name in keys(Shown)}
-        return [Shown.model_validate(entry)]
+        entry = {name: each for name, each in artefact.plain().items() if name in keys(Display)}
+        return [Display.model_validate(entry)]
     panels = artefact.panels if isinstance(artefact, FigureOfStudy) else []
     return [
-        Shown(experiment=panel.experiment, where=panel.where)
+        Display(experiment=panel.experiment, where=panel.where)
         for panel in panels
         if getattr(panel, "experiment", None)
     ]

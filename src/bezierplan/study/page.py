@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bezierplan.analysis.jobs import Verified
+from bezierplan.analysis.jobs import Verification
 from bezierplan.figures.jobs import Page
 from bezierplan.figures.page import OUTCOME, changes, files, in_printed_order
 from bezierplan.figures.page.page_job import (
@@ -54,9 +54,9 @@ def shows(studies: Studies, scale: str, root: str = "") -> Shows:
     return behind
 
 
-def verified(studies: Studies, scale: str, root: str = "") -> Verified:
+def verified(studies: Studies, scale: str, root: str = "") -> Verification:
     """What the page shows is judged again."""
-    return Verified(f"{root}results/{scale}", shows=shows(studies, scale, root))
+    return Verification(f"{root}results/{scale}", shows=shows(studies, scale, root))
 
 
 def page(studies: Studies, scale: str, root: str = "") -> Page:

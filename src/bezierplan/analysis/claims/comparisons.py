@@ -15,7 +15,7 @@ from bezierplan.analysis.claims.check import GROUP_KEYS, Check, OfRuns
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Comparison
 from bezierplan.analysis.claims.kinds import kind_of
-from bezierplan.analysis.claims.material import Material, Shown, Untestable
+from bezierplan.analysis.claims.material import Display, Material, Untestable
 from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
 from bezierplan.analysis.results import pick, select
 from bezierplan.schema.checked import Fault
@@ -58,7 +58,7 @@ def _filled(groups: list, rest: list) -> list:
     return list(itertools.chain.from_iterable(parts))
 
 
-def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[Shown]:
+def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[Display]:
     """The tables and figure panels among a claim's artefacts that show runs of the check's
     experiments.
     """

@@ -53,7 +53,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
 from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.claims.kinds import kind_of
-from bezierplan.analysis.claims.material import Material, Shown, Untestable
+from bezierplan.analysis.claims.material import Display, Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
@@ -83,7 +83,7 @@ def judge(
     claims: Sequence[Claim],
     results: dict[str, Results],
     published: dict[str, pd.DataFrame],
-    artefacts: dict[str, list[Shown]],
+    artefacts: dict[str, list[Display]],
     study: str,
     functions: dict[str, Any],
     *,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-class Shown(Model):
+class Display(Model):
     """Runs that a table or a panel of a figure shows, and the published numbers of a table.
 
     where: column -> value or list of values. reads: the paper's word -> the metric with which a
@@ -41,7 +41,7 @@ class Material(NamedTuple):
 
     results: dict[str, Results]
     published: dict[str, pd.DataFrame]
-    artefacts: dict[str, list[Shown]]
+    artefacts: dict[str, list[Display]]
     functions: dict[str, Any]
     variant_of: dict[str, str]
     paired: dict[str, bool]

@@ -176,10 +176,10 @@ def check_settings(module: ModuleType, settings: dict[str, Any], location: str) 
         asked(module.check, location, settings)
 
 
-def _workspaces_fault(served: Any) -> str | None:
-    if not isinstance(served, tuple | list):
-        return f"workspaces: {served!r}: expected kinds among {', '.join(KINDS.values())}"
-    unknown = [kind for kind in served if kind not in KINDS.values()]
+def _workspaces_fault(kinds: Any) -> str | None:
+    if not isinstance(kinds, tuple | list):
+        return f"workspaces: {kinds!r}: expected kinds among {', '.join(KINDS.values())}"
+    unknown = [kind for kind in kinds if kind not in KINDS.values()]
     return (
         f"workspaces: {unknown[0]}: unknown{closest(unknown[0], KINDS.values())}"
         if unknown

@@ -8,11 +8,11 @@ import numpy as np
 
 from bezierplan.planners import Plan
 from bezierplan.running.simulation.motion_check import Motion
-from bezierplan.running.simulation.robot import Planned, Ride
+from bezierplan.running.simulation.robot import DrivePlan, Ride
 from bezierplan.workspaces.problem import Path
 
 # No column of a planner has a name in capitals.
-_KINDS = {each.__name__: each for each in (Plan, Path, Motion, Planned, Ride)}
+_KINDS = {each.__name__: each for each in (Plan, Path, Motion, DrivePlan, Ride)}
 _ARRAY = "Array"
 
 

@@ -174,13 +174,13 @@ def _watched(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
     """What a job had under way last, how it ended as the operating system says, None if there is no
     telling, and why it was ended here, if it was: it had taken longer than it may.
     """
-    process, under_way, ended, rest = 0, "", "", b""
+    process, under_way, end, rest = 0, "", "", b""
     with contextlib.ExitStack() as measuring:
         while True:
             try:
                 read = job.recv(1 << 16)
             except TimeoutError:
-                ended = f"not done within the time limit of {job.gettimeout():g} s; it is ended"
+                end = f"not done within the time limit of {job.gettimeout():g} s; it is ended"
                 job.settimeout(None)
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(process, signal.SIGKILL)
@@ -191,18 +191,18 @@ def _watched(job: socket.socket, benchmark: Any) -> tuple[str, int | None, str]:
             for line in lines:
                 kind, _, text = line.decode().partition(" ")
                 if kind == ENDED:
-                    return under_way, int(text), ended
+                    return under_way, int(text), end
                 if kind == PROCESS:
                     process = int(text)
                     if benchmark is not None:
                         from snakemake.benchmark import benchmarked
 
                         measuring.enter_context(benchmarked(process, benchmark))
-                elif not ended:
+                elif not end:
                     under_way = text
                     job.settimeout(None if kind == "inf" else float(kind))
             if not read:
-                return under_way, None, ended
+                return under_way, None, end
 
 
 def stream_for(stream: TextIO | None) -> int | None:

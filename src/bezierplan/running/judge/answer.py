@@ -53,11 +53,11 @@ def of(name: str) -> Iterator[None]:
         raise PlannerFailure(f"{name}: {told(error)}") from error
 
 
-def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
+def plain(answer: Any, names: Collection[str] = ()) -> Plan:
     """A planner's answer as a Plan of plain values, copied once: its points and history are new
     arrays of float64.
 
-    taken: names not allowed for extra columns. Raises Unfit for the first field with another type,
+    names: names not allowed for extra columns. Raises Unfit for the first field with another type,
     form or range.
     """
     if not isinstance(answer, Plan):
@@ -69,16 +69,16 @@ def plain(answer: Any, taken: Collection[str] = ()) -> Plan:
         evaluations=_evaluations(answer.evaluations),
         history=_history(answer.history),
         stop=_stop(answer.stop),
-        extra=_extra(answer.extra, taken),
+        extra=_extra(answer.extra, names),
     )
     if plan.path is None and plan.claimed_feasible:
         raise Unfit("claimed_feasible: true without a path")
     return plan
 
 
-def accepted(answer: Any, problem: Problem, taken: Collection[str] = ()) -> Plan:
+def accepted(answer: Any, problem: Problem, names: Collection[str] = ()) -> Plan:
     """`plain`, of an answer whose path joins the problem's start and target. Raises Unfit."""
-    plan = plain(answer, taken)
+    plan = plain(answer, names)
     check_ends(plan.path, problem)
     return plan
 
@@ -175,7 +175,7 @@ def _stop(value: Any) -> str:
     return value
 
 
-def _extra(columns: Any, taken: Collection[str]) -> dict[str, float | bool]:
+def _extra(columns: Any, names: Collection[str]) -> dict[str, float | bool]:
     if not isinstance(columns, dict):
         raise Unfit("extra: expected names with numbers or truths")
     for name in columns:
@@ -184,7 +184,7 @@ def _extra(columns: Any, taken: Collection[str]) -> dict[str, float | bool]:
                 f"extra: {name!a}: expected a name of at most 64 small letters, digits and "
                 "underscores"
             )
-        if name in taken:
+        if name in names:
             raise Unfit(f"extra: {name}: a column or setting has this name already")
     return {name: _column(name, value) for name, value in columns.items()}
 

@@ -30,7 +30,7 @@ def follow(
     the robot moves uniformly or waits.
     """
     s, fresh, out = 0.0, True, way_out(world.workspace(time), way)
-    times, reached = [time], [s]
+    times, progress = [time], [s]
     checks = policy.replan == "when_blocked"
     while True:
         free = (
@@ -39,9 +39,9 @@ def follow(
             else math.inf
         )
         if not fresh and policy.replan in ("every_step", "when_changed"):
-            return DUE, np.array(times), np.array(reached)
+            return DUE, np.array(times), np.array(progress)
         if not fresh and checks and free < way.length:
-            return BLOCKED, np.array(times), np.array(reached)
+            return BLOCKED, np.array(times), np.array(progress)
         fresh = False
         limit = (
             way.length
@@ -53,18 +53,18 @@ def follow(
         if arrival <= following:
             time, s = arrival, limit
             if s >= way.length:
-                return ARRIVED, np.array([*times, time]), np.array([*reached, s])
+                return ARRIVED, np.array([*times, time]), np.array([*progress, s])
             if time > times[-1]:
-                times, reached = [*times, time], [*reached, s]
+                times, progress = [*times, time], [*progress, s]
             if policy.replan != "never" and limit < way.length:
-                return STOPPED, np.array(times), np.array(reached)
+                return STOPPED, np.array(times), np.array(progress)
             time = following  # it waits for the next change
         else:
             s += (following - time) * world.pace
             time = following
-        times, reached = [*times, time], [*reached, s]
+        times, progress = [*times, time], [*progress, s]
         if time >= world.end:
-            return ENDED, np.array(times), np.array(reached)
+            return ENDED, np.array(times), np.array(progress)
 
 
 def next_event(world: ChangingCells, time: float, policy: Policy) -> float:

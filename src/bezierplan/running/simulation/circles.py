@@ -58,46 +58,46 @@ def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[i
 def _follow(points, at, step, circles, pace, end, rules):
     """The loop of `follow`."""
     centres, velocities, walls, radii = circles
-    reached = np.empty(end - step + 1)
+    progress = np.empty(end - step + 1)
     n, s, total = 0, 0.0, at[-1]
-    reached[0] = s
+    progress[0] = s
     while step + n < end:
         # A robot that looks ahead needs where the circles are now, when it is where it is.
-        seen = positions(
+        places = positions(
             centres, velocities, walls, step + n + (rules.looks_after and not rules.foresees)
         )
         drift = (
-            positions(centres, velocities, walls, step + n + 1) - seen
+            positions(centres, velocities, walls, step + n + 1) - places
             if rules.foresees
-            else np.zeros_like(seen)
+            else np.zeros_like(places)
         )
         if n > 0:
             if rules.every > 0 and (step + n) % rules.every == 0:
-                return DUE, reached[: n + 1]
+                return DUE, progress[: n + 1]
             if rules.checks and comes_near(
                 points,
                 at,
                 s,
                 min(s + rules.horizon, total),
-                seen,
+                places,
                 drift,
                 radii,
                 rules.check_margin,
                 pace,
             ):
-                return BLOCKED, reached[: n + 1]
+                return BLOCKED, progress[: n + 1]
         if rules.brakes and comes_near(
-            points, at, s, min(s + rules.brake, total), seen, drift, radii, -TOUCHING, pace
+            points, at, s, min(s + rules.brake, total), places, drift, radii, -TOUCHING, pace
         ):
             if rules.plans:
-                return STOPPED, reached[: n + 1]
+                return STOPPED, progress[: n + 1]
         else:
             s = min(s + pace, total)
         n += 1
-        reached[n] = s
+        progress[n] = s
         if s >= total:
-            return ARRIVED, reached[: n + 1]
-    return ENDED, reached[: n + 1]
+            return ARRIVED, progress[: n + 1]
+    return ENDED, progress[: n + 1]
 
 
 @allocation_free

@@ -120,11 +120,11 @@ def _approach(points, times, centres, velocities, walls, radii, tolerance):
 
 
 @allocation_free
-def _relative(points, i, share, before, after, moved):
+def _relative(points, i, share, before, after, part):
     """The robot's place on leg i, relative to a circle that has made a share of its step."""
     x = points[i, 0] + share * (points[i + 1, 0] - points[i, 0])
     y = points[i, 1] + share * (points[i + 1, 1] - points[i, 1])
-    return x - before[0] - moved * (after[0] - before[0]), y - before[1] - moved * (
+    return x - before[0] - part * (after[0] - before[0]), y - before[1] - part * (
         after[1] - before[1]
     )
 

@@ -26,7 +26,7 @@ returned second with its last plan.
 """
 
 
-class Planned(NamedTuple):
+class DrivePlan(NamedTuple):
     """A plan that the robot made. time: in steps. path: the planner's, or None. length: of the way
     to it and along it, in units. margin: by which circles were grown, in units. seconds: CPU time.
     evaluations: as in `Plan`.
@@ -46,7 +46,7 @@ class Ride(NamedTuple):
     motion: Motion
     arrived: bool
     waited: float
-    plans: list[Planned]
+    plans: list[DrivePlan]
 
     @property
     def replans(self) -> int:
@@ -69,11 +69,11 @@ class _Log:
             else Motion(np.repeat(points, 2, axis=0), np.array([0.0, 0.0]))
         )
 
-    def follow(self, along: Way, times: np.ndarray, reached: np.ndarray, pace: float) -> None:
+    def follow(self, along: Way, times: np.ndarray, progress: np.ndarray, pace: float) -> None:
         """Add a drive along a way: the lengths of it reached at some times, between which the robot
         waits or drives at its pace. It may reach the last one before its time.
         """
-        for k, (begin, end) in enumerate(itertools.pairwise(reached)):
+        for k, (begin, end) in enumerate(itertools.pairwise(progress)):
             if end == begin:
                 self.wait(times[k + 1])
                 continue
@@ -155,7 +155,7 @@ def _plan(
     log: _Log,
     time: float,
     state: Any,
-) -> tuple[Planned, Way | None, Any]:
+) -> tuple[DrivePlan, Way | None, Any]:
     """A plan from where the robot is, and the way that it follows then; None if it found none."""
     motion = log.motion()
     approach, evaluations, began = motion.points[-1:], 0, cpu_time()
@@ -169,7 +169,7 @@ def _plan(
         seen = Problem(problem.name, world.workspace(looked, margin), position, problem.target)
         if position == problem.target:
             return (
-                Planned(time, None, 0.0, margin, cpu_time() - began, 0),
+                DrivePlan(time, None, 0.0, margin, cpu_time() - began, 0),
                 way(approach),
                 state,
             )
@@ -180,12 +180,12 @@ def _plan(
         if plan.path is not None and plan.claimed_feasible:
             along = way(np.concatenate([approach, drivable(plan.path, policy.spacing, obstacles)]))
             return (
-                Planned(time, plan.path, along.length, margin, cpu_time() - began, evaluations),
+                DrivePlan(time, plan.path, along.length, margin, cpu_time() - began, evaluations),
                 along,
                 next_state,
             )
     return (
-        Planned(time, None, math.inf, math.nan, cpu_time() - began, evaluations),
+        DrivePlan(time, None, math.inf, math.nan, cpu_time() - began, evaluations),
         None,
         state,
     )
