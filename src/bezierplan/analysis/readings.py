@@ -335,16 +335,16 @@ def of_study(
         numbers = _theirs(voting) if truth is None else _printed(voting, runner, truth, number)
         if numbers is None:
             continue
-        found = searched(start, allowed, lambda reading: of(reading, numbers)[0])  # noqa: B023
-        best, reading = next(pair for pair in found if allowed(pair[1]))
-        place = None if truth is None else [each for _, each in found].index(truth) + 1
+        ranking = searched(start, allowed, lambda reading: of(reading, numbers)[0])  # noqa: B023
+        best, reading = next(pair for pair in ranking if allowed(pair[1]))
+        order = [each for _, each in ranking]
         rows.append(
             {
                 "study": study,
                 "hidden": truth is not None,
                 "truth": None if truth is None else name_of(truth),
                 "score": math.nan if truth is None else of(truth, numbers)[0],
-                "place": place,
+                "place": None if truth is None else order.index(truth) + 1,
                 "default": of({}, numbers)[0],
                 "best": best,
                 "found": name_of(reading),
@@ -361,7 +361,7 @@ def of_study(
                     **dict(zip(("score", "error"), of(each, numbers))),
                     "numbers": len(numbers),
                 }
-                for value, each in found
+                for value, each in ranking
                 if value > -math.inf
             ]
     calibration = pd.DataFrame(rows).astype({"place": "Int64"})
