@@ -112,6 +112,13 @@ def check_known(name: Any, names: Iterable[Any], location: str, home: str = "") 
         raise Fault(f"{location}: {name}: unknown{closest(name, names)}{where}")
 
 
+def check_all(words: Iterable[Any], names: Iterable[Any], location: str) -> None:
+    """Raise Fault, beginning with a location, for a word that is not among some names."""
+    names = [*names]
+    for word in words:
+        check_known(word, names, location)
+
+
 def closest(word: Any, names: Iterable[Any]) -> str:
     """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence
     about an unknown one.

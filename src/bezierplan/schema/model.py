@@ -61,10 +61,10 @@ class Model(BaseModel):
         try:
             return handler(value)
         except ValidationError as error:
-            if any(fault["loc"] for fault in error.errors(include_url=False)):
+            faults = error.errors(include_url=False)
+            if any(fault["loc"] for fault in faults):
                 raise
-            field = cls.model_fields[info.field_name]
-            raise wrong(_fault(error.errors(include_url=False)[0], field)) from None
+            raise wrong(_fault(faults[0], cls.model_fields[info.field_name])) from None
 
     def plain(self, *without: str) -> dict[str, Any]:
         """The mapping as written, in plain values; some keys can be left out."""
@@ -91,10 +91,10 @@ def keys(model: type[Model]) -> dict[str, FieldInfo]:
 
 def parsed(model: type[M], content: Any, location: str) -> M:
     """The content of a file as a model. Raises Fault, beginning with a location."""
-    try:
-        return model.model_validate(content)
-    except ValidationError as error:
-        raise fault_of(error, location) from None
+    sound, faults, _ = sound_part(model, content, location)
+    if faults:
+        raise Fault(*faults)
+    return sound
 
 
 def sound_part(model: type[M], content: Any, location: str) -> tuple[M, list[str], list[str]]:

@@ -30,18 +30,12 @@ def default_of(study: Study, assumption: Assumption) -> Any:
     setting, methods = assumption.setting, concerned(study, assumption)
     if setting is None:
         return assumption.default
-    used = {
-        method: next(
-            (
-                settings[setting]
-                for problem in assumption.problems
-                if setting in (settings := study.problems[problem].settings)
-                and setting not in study.methods[method].settings
-            ),
-            study.resolved(method)[setting],
-        )
-        for method in methods
-    }
+    used = {}
+    for name in methods:
+        settings = [study.problems[problem].settings for problem in assumption.problems]
+        values = [each[setting] for each in settings if setting in each]
+        open_there = values and setting not in study.methods[name].settings
+        used[name] = values[0] if open_there else study.resolved(name)[setting]
     shared = [used[name] for name in methods if setting not in study.methods[name].settings]
     return used if assumption.methods else next(iter([*shared, *used.values()]), None)
 

@@ -20,10 +20,9 @@ from bezierplan.figures.panels import Panel
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import columns, worlds
 from bezierplan.running.chunk import conditions
-from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
-from bezierplan.schema.checked import Fault, check_known
+from bezierplan.schema.checked import Fault, check_all, check_known
 from bezierplan.schema.model import Model, fault_of, named, one_or_list
 from bezierplan.study import published
 from bezierplan.study.alternatives import concerned, with_alternative
@@ -33,7 +32,7 @@ from bezierplan.study.design import Design, design, together
 from bezierplan.study.experiments import Experiment, Method
 from bezierplan.study.experiments import Problem as ProblemOfStudy
 from bezierplan.study.files import inside
-from bezierplan.study.jobs import job
+from bezierplan.study.jobs import descriptions, job
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace
 from bezierplan.workspaces.problem import Problem
@@ -206,6 +205,8 @@ class Checks:
                     f"workspace: {problem.workspace}: of kind {home.kind}, which "
                     f"{'needs' if needed else 'has no'} {key}"
                 )
+        if home.draws and problem.start is None:
+            raise Fault(f"start_cell: {problem.start_cell}: expected start: [x, y] in a drawn map")
         self.built(name)
 
     def _built(self, name: str) -> Problem:
@@ -214,11 +215,7 @@ class Checks:
         """
         study, problem, home = self.study, self.study.problems[name], self.study.workspace_of(name)
         drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.draws else {}
-        described = Descriptions(
-            study.key,
-            {name: problem.plain("settings", "layouts") | drawn},
-            {problem.workspace: study.described(problem.workspace)},
-        )
+        described = descriptions(study, {name: problem.plain("layouts") | drawn})
         return worlds.build_all(described, study.folder)[0][name]
 
     def experiment(self, name: str, experiment: Experiment) -> None:
@@ -439,10 +436,3 @@ class Checks:
             for method in methods:
                 with self.at("alternatives", str(value), method):
                     self.settings(method, changed.resolved(method))
-
-
-def check_all(names: Iterable[Any], known: Iterable[Any], location: str) -> None:
-    """Raise Fault, beginning with a location, for a name that is not among those known."""
-    known = [*known]
-    for name in names:
-        check_known(name, known, location)

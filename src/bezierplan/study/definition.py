@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
-from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.machine.modules import code_of
 from bezierplan.planners import is_file, planner_module, planner_settings
 from bezierplan.running.inputs import PAPER, tree
@@ -127,14 +127,19 @@ class Study(ExperimentsFile, ArtefactsFile):
         """The tables of runs, which are compared with published numbers; the others have none."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
-    def whole(self, table: str) -> Pivot:
-        """A table of runs with what the one that it extends says of published numbers."""
-        spec = self.compared()[table]
-        if not spec.extends:
+    def whole(self, table: str) -> Table:
+        """A table with what the one that it extends says of published numbers."""
+        spec = self.tables[table]
+        if not getattr(spec, "extends", None):
             return spec
-        printed = self.compared()[spec.extends]
+        printed = self.tables[spec.extends]
         shared = ("published", "reads", "within", "primary", "identify")
         return spec.but(**{name: getattr(printed, name) for name in shared})
+
+    def published_file(self, table: str) -> str | None:
+        """The file of a table's published numbers relative to the working folder, or None."""
+        file = getattr(self.whole(table), "published", None)
+        return file and relative(self.folder / "published" / file)
 
     def reconstructed(self, table: Pivot) -> bool:
         """Whether runs of a table are on a map that the paper does not print."""
@@ -143,12 +148,6 @@ class Study(ExperimentsFile, ArtefactsFile):
         return any(
             self.workspace_of(name).origin == "reconstructed" for name in problems if name in shown
         )
-
-    def published_file(self, table: str) -> str | None:
-        """The file of a table's published numbers relative to the working folder, or None."""
-        spec = self.tables[table]
-        file = getattr(self.tables[getattr(spec, "extends", None) or table], "published", None)
-        return file and relative(self.folder / "published" / file)
 
     def with_published(self) -> dict[str, Pivot]:
         """The tables of runs that have published numbers."""

@@ -23,7 +23,7 @@ from bezierplan.analysis.jobs import (
     TableWithoutRuns,
     Verdict,
 )
-from bezierplan.analysis.table_kinds import Layout, Pivot, Table
+from bezierplan.analysis.table_kinds import FunctionTable, Layout, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure as FigureOfStudy
 from bezierplan.figures.jobs import Figure
@@ -44,15 +44,20 @@ Studies = dict[str, Study]
 
 def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
     """What the problems of an experiment depend on, except the content of map files."""
-    problems = {
-        name: {key: value for key, value in problem.items() if key != "settings"}
-        for name, problem in study.problems_of(experiment, scale).items()
-    }
-    workspaces = {
-        name: study.described(name)
-        for name in sorted({problem["workspace"] for problem in problems.values()})
-    }
-    return Descriptions(study.key, problems, workspaces)
+    return descriptions(study, study.problems_of(experiment, scale))
+
+
+def descriptions(study: Study, problems: dict[str, dict]) -> Descriptions:
+    """What some problems depend on, except the content of map files, from their plain values."""
+    homes = sorted({problem["workspace"] for problem in problems.values()})
+    return Descriptions(
+        study.key,
+        {
+            name: {key: value for key, value in problem.items() if key != "settings"}
+            for name, problem in problems.items()
+        },
+        {name: study.described(name) for name in homes},
+    )
 
 
 def problems(study: Study, scale: str, experiment: str) -> Problems:
@@ -189,11 +194,10 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     """Labels, except those of methods, problems and workspaces that a table or figure cannot show.
     A function may name any.
     """
-    spec = (study.tables.get(artefact) or study.figures[artefact]).plain()
-    panels = spec.get("panels", [])
-    if spec.get("kind") == "function" or any("data" in panel for panel in panels):
+    spec = study.tables.get(artefact) or study.figures[artefact]
+    if isinstance(spec, FunctionTable) or getattr(spec, "calls", False):
         return study.labels
-    shown = {panel["method"] for panel in panels if "method" in panel}
+    shown = {getattr(panel, "method", None) for panel in getattr(spec, "panels", [])}
     for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
         shown |= {*study.methods_of(experiment), *content.problems}
@@ -203,7 +207,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
     return {
         name: label for name, label in study.labels.items() if name in shown or name not in names
-    } | spec.get("labels", {})
+    } | getattr(spec, "labels", {})
 
 
 def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:

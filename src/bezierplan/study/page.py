@@ -109,7 +109,7 @@ def _study(study: Study, scale: str, root: str) -> StudyView:
             name: TableView(
                 study.tables[name].title,
                 jobs.caption(study, name, scale),
-                study.whole(name) if name in study.compared() else study.tables[name],
+                study.whole(name),
                 jobs.labels_of(study, name),
             )
             for name in names
@@ -145,12 +145,8 @@ def has_audit(study: Study) -> bool:
 
 def _repeats(study: Study, scale: str) -> list[int]:
     """The least and the largest number of runs of a method under a condition."""
-    counts = [experiment.repeats[scale] for experiment in study.experiments.values()]
-    if scale == "extended":
-        counts += [
-            count
-            for experiment in study.experiments.values()
-            for fewer in experiment.fewer.values()
-            for count in fewer.values()
-        ]
+    counts = []
+    for experiment in study.experiments.values():
+        fewer = experiment.fewer.values() if scale == "extended" else ()
+        counts += [experiment.repeats[scale], *(n for each in fewer for n in each.values())]
     return [min(counts), max(counts)] if counts else []

@@ -11,7 +11,7 @@ from typing import Any
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.table_kinds import Pivot
-from bezierplan.schema.checked import Fault, check_known, text_of
+from bezierplan.schema.checked import Fault, check_all, check_known, text_of
 from bezierplan.schema.model import is_number
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.design import Design
@@ -53,23 +53,13 @@ def read(file: Path) -> dict[int, dict[str, str]]:
     return lines
 
 
-def keys(study: Study, table: Pivot) -> list[str]:
-    """The columns that tell the rows of a table's comparison apart."""
-    named = [column for column in _header(study, table) if column not in COLUMNS]
-    return list(dict.fromkeys([*named, *table.key_columns, *table.primary]))
-
-
-def _header(study: Study, table: Pivot) -> list[str]:
-    lines = read(study.folder / "published" / table.published).values() if table.published else []
-    return list(next(iter(lines), ()))
-
-
 def check(study: Study, design: Design, table: Pivot) -> None:
     """Raise Fault, with file, line, column and what would be right, for a file of published numbers
     that does not fit its table, and for what does not fit it in the table.
     """
     file = study.folder / "published" / table.published
-    here, lines, header = relative(file), read(file), _header(study, table)
+    here, lines = relative(file), read(file)
+    header = [*next(iter(lines.values()))]
     for column in COLUMNS:
         if column not in header:
             raise Fault(f"{here}: line 1: column {column} is missing; expected all of {COLUMNS}")
@@ -108,14 +98,9 @@ def check(study: Study, design: Design, table: Pivot) -> None:
                 "expected each once"
             )
     printed = {row["metric"] for row in lines.values()}
-    for key, metrics_named in (
-        ("reads", table.reads),
-        ("monotone", [rule.metric for rule in table.monotone]),
-    ):
-        for metric in metrics_named:
-            check_known(metric, printed, key)
-    for column in (*table.primary, *(rule.along for rule in table.monotone)):
-        check_known(column, keys(study, table), "primary or monotone")
+    check_all(table.reads, printed, "reads")
+    check_all([rule.metric for rule in table.monotone], printed, "monotone")
+    check_all([rule.along for rule in table.monotone], {*named, *table.key_columns}, "monotone")
 
 
 def _read(text: str) -> Any:

@@ -2,7 +2,6 @@
 first job starts, and reported in one line (`checked.Fault`).
 """
 
-import json
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -81,8 +80,8 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
             if faults := [*faults, *faults_of(study, lost)]:
                 raise Fault(*faults)
         except Fault as fault:
-            more = f" (with the configuration's settings: {json.dumps(changed)[:300]})"
-            raise Fault(*(f"{line}{more if changed else ''}" for line in fault.lines)) from None
+            more = f" (with the configuration's settings: {changed})" if changed else ""
+            raise Fault(*(f"{line}{more}" for line in fault.lines)) from None
         if study.key in studies:
             raise Fault(
                 f"{relative(folder)}: a study of the name {study.key} is there already; rename the "
