@@ -29,10 +29,14 @@ def config_of(names: Sequence[str] = ()) -> dict[str, Any]:
     return checked.read(reading.config_file())
 
 
+def is_study(word: str) -> bool:
+    """Whether a word is the folder of a study."""
+    return Path(word, "experiments.yaml").is_file()
+
+
 def study_named(word: str) -> str:
     """The path of a study's folder; any other word as it is."""
-    folder = Path(word)
-    return str(folder.resolve()) if (folder / "experiments.yaml").is_file() else word
+    return str(Path(word).resolve()) if is_study(word) else word
 
 
 def studies_of(names: Sequence[str] = ()) -> dict[str, Any]:

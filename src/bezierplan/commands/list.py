@@ -7,7 +7,7 @@ from typing import Any
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import kinds
-from bezierplan.commands import studies_of, study_named
+from bezierplan.commands import is_study, studies_of, study_named
 from bezierplan.figures import panels
 from bezierplan.figures.page import in_printed_order
 from bezierplan.planners import known_planners, planner_module, planner_settings
@@ -35,7 +35,7 @@ def main(*words: str) -> None:
     list settings tharwat2018
     list metrics mystudy
     """
-    loaded = studies_of([word for word in words if study_named(word) != word])
+    loaded = studies_of([word for word in words if is_study(word)])
     names = [Path(study_named(word)).name for word in words]
     known = [*KINDS, *NAMES, *loaded]
     for name in names:

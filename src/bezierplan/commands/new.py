@@ -25,7 +25,7 @@ def main(
     target: Place | None = None,
     example: bool = False,
 ) -> None:
-    """Make the folder of a study. Raises Fault.
+    """Make the folder of a study.
 
     Parameters
     ----------

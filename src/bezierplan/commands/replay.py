@@ -1,5 +1,6 @@
 """Rerun one run from its name alone: bit-identical, with its picture."""
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from bezierplan.study.replays import replay
 
 def main(run: str, *, studies: Sequence[str] = ()) -> None:
     """Rerun it, print the outcome and whether it equals the stored run, and save its picture below
-    results/replay; of a drive an animation. Raises Fault.
+    results/replay; of a drive an animation. Status 1 if it differs from the stored one.
 
     Parameters
     ----------
@@ -30,8 +31,9 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
     loaded = studies_of(studies)
     reproduced = replay(run, loaded)
     row = reproduced.runs.iloc[0]
-    for file, stored in stored_runs(run, Path("results")).items():
-        print(f"{'stored in':16}{file}: {'equal' if equal(row, stored) else 'NOT EQUAL'}")
+    same = {file: equal(row, stored) for file, stored in stored_runs(run, Path("results")).items()}
+    for file, is_same in same.items():
+        print(f"{'stored in':16}{file}: {'equal' if is_same else 'NOT EQUAL'}")
     picture = Path("results/replay") / f"{run}.svg"
     picture.parent.mkdir(parents=True, exist_ok=True)
     if reproduced.worlds:
@@ -44,3 +46,5 @@ def main(run: str, *, studies: Sequence[str] = ()) -> None:
         answer.save(picture)
     for name, text in {**lines, "picture": picture}.items():
         print(f"{name:16}{text}")
+    if not all(same.values()):
+        sys.exit(1)

@@ -9,7 +9,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 
-from bezierplan.commands import study_named
+from bezierplan.commands import is_study, study_named
 from bezierplan.places import TREE
 from bezierplan.running.jobs import forks
 from bezierplan.schema.checked import Fault
@@ -18,8 +18,9 @@ from bezierplan.schema.checked import Fault
 def main(*words: str) -> None:
     """Run targets of the workflow; results are written below the working folder, into results/.
 
-    Without a target it makes everything at scale full. Ends with Snakemake's status. Raises Fault
-    without a word.
+    Without a target it makes the tables and figures of papers, or all of a study without numbered
+    ones, at scale full, with claims and the page; STUDY_beyond makes the rest. Ends with
+    Snakemake's status.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def command(words: Sequence[str]) -> list[str]:
     """The command that runs words."""
     snakemake = [sys.executable, "-m", "snakemake", "--snakefile", str(TREE / "Snakefile")]
     snakemake += ["--workflow-profile", str(TREE / "profiles" / "default")]
-    folders = [study_named(word) for word in words if study_named(word) != word]
-    others = [word for word in words if study_named(word) == word]
+    folders = [study_named(word) for word in words if is_study(word)]
+    others = [word for word in words if not is_study(word)]
     config = ["--config", f"studies={json.dumps(folders)}"] if folders else []
     return [*snakemake, *others, *config]
