@@ -74,3 +74,6 @@ def test_a_run_of_equal_length_but_another_verdict_or_path_is_not_equal(column, 
     }
     assert equal(pd.Series(stored), stored)
     assert not equal(pd.Series(stored), stored | {column: other})
+    # A column that only other problems of the chunk have.
+    assert equal(pd.Series(stored), stored | {"reference": None})
+    assert not equal(pd.Series(stored), stored | {"reference": 3.0})
