@@ -143,8 +143,8 @@ def written(folder, source, workspaces=("circles",)):
     return str(file)
 
 
-def failed(planner, settings, elsewhere=True):
-    findings = list(contract.check_planner(planner, settings, elsewhere))
+def failed(planner, settings):
+    findings = list(contract.check_planner(planner, settings))
     assert not any("\n" in str(finding) for finding in findings)
     return [finding for finding in findings if not finding.passed]
 
@@ -155,7 +155,7 @@ def test_every_other_planner_of_the_package_is_run_by_a_study():
 
 @pytest.mark.parametrize("planner", known_planners())
 def test_planners_of_the_package_pass(planner):
-    assert not failed(planner, SETTINGS[planner], elsewhere=False)
+    assert not failed(planner, SETTINGS[planner])
 
 
 def test_a_planner_in_a_file_passes_on_every_kind_of_workspace(tmp_path):
@@ -204,7 +204,7 @@ def test_a_planner_is_not_what_it_says(old, new, fact, told, tmp_path):
 
 
 def test_wrong_claims_of_a_planner_that_is_not_exact_are_counted():
-    found = {each[:2]: each for each in contract.check_planner("straight_line", {}, False)}
+    found = {each[:2]: each for each in contract.check_planner("straight_line", {})}
     assert found["circles: obstacle in the way", "claims"].detail == EXACT
     assert found["grid: open", "claims"].detail == "4 paths claimed feasible, 4 by the checker"
 

@@ -177,7 +177,7 @@ def test_files_of_problems_keep_the_world(tmp_path):
     described = problems_job(study, "drives", "smoke")
     made, found = worlds.build_all(described, study.folder)
     file = str(tmp_path / "drives.parquet")
-    worlds.write(made, described.homes, found, file)
+    problems.write(made, described.homes, file, found)
     assert worlds.read(file)["across"].workspace(3).occupied[2, 3]
     assert not problems.read(file)["across"].workspace.occupied[2, 3]
     bounds = worlds.bounds_of(made, found).to_pylist()[0]

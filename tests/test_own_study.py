@@ -194,7 +194,7 @@ def test_what_was_verified_is_listed_and_can_be_judged_again(results):
     assert f"{results.name}/claims.csv" in judged["sha256"]
     with contextlib.chdir(results.parents[2]):
         tasks = stored.tasks(reading.load([Path(results.name)]), Path("results/full"))
-        verdict = recheck.verify(tasks, 1)
+        verdict = recheck.verify(tasks, 1, print)
     assert not verdict.faults
     assert verdict.files == judged["files"]
 

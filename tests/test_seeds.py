@@ -33,9 +33,8 @@ CHUNK = Chunk(
 
 
 def first_number(seeds, problem="p", x=1, repeat=0, **changes):
-    return execution.generator(
-        CHUNK._replace(seeds=seeds, **changes), Condition(problem, {"x": x}), repeat
-    ).random()
+    chunk = CHUNK._replace(seeds=seeds, **changes)
+    return execution.task(chunk, Condition(problem, {"x": x}), repeat).generator().random()
 
 
 CHANGES = {

@@ -17,7 +17,7 @@ import starts
 
 from bezierplan.__main__ import main
 from bezierplan.places import TREE
-from bezierplan.running import execution, problems, rows, worlds
+from bezierplan.running import execution, problems, rows
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.judge import recheck
 from bezierplan.study import stored
@@ -343,7 +343,7 @@ def tasks(tmp_path_factory):
     folder = tmp_path_factory.mktemp("files")
     files = {name: str(folder / f"{name}.parquet") for name in ("e", "d")}
     problems.write(MADE, dict.fromkeys(MADE, "field"), files["e"])
-    worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, files["d"])
+    problems.write(MET, dict.fromkeys(MET, "field"), files["d"], WORLDS)
     runs = {
         "e": (CHUNK, execution.run_chunk(MADE, CHUNK)[0]),
         "d": (DRIVES, execution.run_chunk(MET, DRIVES, WORLDS)[0]),
@@ -362,7 +362,7 @@ def each(request, tasks):
 
 
 def test_runs_and_drives_are_sound_and_can_be_made_again(each):
-    verdict = recheck.verify([each], 1)
+    verdict = recheck.verify([each], 1, print)
     assert (verdict.faults, verdict.files, verdict.runs) == ((), 1, 4)
     assert recheck.made_again([each], 1, verdict.digest, every=True) == (4, [])
 

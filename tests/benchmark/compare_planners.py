@@ -118,7 +118,7 @@ def planned(at: Arena, method: str, shares: tuple[float, ...], seed: int) -> Att
     for share in shares if budget else (1.0,):
         if budget:
             settings[contest.budget] = max(1, round(share * budget))
-        rng, before = execution.generator(job, condition, seed), time.process_time()
+        rng, before = execution.task(job, condition, seed).generator(), time.process_time()
         plan = planner.plan(at.problem, rng, **settings)
         yield time.process_time() - before, plan.path
 

@@ -89,10 +89,10 @@ class Problems(Job):
 
     def run(self, input_files, output_files, threads):
         """Build the problems, with the worlds of those that move."""
-        from bezierplan.running import worlds
+        from bezierplan.running import problems, worlds
 
         built, moving = worlds.build_all(self.descriptions, Path(self.folder))
-        worlds.write(built, self.descriptions.homes, moving, output_files[0])
+        problems.write(built, self.descriptions.homes, output_files[0], moving)
 
 
 @dataclass(frozen=True)

@@ -92,11 +92,8 @@ PLANNED = _types(Planned)
 """Columns of every runs table known before a run, beside settings, with their types (`TYPES`)."""
 
 RESULTS = _types(Outcome)
-"""Likewise: those that a run finds out."""
-
-RUN_COLUMNS = (*PLANNED, *RESULTS)
-"""Columns of every runs table; the settings and a planner's extra columns stand between `planner`
-and `objective`, and at the end.
+"""Likewise: those that a run finds out; the settings and a planner's extra columns stand between
+`planner` and `objective`, and at the end.
 """
 
 DRIVE_RESULTS = _types(DriveOutcome)
@@ -111,7 +108,7 @@ DRIVE_JOINED = _types(DriveBound, DriveTimes)
 WORDS = ("value", "statistic", "metric", "n", "unit", "table")
 """Columns of tables of results, beside those of the runs table that tell their rows apart."""
 
-TAKEN = frozenset((*RUN_COLUMNS, *DRIVE_RESULTS, *PLACE, *JOINED, *DRIVE_JOINED))
+TAKEN = frozenset((*PLANNED, *RESULTS, *DRIVE_RESULTS, *PLACE, *JOINED, *DRIVE_JOINED))
 """Names that no planner's extra column can have; the job's settings and what it varies are others.
 A setting cannot have them either.
 """

@@ -3,7 +3,6 @@ world that moves, a run is a drive.
 """
 
 import itertools
-import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any
@@ -31,11 +30,6 @@ from bezierplan.running.simulation.robot import Ride
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
-
-logger = logging.getLogger(__name__)
-
-# Number of runs between two lines of the log.
-_LOGGED = 100
 
 
 def run_id(chunk: Chunk, condition: Condition, repeat: int) -> str:
@@ -73,11 +67,6 @@ def task(chunk: Chunk, condition: Condition, repeat: int) -> worker.Task:
         [chunk.study, chunk.experiment, *parts[chunk.seeds], repeat],
         settings_in(chunk, condition),
     )
-
-
-def generator(chunk: Chunk, condition: Condition, repeat: int) -> np.random.Generator:
-    """The random generator of a run."""
-    return task(chunk, condition, repeat).generator()
 
 
 def told_chunk(chunk: Chunk) -> str:
@@ -271,14 +260,11 @@ def run_chunk(
         if moving:
             times |= rides.replan_times(result, chunk.policy["step_seconds"])._asdict()
         done[k, repeat] = outcome, times, trace
-        if (number + 1) % _LOGGED == 0:
-            logger.info("%d runs done", number + 1)
     if deterministic:
         for k, repeat in itertools.product(range(len(planned)), range(first + 1, last)):
             outcome, *others = done[k, first]
             own = {"id": run_id(chunk, planned[k], repeat)}
             done[k, repeat] = outcome | own | {"repeat": repeat}, *(each | own for each in others)
-    logger.info("all %d runs done", len(done))
     runs, times, traces = zip(*(done[key] for key in sorted(done)))
     if not moving:
         return rows.table(runs, Planned, Outcome), rows.table(times, Times)

@@ -2,14 +2,13 @@
 problem.
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y
-(units), drawn (the workspace itself, as JSON: `workspaces.files.to_json`). Columns of a file of
-bounds: `columns.Bound`.
+(units), drawn (the workspace itself, as JSON: `workspaces.files.to_json`); where it moves, world
+(as JSON: `workspaces.worlds`). Columns of a file of bounds: `columns.Bound`.
 """
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,10 +18,11 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import blocks, region
 from bezierplan.running.columns import Bound
 from bezierplan.running.descriptions import Descriptions
-from bezierplan.workspaces import files, lattice, robot
+from bezierplan.workspaces import files, robot, worlds
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import grown_of, original
 from bezierplan.workspaces.problem import Problem, Workspace
+from bezierplan.workspaces.worlds import World
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -107,57 +107,20 @@ def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
     for name, description in described.problems.items():
         home = description["workspace"]
         arguments = described.workspaces[home], description, f"{described.study}/{home}"
-        if home in fixed:
-            workspace = fixed[home]
-        elif hasattr(kinds[home], "draw"):
-            workspace = kinds[home].draw(*arguments)
-        else:
-            workspace = _suitable(
-                kinds[home], kinds[home].candidates(*arguments), arguments[0], description
-            )
+        workspace = fixed[home] if home in fixed else kinds[home].draw(*arguments)
         problems[name] = build(name, description, workspace)
     return problems
 
 
-# Tolerance between the shortest lattice path's length and the wanted one, in cells.
-_SAME_LENGTH = 1e-4
-
-
-def _suitable(kind: ModuleType, maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
-    """The first of some maps whose shortest path over the 8-connected lattice has the wanted
-    length, in cells, if one is given.
-
-    Raises ValueError if there is none.
+def write(
+    problems: dict[str, Problem],
+    workspaces: dict[str, str],
+    file: str,
+    moving: dict[str, World] | None = None,
+) -> None:
+    """Write problems, by name, with the names of their workspaces, and their worlds, if there are
+    any.
     """
-    from bezierplan.geometry import shortest_paths
-
-    wanted = description.get("lattice_length")
-    for grid in maps:
-        ends = lattice.lattice(
-            grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"]
-        )
-        start, target = divmod(ends.start, problem["side"]), divmod(ends.target, problem["side"])
-        length = (
-            shortest_paths.lattice_path(
-                grid.occupied, start, target, ends.diagonal, description["corners"]
-            ).length
-            + ends.ends
-        )
-        if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
-            return grid
-    asked = (
-        "a path from start to target"
-        if wanted is None
-        else f"a shortest lattice path of lattice_length {wanted:g}"
-    )
-    raise ValueError(
-        f"obstacles: {problem['obstacles']}: of {kind.MOST_MAPS} maps none has so many "
-        f"occupied cells and {asked}"
-    )
-
-
-def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -> None:
-    """Write problems, by name, with the names of their workspaces."""
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
@@ -171,6 +134,7 @@ def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -
             "target_y": problem.target[1],
             "drawn": files.to_json(problem.workspace),
         }
+        | ({"world": worlds.to_json(moving[name])} if moving else {})
         for name, problem in problems.items()
     ]
     parquet.write_table(pa.Table.from_pylist(rows), file)
@@ -233,17 +197,12 @@ def _cell_bound(problem: Problem) -> float:
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return math.nan
-    start, target = _cell(grid, problem.start), _cell(grid, problem.target)
+    start, target = grid.cell_of(*problem.start), grid.cell_of(*problem.target)
+    assert start
+    assert target
     return (
         shortest_paths.lattice_path(
             grid.occupied, start, target, cell_length.DIAGONAL, "free"
         ).length
         * grid.cell
     )
-
-
-def _cell(grid: Grid, point: tuple[float, float]) -> tuple[int, int]:
-    """Row and column of a point inside a grid."""
-    cell = grid.cell_of(*point)
-    assert cell is not None
-    return cell

@@ -7,7 +7,6 @@ import math
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.parquet as parquet
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems as problem_files
@@ -51,20 +50,6 @@ def build(description: dict, problem: dict, name: str, folder: Path) -> World:
         return shortest_paths.centre_path(problem_files.build("first", problem, grid)).length
 
     return kind_of(description).world(description, problem, name, folder, length)
-
-
-# Files
-
-
-def write(
-    problems: dict[str, Problem], workspaces: dict[str, str], found: dict[str, World], file: str
-) -> None:
-    """Write problems, with the names of their workspaces and their worlds, if there are any."""
-    problem_files.write(problems, workspaces, file)
-    if found:
-        table = parquet.read_table(file)
-        column = pa.array([worlds.to_json(found[name]) for name in table["problem"].to_pylist()])
-        parquet.write_table(table.append_column("world", column), file)
 
 
 def read(file: str) -> dict[str, World]:

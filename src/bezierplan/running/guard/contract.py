@@ -66,12 +66,10 @@ class Finding(NamedTuple):
         return f"{verdict:8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
 
 
-def check_planner(
-    planner: str, settings: dict[str, Any], elsewhere: bool = True
-) -> Iterator[Finding]:
+def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
     """Findings on a planner, given as a name or the path of a file, with these settings; computed
-    lazily. elsewhere: whether it is run in another process as well, where `hash`, the order of sets
-    and the addresses of objects differ.
+    lazily. One in a file is run in another process as well, where `hash`, the order of sets and the
+    addresses of objects differ.
 
     Raises Fault, in one line, before the first finding: for a file that is not a planner, and for
     missing or invalid settings.
@@ -84,7 +82,7 @@ def check_planner(
     module = interface.loaded(planner, planner)
     interface.refuse_unknown(module, settings, f"{planner}: settings")
     interface.check_settings(module, settings, f"{planner}: settings")
-    return _findings(planner, module, settings, elsewhere)
+    return _findings(planner, module, settings)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -122,14 +120,12 @@ def drawn_problem(kind: str, title: str, rows: tuple[str, ...]) -> Problem:
 # Facts
 
 
-def _findings(
-    planner: str, module: ModuleType, settings: dict[str, Any], elsewhere: bool
-) -> Iterator[Finding]:
+def _findings(planner: str, module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]:
     by_name = {problem.name: problem for problem in problems(module)}
     hashing = 0 if is_file(planner) else None
     try:
         made = _made(planner, settings, by_name, SEEDS, hashing)
-        again = _made(planner, settings, by_name, SEEDS[:1], 1) if elsewhere else {}
+        again = _made(planner, settings, by_name, SEEDS[:1], 1) if is_file(planner) else {}
         differ = any(len({*map(repr, plans[1:])}) > 1 for plans in made.values())
         # Plans may all be the same because the problems are easy.
         left = _made(planner, settings, by_name, SEEDS[1:], hashing, "left")

@@ -137,9 +137,9 @@ class Forks:
                 ours.sendall(pickle.dumps((os.getcwd(), name, source, snakemake)))
                 ours.shutdown(socket.SHUT_WR)
             under_way, status, ended = _watched(ours, benchmark)
-        if status is not None and not ended and os.waitstatus_to_exitcode(status) in (0, 1):
-            return status == 0
         if status is not None and not ended:
+            if os.waitstatus_to_exitcode(status) in (0, 1):
+                return status == 0
             ended = how_ended(status)
         log.report(
             str(snakemake.log[0]),

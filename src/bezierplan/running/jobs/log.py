@@ -63,14 +63,11 @@ def report(log: str, line: str) -> None:
 
 
 def account(error: BaseException) -> str:
-    """The traceback of an exception, each line of limited length and without control characters."""
+    """The last lines of an exception's traceback, each of limited length and without control
+    characters.
+    """
     lines = "".join(traceback.format_exception(error, limit=-MOST_FRAMES)).splitlines()
-    shown = (
-        lines
-        if len(lines) <= MOST_LINES
-        else [*lines[: MOST_LINES // 2], "...", *lines[-MOST_LINES // 2 :]]
-    )
-    return "\n".join(plain(line, LONGEST_LINE) for line in shown)
+    return "\n".join(plain(line, LONGEST_LINE) for line in lines[-MOST_LINES:])
 
 
 @contextmanager

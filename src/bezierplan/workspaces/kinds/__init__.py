@@ -8,8 +8,6 @@ its description, and how it is made.
   its keys name
 - `draw(description, problem, name)`: the workspace of a problem, if it is random; seeded by the
   name of study and workspace
-- `candidates(description, problem, name)`: in place of `draw`, workspaces of which the first with a
-  suitable lattice path is taken
 - `world(description, problem, name, folder, length)`: the world of a problem, if the kind moves
 
 A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5

@@ -1,5 +1,6 @@
 """Square maps with blocks of occupied cells at random positions, none of which touch."""
 
+import math
 from collections.abc import Iterator
 from functools import cache
 from typing import ClassVar, Literal
@@ -7,7 +8,9 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
+from bezierplan.geometry import shortest_paths
 from bezierplan.schema.model import Count, Positive
+from bezierplan.workspaces import lattice
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import Workspace
 from bezierplan.workspaces.random_field import end_cells
@@ -16,6 +19,9 @@ from bezierplan.workspaces.seeds import generator
 # Number of maps drawn before giving up, and number of blocks tried for one map.
 MOST_MAPS = 500
 MOST_BLOCKS = 4000
+
+# Tolerance between the shortest lattice path's length and the wanted one, in cells.
+_SAME_LENGTH = 1e-4
 
 
 class Options(Workspace):
@@ -35,6 +41,31 @@ class Options(Workspace):
     )
     lattice_length: Positive | None = Field(
         None, description="the length that the shortest lattice path must have, a number above 0"
+    )
+
+
+def draw(description: dict, problem: dict, name: str) -> Grid:
+    """The first of some maps (`candidates`) whose shortest path over the 8-connected lattice has
+    the length `lattice_length`, in cells, if one is given.
+
+    Raises ValueError if there is none.
+    """
+    wanted, corners = description.get("lattice_length"), description["corners"]
+    for grid in candidates(description, problem, name):
+        ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), corners)
+        start, target = divmod(ends.start, problem["side"]), divmod(ends.target, problem["side"])
+        path = shortest_paths.lattice_path(grid.occupied, start, target, ends.diagonal, corners)
+        length = path.length + ends.ends
+        if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
+            return grid
+    asked = (
+        "a path from start to target"
+        if wanted is None
+        else f"a shortest lattice path of lattice_length {wanted:g}"
+    )
+    raise ValueError(
+        f"obstacles: {problem['obstacles']}: of {MOST_MAPS} maps none has so many occupied cells "
+        f"and {asked}"
     )
 
 
