@@ -2,6 +2,7 @@
 and stable times.
 """
 
+import time
 from types import ModuleType
 
 import numpy as np
@@ -136,6 +137,13 @@ def warm_up(seconds):
 )
 def test_runs_are_thrown_away_until_times_are_stable(seconds, runs):
     assert warm_up(seconds) == runs
+
+
+def test_times_are_those_of_the_clock():
+    found, cpu, wall = worker.timed(lambda: time.sleep(0.1))
+    assert found is None
+    assert 0.1 <= wall < 1.0
+    assert 0 <= cpu < 0.1
 
 
 UNREPEATABLE = {

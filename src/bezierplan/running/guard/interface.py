@@ -30,8 +30,6 @@ KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
 LIMIT = 60.0
 """Seconds for which a planner's file may be executed when it is imported."""
 
-_EXPECTED = "expected bool, int, float, Literal, or Annotated with a Range"
-
 
 def loaded(planner: str, location: str) -> ModuleType:
     """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with
@@ -145,7 +143,10 @@ def interface_fault(module: ModuleType) -> str | None:
             annotated = f"is annotated with {inspect.formatannotation(parameter.annotation)}"
             if parameter.annotation is parameter.empty:
                 annotated = "has no annotation"
-            return f"setting {parameter.name}: {annotated}; {_EXPECTED}"
+            return (
+                f"setting {parameter.name}: {annotated}; expected bool, int, float, Literal, or "
+                "Annotated with a Range"
+            )
     return _workspaces_fault(getattr(module, "workspaces", ()))
 
 

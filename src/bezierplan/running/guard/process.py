@@ -34,9 +34,6 @@ MOST_PRINTED = 20_000
 
 # Longest pause, in seconds, between two looks at whether a process is done.
 _LOOK = 0.05
-# A process's own account of its CPU time may differ from the operating system's by this share, and
-# by so many seconds.
-_CLOCKS = 0.1, 1.0
 
 
 def made(
@@ -159,8 +156,8 @@ def _read(lines: Path, name: str, end: str, took: float) -> list[Any]:
                 by_clock = seconds(value)
     if not done:
         raise PlannerFailure(f"{name}: {end}")
-    share, least = _CLOCKS
-    if abs(by_clock - took) > share * took + least:
+    # A process's own account may differ from the operating system's by a tenth, or by a second.
+    if not math.isclose(by_clock, took, rel_tol=0.1, abs_tol=1.0):
         raise PlannerFailure(
             f"{name}: its process took {took:.3g} CPU seconds, by its own clock {by_clock:.3g}; "
             "a planner leaves clocks alone"

@@ -14,7 +14,7 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,8 +34,6 @@ from bezierplan.schema.words import told
 from bezierplan.workspaces import files, seeds
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World, from_json, to_json
-
-T = TypeVar("T")
 
 LIMITS = {"RLIMIT_AS": 16 << 30, "RLIMIT_FSIZE": 1 << 30, "RLIMIT_CPU": 30 * 86_400}
 """Bytes of memory, bytes of a file, and CPU seconds that a process may have."""
@@ -147,7 +145,7 @@ def made(
         yield one(number, task)
 
 
-def timed(once: Callable[[], T]) -> tuple[T, float, float]:
+def timed(once: Callable[[], Any]) -> tuple[Any, float, float]:
     """What a call returns, its CPU seconds and its wall-clock seconds."""
     cpu, wall = cpu_time(), time.perf_counter()
     found = once()
