@@ -240,17 +240,17 @@ def run_chunk(
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}
-    planned, judged = chunk.conditions(), _judge(chunk, met, moving)
+    every, judged = chunk.conditions(), _judge(chunk, met, moving)
     deterministic = interface.traits(chunk.planner).deterministic
     first, last = chunk.repeats
-    order = _order(chunk, len(planned), range(first, first + 1 if deterministic else last))
-    tasks = [task(chunk, planned[k], repeat) for k, repeat in order]
+    order = _order(chunk, len(every), range(first, first + 1 if deterministic else last))
+    tasks = [task(chunk, every[k], repeat) for k, repeat in order]
     # What needs no random numbers must not be changed by others.
-    warm_up = task(chunk, planned[order[0][0]], order[0][1] + deterministic)
+    warm_up = task(chunk, every[order[0][0]], order[0][1] + deterministic)
     warm, done = [], {}
     for number, result, cpu, wall in made(chunk, met, tasks, warm_up, moving):
         k, repeat = order[max(number, 0)]
-        outcome, trace = judged(planned[k], repeat, result)
+        outcome, trace = judged(every[k], repeat, result)
         if number < 0:
             warm.append(outcome)
             continue
@@ -261,9 +261,9 @@ def run_chunk(
             times |= rides.replan_times(result, chunk.policy["step_seconds"])._asdict()
         done[k, repeat] = outcome, times, trace
     if deterministic:
-        for k, repeat in itertools.product(range(len(planned)), range(first + 1, last)):
+        for k, repeat in itertools.product(range(len(every)), range(first + 1, last)):
             outcome, *others = done[k, first]
-            own = {"id": run_id(chunk, planned[k], repeat)}
+            own = {"id": run_id(chunk, every[k], repeat)}
             done[k, repeat] = outcome | own | {"repeat": repeat}, *(each | own for each in others)
     runs, times, traces = zip(*(done[key] for key in sorted(done)))
     if not moving:

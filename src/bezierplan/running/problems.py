@@ -90,23 +90,23 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
     return point
 
 
-def build_all(described: Descriptions, folder: Path) -> dict[str, Problem]:
+def build_all(descriptions: Descriptions, folder: Path) -> dict[str, Problem]:
     """Problems by name, from their descriptions.
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
     from bezierplan.workspaces.kinds import kind_of
 
-    kinds = {name: kind_of(each) for name, each in described.workspaces.items()}
+    kinds = {name: kind_of(each) for name, each in descriptions.workspaces.items()}
     fixed = {
         name: files.load(each, folder)
-        for name, each in described.workspaces.items()
+        for name, each in descriptions.workspaces.items()
         if hasattr(kinds[name], "load")
     }
     problems = {}
-    for name, description in described.problems.items():
+    for name, description in descriptions.problems.items():
         home = description["workspace"]
-        arguments = described.workspaces[home], description, f"{described.study}/{home}"
+        arguments = descriptions.workspaces[home], description, f"{descriptions.study}/{home}"
         workspace = fixed[home] if home in fixed else kinds[home].draw(*arguments)
         problems[name] = build(name, description, workspace)
     return problems

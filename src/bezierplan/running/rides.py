@@ -23,7 +23,7 @@ def judged(ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], 
     points, times = ride.motion
     path = driven(ride)
     done = ways.lengths(points)
-    travelled, collided = float(done[-1]), not math.isnan(verdict.collision_at)
+    travelled, collision = float(done[-1]), not math.isnan(verdict.collision_at)
     least = float(verdict.clearance.min())
     lengths = [plan.length for plan in ride.plans]
     until = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
@@ -31,7 +31,7 @@ def judged(ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], 
     # hit.
     leg = (
         int(np.clip(np.searchsorted(times, verdict.collision_at, side="left"), 1, len(times) - 1))
-        if collided
+        if collision
         else 0
     )
     places = ride.motion.at(np.append(np.arange(0, math.ceil(times[-1])), times[-1]))
@@ -44,7 +44,7 @@ def judged(ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], 
         objective=float(times[-1]) * world.pace if ride.arrived else math.inf,
         length=travelled,
         claimed_feasible=ride.arrived,
-        feasible=ride.arrived and joins and not collided,
+        feasible=ride.arrived and joins and not collision,
         collision_at=verdict.collision_at,
         collision_depth=verdict.depth,
         clearance=max(least, 0.0),
@@ -67,8 +67,8 @@ def judged(ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], 
         waits=float(ride.waited),
         collision_steps=int((verdict.clearance < -motion_check.TOUCHING).sum())
         if least < 0
-        else int(collided),
-        hit_waiting=collided and bool(np.array_equal(points[leg], points[leg - 1])),
+        else int(collision),
+        hit_waiting=collision and bool(np.array_equal(points[leg], points[leg - 1])),
         clearance_least=least,
     )
     trace = {

@@ -21,18 +21,22 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import World
 
 
-def build_all(described: Descriptions, folder: Path) -> tuple[dict[str, Problem], dict[str, World]]:
+def build_all(
+    descriptions: Descriptions, folder: Path
+) -> tuple[dict[str, Problem], dict[str, World]]:
     """Problems and their worlds, both by the problem's name, from their descriptions; no worlds
     where nothing moves.
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
-    if not all(hasattr(kind_of(each), "world") for each in described.workspaces.values()):
-        return problem_files.build_all(described, folder), {}
+    if not all(hasattr(kind_of(each), "world") for each in descriptions.workspaces.values()):
+        return problem_files.build_all(descriptions, folder), {}
     made, moving = {}, {}
-    for name, problem in described.problems.items():
+    for name, problem in descriptions.problems.items():
         home = problem["workspace"]
-        world = build(described.workspaces[home], problem, f"{described.study}/{home}", folder)
+        world = build(
+            descriptions.workspaces[home], problem, f"{descriptions.study}/{home}", folder
+        )
         made[name] = problem_files.build(name, problem, world.workspace(0))
         moving[name] = world
     return made, moving

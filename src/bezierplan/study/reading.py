@@ -110,7 +110,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     study_code.functions(code_of(key, relative(folder)).values())
     content: dict[str, Any] = {"claims": [], "assumptions": [], "votes": {}} | dict(ArtefactsFile())
     faults: list[str] = []
-    lost: list[str] = []
+    invalid: list[str] = []
     for name, model in FILES.items():
         file, needed = folder / f"{name}.yaml", model is ExperimentsFile
         try:
@@ -119,7 +119,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
                 sound, lines, left = sound_part(model, text, relative(file))
                 content |= dict(sound) if not (needed and lines) else {}
                 faults += lines
-                lost += left
+                invalid += left
         except Fault as fault:
             faults += fault.lines
     if "methods" not in content:
@@ -135,7 +135,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
             "already"
         )
     content["methods"] = content["methods"] | content["baselines"]
-    return Study.model_construct(key=key, folder=folder, **content), faults, lost
+    return Study.model_construct(key=key, folder=folder, **content), faults, invalid
 
 
 def check_names(studies: Mapping[str, Study], others: Iterable[str]) -> None:

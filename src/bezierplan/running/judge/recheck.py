@@ -53,14 +53,14 @@ class Fault(NamedTuple):
     file: str
     run: str
     column: str
-    stored: Any
-    recomputed: Any
+    old: Any
+    new: Any
 
     def __str__(self) -> str:
         return plain(
             " ".join(
-                f"{self.file}: {self.run}: {self.column}: stored {self.stored}, recomputed "
-                f"{self.recomputed}".split()
+                f"{self.file}: {self.run}: {self.column}: stored {self.old}, recomputed "
+                f"{self.new}".split()
             )
         )
 
@@ -151,10 +151,10 @@ def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
 
 def judged(task: Task) -> Verdict:
     """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
-    made, moving = _problems(task.problems)
+    by_name, moving = _problems(task.problems)
     faults, lines, files = [], [], {}
     for file, chunk in task.runs.items():
-        if not chunk.problems.keys() <= made.keys():
+        if not chunk.problems.keys() <= by_name.keys():
             raise rows.misplaced(task.problems, "not of the problems that the runs are of")
         table = rows.read(file)
         declared = (Planned, Outcome, *([DriveOutcome] if chunk.policy else []))
@@ -174,7 +174,7 @@ def judged(task: Task) -> Verdict:
     known: dict[tuple, dict[str, tuple[Any, float]]] = {}
     for file, stored in files.items():
         for row in stored:
-            faults += _row_faults(file, row, made[row["problem"]], moving, known)
+            faults += _row_faults(file, row, by_name[row["problem"]], moving, known)
     faults += _alike(files, task.runs)
     return Verdict(
         tuple(faults), len(task.runs), sum(map(len, files.values())), len(known), tuple(lines)
@@ -186,13 +186,13 @@ def _runs(chunk: Chunk) -> list[tuple[Condition, int]]:
     return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
 
 
-def _identity_faults(file: str, stored: list[dict[str, Any]], chunk: Chunk) -> Iterator[Fault]:
+def _identity_faults(file: str, entries: list[dict[str, Any]], chunk: Chunk) -> Iterator[Fault]:
     """Whether a file has the rows that it is to have, and what is known before their runs."""
     planned = [execution.identity(chunk, *each) for each in _runs(chunk)]
-    if len(stored) != len(planned):
-        yield Fault(file, "all rows", "id", f"{len(stored)} rows", f"{len(planned)} rows")
+    if len(entries) != len(planned):
+        yield Fault(file, "all rows", "id", f"{len(entries)} rows", f"{len(planned)} rows")
         return
-    for row, known in zip(stored, planned):
+    for row, known in zip(entries, planned):
         for name, value in known.items():
             # What a run finds out takes the place of a setting of that name.
             if name not in Outcome._fields and row.get(name) != value:
@@ -226,18 +226,18 @@ def _row_faults(
     row: dict[str, Any],
     problem: Problem,
     moving: dict[str, World],
-    known: dict[tuple, dict[str, tuple[Any, float]]],
+    cache: dict[tuple, dict[str, tuple[Any, float]]],
 ) -> Iterator[Fault]:
-    """What of a run differs from what its points say. known: what different paths say."""
+    """What of a run differs from what its points say. cache: what different paths say."""
     points = row["path_points"]
     try:
         if moving:
             again = _drive_judged(row, np.reshape(points, (-1, 2)), problem, moving[problem.name])
         else:
             key = problem.name, row["path_curve"], tuple(points)
-            if key not in known:
-                known[key] = _path_judged(row["path_curve"], points, problem)
-            again = known[key] | {"generations": (len(row["history"]) - 1, 0.0)}
+            if key not in cache:
+                cache[key] = _path_judged(row["path_curve"], points, problem)
+            again = cache[key] | {"generations": (len(row["history"]) - 1, 0.0)}
     except (ValueError, IndexError) as error:
         again = {}
         yield Fault(file, row["id"], "path_points", "a path", error)
@@ -246,12 +246,12 @@ def _row_faults(
             yield Fault(file, row["id"], name, row[name], value)
 
 
-def same(stored: float, again: float, tolerance: float) -> bool:
+def same(value: float, again: float, tolerance: float) -> bool:
     """Whether a number equals one that is computed again, up to a tolerance, relative and absolute;
     not a number equals itself.
     """
-    return math.isclose(stored, again, rel_tol=tolerance, abs_tol=tolerance) or (
-        math.isnan(stored) and math.isnan(again)
+    return math.isclose(value, again, rel_tol=tolerance, abs_tol=tolerance) or (
+        math.isnan(value) and math.isnan(again)
     )
 
 
@@ -313,9 +313,9 @@ def made_again(
     return sum(number for number, _ in found), [fault for _, faults in found for fault in faults]
 
 
-def _again(chosen: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Fault]]:
+def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Fault]]:
     """`made_again` of a file."""
-    problem_file, file, chunk, digest, share = chosen
+    problem_file, file, chunk, digest, share = entry
     numbers = [
         n
         for n, run in enumerate(_runs(chunk))
