@@ -72,5 +72,19 @@ def test_what_is_no_file_of_the_study(kind, name, tmp_path):
     assert Path(name).name in told(folder)
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "expected"),
+    [
+        ("metrics.py", "def half(:", "metrics.py: SyntaxError: invalid syntax"),
+        ("panels.py", "import nothing_of_this_name", "panels.py: ModuleNotFoundError: "),
+        ("verdict.yaml", "sentences: []", "verdict.yaml: table: missing key"),
+    ],
+)
+def test_a_fault_of_a_further_file_is_told_in_one_line(name, text, expected, tmp_path):
+    folder = copy("walks", tmp_path)
+    (folder / name).write_text(text)
+    assert expected in told(folder)
+
+
 def test_studies_for_tests_have_no_fault():
     assert reading.load([DATA / "walks", DATA / "yard"])

@@ -4,8 +4,16 @@ which a job is made.
 
 from typing import Any, NamedTuple
 
+from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
+from bezierplan.schema.model import one_or_list
+
+READ = 100
+"""Runs of each method on each problem that score a reading; at least two where layouts are drawn,
+of which `LAYOUTS` are for this, and the others print the numbers of hidden readings.
+"""
+LAYOUTS = 30
 
 Reading = dict[str, Any]
 """Id of a choice -> its alternative; {} for the default."""
@@ -36,3 +44,37 @@ class Experiment(NamedTuple):
     scoring: dict[str, Chunk]
     printing: dict[str, Chunk]
     descriptions: Descriptions
+
+
+def experiment(
+    chunks: dict[str, Chunk], tables: list[Pivot], size: int, descriptions: Descriptions
+) -> Experiment:
+    """The runs of an experiment by which readings are scored: the methods of tables, in the paper's
+    interpretation of the world.
+
+    chunks: the first of each method. size: repeats of the paper.
+    """
+
+    def shown(column: str, value: Any) -> bool:
+        return any(
+            value in one_or_list((table.where | table.primary).get(column, value))
+            for table in tables
+        )
+
+    scoring, printing = {}, {}
+    for method, chunk in chunks.items():
+        if not shown("method", method):
+            continue
+        vary = {key: [each for each in own if shown(key, each)] for key, own in chunk.vary.items()}
+        met = {
+            name: place
+            for name, place in chunk.problems.items()
+            if shown("problem", name) and shown("workspace", place["workspace"])
+        }
+        first = {name: place for name, place in met.items() if place.get("layout", 0) < LAYOUTS}
+        others = {name: place for name, place in met.items() if name not in first} or met
+        drawn = any("layout" in place for place in met.values())
+        last = max(2, READ // LAYOUTS) if drawn else READ
+        scoring[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
+        printing[method] = chunk._replace(vary=vary, problems=others, repeats=[last, last + size])
+    return Experiment(scoring, printing, descriptions)

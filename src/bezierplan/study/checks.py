@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from bezierplan.analysis import metrics, statistics, study_code
+from bezierplan.analysis import metrics, statistics, study_code, verdict
 from bezierplan.analysis.claims.check import Check
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, Table
@@ -24,6 +24,7 @@ from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
 from bezierplan.schema.checked import Fault, check_all, check_known
 from bezierplan.schema.model import Model, fault_of, named, one_or_list
+from bezierplan.schema.words import told
 from bezierplan.study import published
 from bezierplan.study.alternatives import concerned, with_alternative
 from bezierplan.study.claims import Assumption
@@ -92,10 +93,10 @@ class Checks:
             for line in error.lines if isinstance(error, Fault) else [str(error)]:
                 if not any(each.endswith(line) for each in self.faults):
                     self.faults.append(": ".join([*self._place, line]))
-        except (LookupError, AttributeError, TypeError):
-            # What follows from a fault that was found before.
+        except Exception as error:
+            # Of a study's own code, or what follows from a fault that was found before.
             if not self.faults:
-                raise
+                self.faults.append(": ".join([*self._place, told(error)]))
         finally:
             self._place = outer
 
@@ -119,9 +120,11 @@ class Checks:
             self.each("problems", study.problems, self.problem)
             self.each("experiments", study.experiments, self.experiment)
             self.baseline_comparison()
-        for file in study.published_files():
-            with self.at():
+        with self.at():
+            for file in study.published_files():
                 published.read(Path(file))
+            if file := study.verdict_file():
+                verdict.read(file)
         with self.at(relative(study.folder / "artefacts.yaml")):
             for method in study.looks:
                 check_known(method, study.methods, "looks")

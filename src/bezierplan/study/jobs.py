@@ -4,9 +4,8 @@ for each rule makes its job from a study, or all, and the rule's wildcards.
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
-from bezierplan.analysis.choices import Experiment
+from bezierplan.analysis import choices
 from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.jobs import (
     Audit,
@@ -345,22 +344,18 @@ def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
     ]
 
 
-READ = 100
-"""Runs of each method on each problem that score a reading; at least two where layouts are drawn,
-of which `LAYOUTS` are for this, and the others print the numbers of hidden readings.
-"""
-LAYOUTS = 30
-
-
 def readings(study: Study, scale: str) -> Readings:
     """The readings of a study."""
     tables = {name: study.compared()[name] for name in study.votes}
-    experiments = {
-        name: _read_by(
-            study, name, [each for each in tables.values() if each.experiment == name], scale
+    experiments = {}
+    for name in dict.fromkeys(each.experiment for each in tables.values()):
+        content = study.experiments[name]
+        experiments[name] = choices.experiment(
+            {method: job(study, name, method, scale, 0) for method in content.methods},
+            [each for each in tables.values() if each.experiment == name],
+            content.repeats["full"],
+            problems_job(study, name, scale),
         )
-        for name in dict.fromkeys(each.experiment for each in tables.values())
-    }
     methods = {method for each in experiments.values() for method in each.scoring}
     homes = {home for each in experiments.values() for home in each.descriptions.workspaces}
     return Readings(
@@ -374,38 +369,6 @@ def readings(study: Study, scale: str) -> Readings:
         code=study.code_for("metrics", "worlds"),
         shows={name: {} for name in experiments},
     )
-
-
-def _read_by(study: Study, experiment: str, tables: list[Pivot], scale: str) -> Experiment:
-    """The runs of an experiment by which readings are scored: the methods of tables, in the paper's
-    interpretation of the world.
-    """
-
-    def shown(column: str, value: Any) -> bool:
-        return any(
-            value in one_or_list((table.where | table.primary).get(column, value))
-            for table in tables
-        )
-
-    size = study.experiments[experiment].repeats["full"]
-    scoring, printing = {}, {}
-    for method in study.experiments[experiment].methods:
-        if not shown("method", method):
-            continue
-        chunk = job(study, experiment, method, scale, 0)
-        vary = {key: [each for each in own if shown(key, each)] for key, own in chunk.vary.items()}
-        met = {
-            name: place
-            for name, place in chunk.problems.items()
-            if shown("problem", name) and shown("workspace", place["workspace"])
-        }
-        first = {name: place for name, place in met.items() if place.get("layout", 0) < LAYOUTS}
-        others = {name: place for name, place in met.items() if name not in first} or met
-        drawn = any("layout" in place for place in met.values())
-        last = max(2, READ // LAYOUTS) if drawn else READ
-        scoring[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
-        printing[method] = chunk._replace(vary=vary, problems=others, repeats=[last, last + size])
-    return Experiment(scoring, printing, problems_job(study, experiment, scale))
 
 
 def audit(study: Study, scale: str) -> Audit:

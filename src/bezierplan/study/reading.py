@@ -13,6 +13,7 @@ from bezierplan.places import STUDIES, TREE
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import parsed, sound_part
+from bezierplan.schema.words import told
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
@@ -107,7 +108,11 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     taken one by one.
     """
     key = folder.resolve().name
-    study_code.functions(code_of(key, relative(folder)).values())
+    for name in code_of(key, relative(folder)).values():
+        try:
+            study_code.functions([name])
+        except (Exception, SystemExit) as error:  # a user's file can fail in any way
+            raise Fault(f"{name}: {told(error)}") from None
     content: dict[str, Any] = {"claims": [], "assumptions": [], "votes": {}} | dict(ArtefactsFile())
     faults: list[str] = []
     invalid: list[str] = []
