@@ -63,11 +63,11 @@ def check(study: Study, design: Design, table: Pivot) -> None:
     for column in COLUMNS:
         if column not in header:
             raise Fault(f"{here}: line 1: column {column} is missing; expected all of {COLUMNS}")
-    named = [column for column in header if column not in COLUMNS]
-    for column in named:
+    keys = [column for column in header if column not in COLUMNS]
+    for column in keys:
         design.check_column(column, "column", f"{here}: line 1: column")
     repeats = {"repeat": range(design.repeats)}
-    known = {column: repeats.get(column, design.values(column)) for column in named}
+    known = {column: repeats.get(column, design.values(column)) for column in keys}
     known |= {"metric": metrics.METRICS, "statistic": statistics.STATISTICS}
     unit = study.workspace_of(study.experiments[table.experiment].problems[0]).unit
     places: dict[tuple, int] = {}
@@ -91,7 +91,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         metric = table.reads.get(row["metric"], row["metric"])
         check_known(metric, metrics.METRICS, "reads")
         design.check_metric(metric, f"{where}: metric")
-        place = tuple(row[key] for key in (*named, "metric", "statistic"))
+        place = tuple(row[key] for key in (*keys, "metric", "statistic"))
         if places.setdefault(place, number) != number:
             raise Fault(
                 f"{where}: the same keys, metric and statistic as line {places[place]}; "
@@ -100,7 +100,7 @@ def check(study: Study, design: Design, table: Pivot) -> None:
     printed = {row["metric"] for row in lines.values()}
     check_all(table.reads, printed, "reads")
     check_all([rule.metric for rule in table.monotone], printed, "monotone")
-    check_all([rule.along for rule in table.monotone], {*named, *table.key_columns}, "monotone")
+    check_all([rule.along for rule in table.monotone], {*keys, *table.key_columns}, "monotone")
 
 
 def _read(text: str) -> Any:

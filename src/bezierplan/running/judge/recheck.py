@@ -89,13 +89,13 @@ class Verdict(NamedTuple):
         return hashlib.sha256("\n".join(sorted(self.digests)).encode()).hexdigest()[:16]
 
 
-def verify(tasks: list[Task], processes: int, told: Callable[[str], None]) -> Verdict:
-    """The verdict on tasks, in several processes. told: gets a line of progress now and then."""
+def verify(tasks: list[Task], processes: int, say: Callable[[str], None]) -> Verdict:
+    """The verdict on tasks, in several processes. say: gets a line of progress now and then."""
     done = []
     for each in _mapped(judged, tasks, processes):
         done.append(each)
         if len(done) % 10 == 0:
-            told(f"{len(done)} of {len(tasks)} tables checked")
+            say(f"{len(done)} of {len(tasks)} tables checked")
     return merged(done)
 
 
