@@ -175,7 +175,9 @@ class OfRuns(Check):
         [], description="a list of columns; one comparison for each combination of their values"
     )
     replicate: Column = Field(
-        "repeat", description="the column that numbers independent replicates; left out: repeat"
+        "repeat",
+        description="the column that numbers independent replicates, whose runs are averaged "
+        "before anything is asked of them; left out: repeat",
     )
 
     @model_validator(mode="after")

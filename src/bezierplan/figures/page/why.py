@@ -165,7 +165,8 @@ def _share(row: Row, check: share.Options, name: str) -> str:
         if low is None or high is None
         else f" (95 % interval {100 * low:.3g} to {100 * high:.3g} %)"
     )
-    found = f"{happens} in {100 * row['effect']:.3g} % of the runs{between}"
+    units = "runs" if check.replicate == "repeat" else f"means by {check.replicate}"
+    found = f"{happens} in {100 * row['effect']:.3g} % of the {units}{between}"
     return f"{found}; the claim needs it {needed}"
 
 
