@@ -112,9 +112,9 @@ def test_points_of_a_path_may_be_whole_or_listed():
 @pytest.mark.parametrize(
     ("path", "error", "told"),
     [
-        (None, TypeError, "path: is a NoneType; expected a Path"),
-        (bp.Path("polyline", np.zeros((3, 3))), ValueError, r"path: points: .*\(n, 2\)"),
-        (bp.Path("polyline", np.zeros((3, 2), complex)), ValueError, "path: points: expected"),
+        (None, ValueError, "path: expected a Path"),
+        (bp.Path("polyline", np.zeros((3, 3))), ValueError, r"path: .*\(n, 2\)"),
+        (bp.Path("polyline", np.zeros((3, 2), complex)), ValueError, "path: expected a Path"),
         (bp.Path("bezier", np.ones((100, 2))), ValueError, "path: points: 100; expected at most"),
         (bp.Path("bow", np.ones((3, 2))), ValueError, "path: curve: 'bow'; expected one of"),
     ],

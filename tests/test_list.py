@@ -28,4 +28,4 @@ def test_list_says_what_an_unknown_word_may_mean(capsys):
         main(["list", "metods"])
     assert ended.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("list: metods: neither a kind nor a study; did you mean methods?")
+    assert line.startswith("list: metods: unknown; did you mean methods?")

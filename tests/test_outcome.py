@@ -8,7 +8,6 @@ import pytest
 from bezierplan.analysis import headline, outcome, summary
 from bezierplan.commands import outcome as command
 from bezierplan.commands import studies_of
-from bezierplan.schema.checked import Fault
 
 ROOT = Path(__file__).parents[1]
 
@@ -129,14 +128,6 @@ def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
     found = summary.with_papers_size(extended, full.iloc[::-1])
     assert found["verdict"].to_list() == ["supported", "partly", "contradicted"]
     assert found["verdict_papers_size"].to_list() == ["undecided", "partly", "contradicted"]
-
-
-def test_missing_results_are_told_in_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr(outcome, "RESULTS", tmp_path / "extended")
-    with pytest.raises(
-        Fault, match=r"extended/numbers.csv: not there yet; `make outcome` makes it$"
-    ):
-        command.main()
 
 
 def test_text_without_the_part_is_told():

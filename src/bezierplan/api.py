@@ -268,7 +268,7 @@ def read_map(
 
 def example_map(name: str) -> File:
     """The file of a map of the studies, such as ``"gaps"`` or ``"figure2"``. Raises ValueError."""
-    files = {file.stem: file for file in STUDIES.glob("*/workspaces/*.*") if file.stem != "README"}
+    files = {file.stem: file for file in STUDIES.glob("*/workspaces/*.[gt]*")}
     check_known(name, files, "map")
     return files[name]
 
@@ -338,10 +338,8 @@ def check(problem: Problem, path: Path) -> Judgement:
     (True, 4.071, 0.5)
     """
     _check_problem(problem)
-    if not isinstance(path, Path):
-        raise TypeError(f"path: is a {type(path).__name__}; expected a Path")
-    if not _are_numbers(path.points, len(path.points), 2):
-        raise ValueError("path: points: expected an array of numbers, (n, 2)")
+    if not isinstance(path, Path) or not _are_numbers(path.points, len(path.points), 2):
+        raise ValueError("path: expected a Path whose points are an array of numbers, (n, 2)")
     plain = path_of(Path(path.curve, np.array(path.points, dtype=float)))
     return Judgement(**answers.verdict(*_bound(problem), plain) | {"path": path})
 
@@ -575,10 +573,9 @@ def methods() -> dict[str, str]:
     'binary_genetic'
     """
     return {
-        f"{key}/{name}": study.planner(name)
+        f"{key}/{name}": _study(key).planner(name)
         for key in _keys()
-        for study in [_study(key)]
-        for name in study.methods
+        for name in _study(key).methods
     }
 
 

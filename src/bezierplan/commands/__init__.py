@@ -18,12 +18,8 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def config_of(names: Sequence[str] = ()) -> dict[str, Any]:
-    """The configuration with the studies of some names or folders, or config/config.yaml: of the
-    working folder, or of the project.
-    """
-    if names:
-        return {"studies": [study_named(name) for name in names]}
+def config_of() -> dict[str, Any]:
+    """The configuration in config/config.yaml: of the working folder, or of the project."""
     from bezierplan.study import reading
 
     return checked.read(reading.config_file())
@@ -40,7 +36,8 @@ def study_named(word: str) -> str:
 
 
 def studies_of(names: Sequence[str] = ()) -> dict[str, Any]:
-    """The studies of a configuration (`config_of`). Raises Fault."""
+    """The studies of some names or folders, or of the configuration (`config_of`). Raises Fault."""
     from bezierplan.study import reading
 
-    return reading.load(reading.read_config(config_of(names)))
+    config = {"studies": [*map(study_named, names)]} if names else config_of()
+    return reading.load(reading.read_config(config))

@@ -11,7 +11,7 @@ from bezierplan.commands import is_study, studies_of, study_named
 from bezierplan.figures import panels
 from bezierplan.figures.page import in_printed_order
 from bezierplan.planners import known_planners, planner_module, planner_settings
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.checked import check_known
 from bezierplan.study.definition import Study
 from bezierplan.workspaces import kinds as workspace_kinds
 
@@ -37,10 +37,8 @@ def main(*words: str) -> None:
     """
     loaded = studies_of([word for word in words if is_study(word)])
     names = [Path(study_named(word)).name for word in words]
-    known = [*KINDS, *NAMES, *loaded]
     for name in names:
-        if name not in known:
-            raise Fault(f"list: {name}: neither a kind nor a study{closest(name, known)}")
+        check_known(name, (*KINDS, *NAMES, *loaded), "list")
     shown = [study for key, study in loaded.items() if key in names] or [*loaded.values()]
     asked = [name for name in names if name not in loaded]
     for heading, rows in listed(shown, asked or [kind for kind in KINDS if kind != "settings"]):
