@@ -65,19 +65,6 @@ def test_one_radius_fits_both_fields_best():
     assert printed["5 obstacles"].tolist() == [158, 159, 314, 315]
 
 
-def test_the_curves_beside_the_printed_lengths():
-    frame = elhoseny2017.radius_lengths(PUBLISHED, **given("radius_lengths"))
-    assert set(frame["side"]) == {100, 200}
-    own = frame[(frame["side"] == 100) & (frame["lengths"] == "printed, Case 2")]
-    assert own["cells4"].tolist() == [159, 168, 183, 195, 211]
-    assert (
-        frame[frame["lengths"].str.startswith("R")]
-        .groupby("lengths")["cells4"]
-        .max()
-        .is_monotonic_increasing
-    )
-
-
 def colours(operator):
     marks = drawn("elhoseny2017", "figure1")
     cells = marks[(marks["operator"] == operator) & (marks["mark"] == "cell")]

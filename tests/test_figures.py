@@ -547,16 +547,6 @@ def test_a_statistic_of_some_runs_has_an_open_mark():
         assert (style.HOLLOW_LABEL in words(drawn(comparison(), panel))) == hollow
 
 
-def test_lines_draw_the_table_of_a_function():
-    panel = {"kind": "lines", "data": "sequence", "x": "k", "metric": "value"}
-    own = [panel | {"where": {"map": name}} for name in ("short", "long")]
-    drawn_lines = [axes.lines[0] for axes in drawn(comparison(), *own, columns=2).axes]
-    assert [len(line.get_xdata()) for line in drawn_lines] == [9, 300]
-    assert [line.get_linestyle() == "None" for line in drawn_lines] == [False, True], (
-        "many points are not joined"
-    )
-
-
 # Workspaces and drawings
 
 

@@ -91,12 +91,6 @@ def test_looks_are_declared_once_or_follow_the_planner():
 
 
 METHODS = ["smooth", "coarse", "random"]
-RANKS = pd.DataFrame({"method": METHODS, "part": "rank", "value": [1.2, 1.9, 2.9]}).assign(
-    methods=3, units=12, chi2=8.0, p_value=0.02, difference=0.96
-)
-TIMES = pd.DataFrame(itertools.product(METHODS, (0.01, 0.1)), columns=["method", "within"]).assign(
-    value=[np.inf, 9000.0, np.inf, 4e5, np.inf, np.inf], problems=6, runs=60
-)
 PROFILE = pd.DataFrame(
     {"method": METHODS, "ratio": [1.0, 1.3, 1.0], "share": [1.0, 0.5, 0.0]}
 ).assign(problems=6, solved=6)
@@ -107,20 +101,6 @@ def note(kind, frame, **keys):
     axes = Figure().subplots()
     panel = panel_of({"kind": kind, "experiment": "all", **keys})
     return axes, kind_module(kind).draw(axes, frame, sheet.Scene({}, {}, {}, "m"), panel)
-
-
-def test_kinds_of_comparison_say_in_the_caption_how_to_read_them():
-    _, ranks = note("critical_difference", RANKS)
-    assert ranks.caption.startswith("methods whose bars overlap cannot be distinguished")
-    assert ranks.glance == "lowest mean rank: smooth (1.2), highest: random (2.9)"
-    ends = {"low95": TIMES["value"] / 2, "high95": TIMES["value"] * 3}
-    axes, times = note("expected_running_time", TIMES.assign(**ends), cost="evaluations")
-    assert "never: at least half of them are not solved" in times.caption
-    assert times.glance.startswith("lowest expected work to 10 %: smooth (9000), highest: coarse")
-    assert axes.get_xlim()[1] > 6 * 3 * 4e5, "intervals stay within the panel"
-    _, profile = note("performance_profile", PROFILE, cost="length")
-    assert profile.caption == "6 problems; solved by the median run of any method: 6"
-    assert "on which it is the best: coarse and random (0), highest: smooth (1)" in profile.glance
 
 
 def test_marks_of_profiles_lie_on_their_lines():
