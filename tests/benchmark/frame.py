@@ -11,6 +11,7 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan.places import STUDIES
+from bezierplan.planners import Plan
 from bezierplan.running import execution, problems
 from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
@@ -67,9 +68,7 @@ def methods(study: Study) -> Iterator[tuple[str, str]]:
                 yield experiment, method
 
 
-def first_run(
-    study: Study, experiment: str, method: str
-) -> tuple[str, Callable[[int], execution.Plan]]:
+def first_run(study: Study, experiment: str, method: str) -> tuple[str, Callable[[int], Plan]]:
     """The first condition of an experiment, and what runs a method on it, for a number of a
     repeat.
     """
