@@ -158,7 +158,7 @@ def test_every_rule_is_in_a_group(name):
     rules = {
         rule
         for rule, body in re.findall(r"^rule (\w+):\n(.*?)(?=^\S|\Z)", text, flags=re.M | re.S)
-        if "script:" in body
+        if "\n    script:" in body
     } | set(re.findall(r"^use rule \w+ as (\w+) with:", text, flags=re.M))
     assert PROFILES[name]["groups"].keys() == rules
     assert set(PROFILES[name]["groups"].values()) == PROFILES[name]["group-components"].keys()

@@ -25,7 +25,6 @@ from bezierplan.figures.panels import paths
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
-from bezierplan.running import worlds as world_files
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path as Curve
 from bezierplan.workspaces.problem import Problem
@@ -276,7 +275,7 @@ def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
     later = from_lines(["#...", "....", "...#"], cell=1.0, unit="m")
     room = {"room": Problem("room", empty, (0.5, 0.5), (3.5, 0.5))}
     world = ChangingCells((empty, later), np.array([2.0]), 1.0, 9)
-    world_files.write(room, {"room": "room"}, {"room": world}, described.problems)
+    problem_files.write(room, {"room": "room"}, described.problems, {"room": world})
     trace = [{"id": "s/e/room/m/0", "x": [0.5, 1.5, 2.5, 3.5], "y": [0.5] * 4}]
     parquet.write_table(pa.Table.from_pylist(trace), tmp_path / "0.traces.parquet")
     described = described._replace(traces=[str(tmp_path / "0.traces.parquet")])

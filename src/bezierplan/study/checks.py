@@ -60,16 +60,17 @@ class Checks:
     """
 
     def __init__(self, study: Study, invalid: Iterable[str]) -> None:
-        self.study = study
+        self.study, self.invalid = study, invalid
         self.faults: list[str] = []
+        self.sound: dict[str, Method] = {}
         self._place: tuple[str, ...] = ()
-        self.design = cache(lambda experiment: design(study, experiment))
+        self.design = cache(lambda experiment: design(self.study, experiment))
         self.runs = cache(self._runs)
         self.built = cache(self._built)
         self.known: dict[str, Iterable[str]] = {
-            "experiment": study.experiments,
-            "workspace": study.workspaces,
-            "problem": study.problems,
+            "experiment": [*study.experiments, *invalid],
+            "workspace": [*study.workspaces, *invalid],
+            "problem": [*study.problems, *invalid],
             "method": study.methods,
             "own method": study.methods.keys() - study.baselines.keys(),
             "baseline": study.baselines,
@@ -80,6 +81,7 @@ class Checks:
             "statistic": statistics.STATISTICS,
             "compared": [*study.with_published(), *invalid],
             "artefact": [*study.tables, *study.figures, *invalid],
+            "setting": [],
             "printed table": [Path(file).stem for file in study.published_files()],
         }
 
@@ -95,7 +97,7 @@ class Checks:
                     self.faults.append(": ".join([*self._place, line]))
         except Exception as error:
             # Of a study's own code, or what follows from a fault that was found before.
-            if not self.faults:
+            if not self.faults and not self.invalid:
                 self.faults.append(": ".join([*self._place, told(error)]))
         finally:
             self._place = outer
@@ -111,9 +113,10 @@ class Checks:
         study = self.study
         with self.at(relative(study.folder / "experiments.yaml")):
             self.each("methods", study.methods, self.method)
-            if self.faults:
-                return
-            self.shared_settings()
+            # A planner that has a fault is not executed again.
+            study = self.study = study.model_copy(update={"methods": self.sound})
+            with self.at():
+                self.shared_settings()
             resolved = {name: study.resolved(name) for name in study.methods}
             self.each("methods", resolved, self.settings)
             self.each("workspaces", study.workspaces, self.workspace)
@@ -170,6 +173,7 @@ class Checks:
         ):
             raise Fault(f"policy: {method.policy}: warm, but its planner has no function resume")
         metrics.add_columns(getattr(module, "extra", ()))
+        self.sound[name] = method
 
     def shared_settings(self) -> None:
         """Settings of all methods, of a planner's methods, and of presets exist in some planner."""

@@ -122,7 +122,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
             if needed or file.exists():
                 text = checked.read(file, relative(file))
                 sound, lines, left = sound_part(model, text, relative(file))
-                content |= dict(sound) if not (needed and lines) else {}
+                content |= dict(sound)
                 faults += lines
                 invalid += left
         except Fault as fault:
