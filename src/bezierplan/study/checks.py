@@ -32,7 +32,6 @@ from bezierplan.study.definition import Study, relative
 from bezierplan.study.design import Design, design, together
 from bezierplan.study.experiments import Experiment, Method
 from bezierplan.study.experiments import Problem as ProblemOfStudy
-from bezierplan.study.files import inside
 from bezierplan.study.jobs import descriptions, job
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace
@@ -69,7 +68,7 @@ class Checks:
         self.built = cache(self._built)
         self.known: dict[str, Iterable[str]] = {
             "experiment": [*study.experiments, *invalid],
-            "workspace": [*study.workspaces, *invalid],
+            "workspace": study.workspaces,
             "problem": [*study.problems, *invalid],
             "method": study.methods,
             "own method": study.methods.keys() - study.baselines.keys(),
@@ -91,14 +90,13 @@ class Checks:
         outer, self._place = self._place, (*self._place, *place)
         try:
             yield
-        except ValueError as error:
-            for line in error.lines if isinstance(error, Fault) else [str(error)]:
-                if not any(each.endswith(line) for each in self.faults):
-                    self.faults.append(": ".join([*self._place, line]))
         except Exception as error:
-            # Of a study's own code, or what follows from a fault that was found before.
-            if not self.faults and not self.invalid:
-                self.faults.append(": ".join([*self._place, told(error)]))
+            # What is no fault is of a study's own code, or follows from a fault found before.
+            known = isinstance(error, ValueError)
+            for line in getattr(error, "lines", [str(error) if known else told(error)]):
+                found = any(each.endswith(line) for each in self.faults)
+                if not (found if known else self.faults or self.invalid):
+                    self.faults.append(": ".join([*self._place, line]))
         finally:
             self._place = outer
 
@@ -443,3 +441,14 @@ class Checks:
             for method in methods:
                 with self.at("alternatives", str(value), method):
                     self.settings(method, changed.resolved(method))
+
+
+def inside(folder: Path, name: str, location: str) -> None:
+    """Raise Fault, beginning with a location, for a file of a study that is missing, is not a
+    regular file, or lies outside its folder, also through a link.
+    """
+    file = folder / name
+    if not file.resolve().is_relative_to(folder.resolve()):
+        raise Fault(f"{location}: lies outside the study's folder; expected a file in it")
+    if not file.is_file():
+        raise Fault(f"{location}: no such file in {file.parent.name or file.parent}")

@@ -117,9 +117,9 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
     faults: list[str] = []
     invalid: list[str] = []
     for name, model in FILES.items():
-        file, needed = folder / f"{name}.yaml", model is ExperimentsFile
+        file = folder / f"{name}.yaml"
         try:
-            if needed or file.exists():
+            if name == "experiments" or file.exists():
                 text = checked.read(file, relative(file))
                 sound, lines, left = sound_part(model, text, relative(file))
                 content |= dict(sound)
