@@ -6,28 +6,13 @@ import numpy as np
 import pyarrow as pa
 import pytest
 import tables_of_keys as keys
+from chunks import CHUNK, MADE
 
 from bezierplan.analysis.claims import columns as claim_columns
 from bezierplan.planners import PLACE
 from bezierplan.running import columns, execution, problems, rows
-from bezierplan.running.chunk import Chunk
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.problem import Problem
 
-CIRCLES = Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
-BLOCKED = {"blocked": Problem("blocked", CIRCLES, (1.0, 5.0), (9.0, 5.0))}
-CHUNK = Chunk(
-    study="s",
-    experiment="e",
-    method="line",
-    planner="straight_line",
-    settings={},
-    problems={"blocked": {"workspace": "field", "layout": 1}},
-    vary={},
-    presets={},
-    seeds="own",
-    repeats=[0, 2],
-)
+BLOCKED = {"blocked": MADE["blocked"]}
 
 
 def test_tables_of_columns_are_those_of_the_declarations():
@@ -42,7 +27,9 @@ def test_tables_of_columns_are_those_of_the_declarations():
 
 
 def test_a_row_has_the_declared_columns_and_no_other():
-    runs, times = execution.run_chunk(BLOCKED, CHUNK)
+    runs, times = execution.run_chunk(
+        BLOCKED, CHUNK._replace(problems={"blocked": {"workspace": "field", "layout": 1}})
+    )
     assert set(runs.column_names) == {*columns.PLANNED, *columns.RESULTS, "layout"}
     assert "layout" in PLACE
     assert rows.fault(runs.schema, *columns.TABLES["runs"].every) == ""

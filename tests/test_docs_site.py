@@ -15,14 +15,13 @@ from urllib.parse import unquote, urldefrag
 import pytest
 import report
 from playwright.sync_api import expect
-from test_page_browser import CHROMIUM, browser  # noqa: F401
+from test_page_browser import browser, needs_browser  # noqa: F401
 
 import bezierplan as bp
 from bezierplan.places import STUDIES
 from bezierplan.planners import known_planners
 
 ROOT = Path(__file__).parents[1]
-in_browser = pytest.mark.skipif(CHROMIUM is None, reason="no browser here, and PyPI has none")
 WIDTHS = [1400, 390]
 
 
@@ -172,14 +171,14 @@ SEARCHES = {
 }
 
 
-@in_browser
+@needs_browser
 def test_the_report_has_a_page_a_paper_and_at_most_fourteen(tmp_path):
     report.main(str(tmp_path / "report.pdf"))
     pages = re.findall(rb"/Type\s*/Page\b", (tmp_path / "report.pdf").read_bytes())
     assert 8 <= len(pages) <= 14
 
 
-@in_browser
+@needs_browser
 def test_answers_are_two_clicks_or_one_search_from_home(tab, subtests):
     for question, clicks, answer in CLICKS:
         with subtests.test(question=question):
@@ -200,7 +199,7 @@ PAGES = [
 ]
 
 
-@in_browser
+@needs_browser
 def test_pages_fit_their_width_and_pass_axe(tab, subtests):
     from axe_playwright_python.sync_playwright import Axe
 

@@ -23,10 +23,11 @@ SMOKE = Path(__file__).parents[1] / "results" / "smoke" / "index.html"
 
 # The environment comes from PyPI, which has no browser: that belongs to the machine, and not every
 # reader can install one. Continuous integration installs it (`.ci/run`).
-pytestmark = pytest.mark.skipif(
+needs_browser = pytest.mark.skipif(
     CHROMIUM is None,
     reason="no browser here, and PyPI has none; Debian: apt install chromium-headless-shell",
 )
+pytestmark = needs_browser
 
 
 @pytest.fixture(scope="module")

@@ -60,7 +60,7 @@ def test_a_score_hardly_depends_on_seeds_or_on_how_many_runs_are_ours():
     maps = made.experiments["maps"]
     problem = {"equal": built(STUDIES["tharwat2018"], "maps", "equal")}
     found = {"maps": (problem, problems.bounds_of(problem).to_pandas())}
-    printed = readings._theirs(voting)
+    printed = readings._of_paper(voting)
 
     def score(reading, first, last):
         chunks = {name: maps.scoring[name]._replace(repeats=[first, last]) for name in methods}

@@ -57,6 +57,23 @@ def test_a_planner_and_its_paths_score_as_the_paper_s_runs_of_it(scored, tmp_pat
         scored(file)
 
 
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("problem,points\n0_15,0 0 1 1\n", "columns: curve: unknown"),
+        ("problem,curve,points\nnope,polyline,0 0 1 1\n", "problem: nope: unknown"),
+    ],
+)
+def test_a_file_of_paths_that_cannot_be_scored_is_told_in_one_line(text, word, tmp_path, capsys):
+    file = tmp_path / "paths.csv"
+    file.write_text(text)
+    with pytest.raises(SystemExit):
+        main(["score", "song2016/routes", str(file)])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert word in line
+    assert str(file) in line
+
+
 def test_what_is_stored_is_of_the_problems_that_studies_have():
     rows = pd.read_csv(benchmark.STORED)
     for experiment in ("song2016/routes", "meledje/operators", "elhoseny2017/maps"):

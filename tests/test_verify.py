@@ -14,16 +14,15 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 import starts
+from chunks import CHUNK, MADE
 
 from bezierplan.__main__ import main
 from bezierplan.analysis import proof
 from bezierplan.places import TREE
 from bezierplan.running import execution, problems, rows
-from bezierplan.running.chunk import Chunk
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.running.judge import recheck
 from bezierplan.study import stored
-from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
@@ -307,23 +306,6 @@ def test_a_slip_of_a_planner_is_told(case, tmp_path):
 # Values
 
 
-CIRCLES = Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
-MADE = {
-    "free": Problem("free", CIRCLES, (1.0, 8.0), (9.0, 8.0)),
-    "blocked": Problem("blocked", CIRCLES, (1.0, 5.0), (9.0, 5.0)),
-}
-CHUNK = Chunk(
-    study="s",
-    experiment="e",
-    method="line",
-    planner="straight_line",
-    settings={},
-    problems={name: {"workspace": "field"} for name in MADE},
-    vary={},
-    presets={},
-    seeds="own",
-    repeats=[0, 2],
-)
 FIELD = (0.0, 10.0, 0.0, 10.0)
 OPEN, SHUT = (
     from_lines([".........", ".........", row, row, "........."], 1.0, "m")

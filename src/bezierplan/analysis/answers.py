@@ -36,19 +36,19 @@ def verdict(problem: Problem, shortest: shortest_paths.Bound, path: Path | None)
     if path is None:
         return fields
     pieces = curves.bezier_pieces(path)
-    verdict = checker.check(pieces, region(problem.workspace))
-    at_home = checker.check(pieces, region(grown.original)) if grown else verdict
+    certified = checker.check(pieces, region(problem.workspace))
+    at_home = checker.check(pieces, region(grown.original)) if grown else certified
     jump = curves.curvature_jump(path)
-    if verdict.feasible:
+    if certified.feasible:
         assert at_home.clearance >= fields["robot_radius"] - robot.TOLERANCE
     else:
-        fields["collision"] = tuple(curves.point_at(path, verdict.collision_at).tolist())
+        fields["collision"] = tuple(curves.point_at(path, certified.collision_at).tolist())
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
     return fields | {
         "path": path,
         "length": curves.length(path),
-        "feasible": verdict.feasible,
-        "depth": verdict.depth,
+        "feasible": certified.feasible,
+        "depth": certified.depth,
         "clearance": at_home.clearance,
         "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
         "curvature_jump": jump,

@@ -13,6 +13,7 @@ from bezierplan.geometry import shortest_paths
 from bezierplan.places import TREE
 from bezierplan.planners import Plan
 from bezierplan.running.judge.answer import accepted
+from bezierplan.schema.checked import check_all
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -79,12 +80,16 @@ def run(problem: Problem, path: Path | None, evaluations: float) -> dict[str, An
     }
 
 
-def read_paths(file: FilePath) -> list[tuple[str, Path | None, float]]:
+def read_paths(file: FilePath, problems: Iterable[str]) -> list[tuple[str, Path | None, float]]:
     """Problem, path and evaluations of each row of a csv file with the columns problem, curve and
     points (x y x y ...), and perhaps evaluations. A row without points is a run without a path.
+    Raises Fault for a column that is missing, and for a problem that is not among those named.
     """
     paths = []
-    for row in pd.read_csv(file, dtype={"problem": str, "points": str}).to_dict("records"):
+    rows = pd.read_csv(file, dtype={"problem": str, "points": str})
+    check_all(("problem", "curve", "points"), rows.columns, f"{file}: columns")
+    check_all(rows["problem"], problems, f"{file}: problem")
+    for row in rows.to_dict("records"):
         path = None
         if isinstance(row["points"], str):
             points = np.array(row["points"].split(), dtype=float).reshape(-1, 2)

@@ -10,7 +10,7 @@ from typing import Any
 
 from bezierplan.places import TREE
 from bezierplan.running import rows
-from bezierplan.running.judge.recheck import Fault, sha256
+from bezierplan.running.judge.recheck import Difference, sha256
 
 LIST = "verified.json"
 """The file that lists the digests of all others."""
@@ -37,16 +37,16 @@ def _listed(folder: Path) -> dict[str, str]:
         raise rows.misplaced(str(file), "not a list of digests") from None
 
 
-def unlisted(folder: Path) -> list[Fault]:
+def unlisted(folder: Path) -> list[Difference]:
     """Files that are not what the list of digests says; none without a list, which only a page
     needs. Raises ValueError for a list that is none.
     """
     listed = _listed(folder)
     if not listed and (folder / "index.html").is_file():
-        return [Fault(str(folder / LIST), "all bytes", "SHA-256", "no file", "a list")]
+        return [Difference(str(folder / LIST), "all bytes", "SHA-256", "no file", "a list")]
     found = {name: sha256(folder / name) or "no file" for name in listed}
     return [
-        Fault(str(folder / name), "all bytes", "SHA-256", listed[name], found[name])
+        Difference(str(folder / name), "all bytes", "SHA-256", listed[name], found[name])
         for name in listed
         if listed[name] != found[name]
     ]
@@ -54,7 +54,7 @@ def unlisted(folder: Path) -> list[Fault]:
 
 def differing(
     folder: Path, config: dict[str, Any], places: dict[str, str], processes: int
-) -> tuple[int, list[Fault]]:
+) -> tuple[int, list[Difference]]:
     """How many files follow from studies and runs, and which of them are others if they are
     made again. places: of the studies. Raises ValueError if that fails.
     """
@@ -72,7 +72,7 @@ def differing(
             studies = [places[key] for key in places if key in group]
             _make(own, config, studies, away, processes)
         return len(files), [
-            Fault(
+            Difference(
                 str(folder / file.relative_to(again)), "all bytes", "SHA-256", stored, sha256(file)
             )
             for file, stored in before.items()

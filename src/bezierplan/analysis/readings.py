@@ -332,7 +332,7 @@ def of_study(
     truths: list[Reading | None] = [None, *(possible[number] for number in spread)]
     rows, scores = [], []
     for number, truth in enumerate(truths):
-        numbers = _theirs(voting) if truth is None else _printed(voting, runner, truth, number)
+        numbers = _of_paper(voting) if truth is None else _of_hidden(voting, runner, truth, number)
         if numbers is None:
             continue
         ranking = searched(start, allowed, lambda reading: of(reading, numbers)[0])  # noqa: B023
@@ -368,11 +368,12 @@ def of_study(
     return pd.DataFrame(scores), calibration
 
 
-def _theirs(voting: list[Quantity]) -> np.ndarray:
+def _of_paper(voting: list[Quantity]) -> np.ndarray:
+    """The numbers that the paper prints (k,)."""
     return np.concatenate([each.printed["value"].astype(float) for each in voting])
 
 
-def _printed(
+def _of_hidden(
     voting: list[Quantity], runner: Runner, truth: Reading, number: int
 ) -> np.ndarray | None:
     """What an experiment of the paper's size prints under a reading (k,)."""

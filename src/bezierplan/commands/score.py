@@ -45,10 +45,8 @@ def main(
     tables = [benchmark.stored(experiment)]
     for candidate in candidates:
         if candidate.endswith(".csv"):
-            runs = [
-                benchmark.run(asked[name], *row)
-                for name, *row in benchmark.read_paths(Path(candidate))
-            ]
+            paths = benchmark.read_paths(Path(candidate), asked)
+            runs = [benchmark.run(asked[name], *row) for name, *row in paths]
         else:
             runs = [
                 benchmark.run(problem, answer.path, answer.evaluations)

@@ -110,52 +110,10 @@ def gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd
     return length_in_cells(name, runs, problems) / runs["octile_bound"] - 1
 
 
-# Lengths counted in cells have their own bound and gap.
-_CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
-_CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
-
-
 register(
     {
-        "cells4": Metric(
-            "u",
-            "cells that the path touches, 1.5 for a diagonal step; "
-            "none for a path that touches an occupied cell",
-            partial(length_in_cells, "length4"),
-            feasible_only=True,
-            least="octile_bound",
-            **_CELLS4,
-            on=("grid",),
-        ),
-        "cells8": Metric(
-            "u",
-            "cells4 without the corners of the sequence of cells",
-            partial(length_in_cells, "length8"),
-            feasible_only=True,
-            least="octile_bound",
-            **_CELLS8,
-            on=("grid",),
-        ),
         "octile_bound": Metric(
             "u", "least length of a path of free cells, 1.5 for a diagonal step", on=("grid",)
-        ),
-        "gap4": Metric(
-            "-",
-            "cells4 / octile_bound - 1",
-            partial(gap_cells, "length4"),
-            feasible_only=True,
-            least=0.0,
-            **_CELLS4,
-            on=("grid",),
-        ),
-        "gap8": Metric(
-            "-",
-            "cells8 / octile_bound - 1",
-            partial(gap_cells, "length8"),
-            feasible_only=True,
-            least=0.0,
-            **_CELLS8,
-            on=("grid",),
         ),
         "history_mean": Metric(
             "u",
@@ -176,3 +134,26 @@ register(
         ),
     }
 )
+
+
+def _in_cells(number: int, meaning: str) -> None:
+    """Register a length counted in cells, which has its own bound and gap, and that gap."""
+    alike = {"bound": "octile_bound", "gap": f"gap{number}", "feasible_only": True, "on": ("grid",)}
+    length = partial(length_in_cells, f"length{number}")
+    gap = partial(gap_cells, f"length{number}")
+    register(
+        {
+            f"cells{number}": Metric("u", meaning, length, least="octile_bound", **alike),
+            f"gap{number}": Metric(
+                "-", f"cells{number} / octile_bound - 1", gap, least=0.0, **alike
+            ),
+        }
+    )
+
+
+_in_cells(
+    4,
+    "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an "
+    "occupied cell",
+)
+_in_cells(8, "cells4 without the corners of the sequence of cells")

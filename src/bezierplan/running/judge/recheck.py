@@ -47,8 +47,10 @@ MADE_AGAIN = 100
 _ALIKE = 5
 
 
-class Fault(NamedTuple):
-    """A stored value that is not what follows. run: its id, a problem's name, or `all rows`."""
+class Difference(NamedTuple):
+    """A stored value that is not what follows from runs and studies. run: its id, a problem's name,
+    or `all rows`.
+    """
 
     file: str
     run: str
@@ -77,7 +79,7 @@ class Verdict(NamedTuple):
     different paths among these. digests: a line for each file.
     """
 
-    faults: tuple[Fault, ...] = ()
+    faults: tuple[Difference, ...] = ()
     files: int = 0
     runs: int = 0
     paths: int = 0
@@ -162,7 +164,7 @@ def judged(task: Task) -> Verdict:
         lines.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
         if kept != digest:
             stored = kept or "none: another program wrote it"
-            of_file = [Fault(file, "all rows", "digest", stored, digest)]
+            of_file = [Difference(file, "all rows", "digest", stored, digest)]
         elif fault := rows.fault(table.schema, *declared):
             raise rows.misplaced(file, fault)
         else:
@@ -186,20 +188,24 @@ def _runs(chunk: Chunk) -> list[tuple[Condition, int]]:
     return [(each, repeat) for each in chunk.conditions() for repeat in range(*chunk.repeats)]
 
 
-def _identity_faults(file: str, entries: list[dict[str, Any]], chunk: Chunk) -> Iterator[Fault]:
+def _identity_faults(
+    file: str, entries: list[dict[str, Any]], chunk: Chunk
+) -> Iterator[Difference]:
     """Whether a file has the rows that it is to have, and what is known before their runs."""
     planned = [execution.identity(chunk, *each) for each in _runs(chunk)]
     if len(entries) != len(planned):
-        yield Fault(file, "all rows", "id", f"{len(entries)} rows", f"{len(planned)} rows")
+        yield Difference(file, "all rows", "id", f"{len(entries)} rows", f"{len(planned)} rows")
         return
     for row, known in zip(entries, planned):
         for name, value in known.items():
             # What a run finds out takes the place of a setting of that name.
             if name not in Outcome._fields and row.get(name) != value:
-                yield Fault(file, known["id"], name, row.get(name), value)
+                yield Difference(file, known["id"], name, row.get(name), value)
 
 
-def _alike(files: dict[str, list[dict[str, Any]]], chunks: dict[str, Chunk]) -> Iterator[Fault]:
+def _alike(
+    files: dict[str, list[dict[str, Any]]], chunks: dict[str, Chunk]
+) -> Iterator[Difference]:
     """A planner of its author's own that is said to draw random numbers, but whose repeats are all
     alike, on every condition.
     """
@@ -211,7 +217,7 @@ def _alike(files: dict[str, list[dict[str, Any]]], chunks: dict[str, Chunk]) -> 
         found = repr([row["history"], row["path_points"]])
         by_condition.setdefault(row["condition"], []).append(found)
     if all(len(each) >= _ALIKE and len(set(each)) == 1 for each in by_condition.values()):
-        yield Fault(
+        yield Difference(
             next(iter(files)),
             f"planner {first.planner}",
             "history, path_points",
@@ -227,7 +233,7 @@ def _row_faults(
     problem: Problem,
     moving: dict[str, World],
     cache: dict[tuple, dict[str, tuple[Any, float]]],
-) -> Iterator[Fault]:
+) -> Iterator[Difference]:
     """What of a run differs from what its points say. cache: what different paths say."""
     points = row["path_points"]
     try:
@@ -240,10 +246,10 @@ def _row_faults(
             again = cache[key] | {"generations": (len(row["history"]) - 1, 0.0)}
     except (ValueError, IndexError) as error:
         again = {}
-        yield Fault(file, row["id"], "path_points", "a path", error)
+        yield Difference(file, row["id"], "path_points", "a path", error)
     for name, (value, tolerance) in again.items():
         if row[name] is None or not same(row[name], value, tolerance):
-            yield Fault(file, row["id"], name, row[name], value)
+            yield Difference(file, row["id"], name, row[name], value)
 
 
 def same(value: float, again: float, tolerance: float) -> bool:
@@ -299,7 +305,7 @@ def _drive_judged(
 
 def made_again(
     tasks: list[Task], processes: int, digest: str, every: bool
-) -> tuple[int, list[Fault]]:
+) -> tuple[int, list[Difference]]:
     """How many runs were made again, and what of them differs from their rows in any bit: one in
     `MADE_AGAIN`, which a digest chooses, or all.
     """
@@ -313,7 +319,7 @@ def made_again(
     return sum(number for number, _ in found), [fault for _, faults in found for fault in faults]
 
 
-def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Fault]]:
+def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Difference]]:
     """`made_again` of a file."""
     problem_file, file, chunk, digest, share = entry
     numbers = [
@@ -332,5 +338,5 @@ def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Fault]]:
         for name, value in rows.table([row], Planned, Outcome).to_pylist()[0].items():
             # The text of a number tells all its bits, and unlike it a NaN is equal to itself.
             if repr(value) != repr(stored.get(name)):
-                faults.append(Fault(file, row["id"], name, stored.get(name), value))
+                faults.append(Difference(file, row["id"], name, stored.get(name), value))
     return len(numbers), faults

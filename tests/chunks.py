@@ -1,0 +1,25 @@
+"""A chunk of runs that needs no study: straight lines past a circle, and through it."""
+
+import numpy as np
+
+from bezierplan.running.chunk import Chunk
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
+
+CIRCLES = Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
+MADE = {
+    "free": Problem("free", CIRCLES, (1.0, 8.0), (9.0, 8.0)),
+    "blocked": Problem("blocked", CIRCLES, (1.0, 5.0), (9.0, 5.0)),
+}
+CHUNK = Chunk(
+    study="s",
+    experiment="e",
+    method="line",
+    planner="straight_line",
+    settings={},
+    problems={name: {"workspace": "field"} for name in MADE},
+    vary={},
+    presets={},
+    seeds="own",
+    repeats=[0, 2],
+)
