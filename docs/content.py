@@ -70,11 +70,6 @@ def about(key: str) -> str:
     return (ROOT / "docs" / "prose" / f"{key}.md").read_text(encoding="utf-8")
 
 
-def first_sentence(study: SimpleNamespace) -> str:
-    """What was found about a paper, in one sentence."""
-    return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", study.verdict)[0]
-
-
 def data_of(page: str) -> dict[str, Any]:
     """The runs, problems and workspaces that a page of results holds for its viewer."""
     packed = re.search(r'id="page-data">([^<]*)', page)[1]

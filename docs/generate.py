@@ -21,6 +21,7 @@ import pandas as pd
 from docutils.nodes import SkipNode
 from docutils.utils.math import latex2mathml
 
+from bezierplan.analysis import outcome
 from bezierplan.commands import list as names
 from bezierplan.figures.page import build, reader
 from bezierplan.planners import known_planners, planner_module, planner_settings
@@ -83,7 +84,7 @@ def write(folder: Path) -> None:
         },
         "table": table,
         "about": content.about,
-        "first_sentence": content.first_sentence,
+        "first_sentence": outcome.first_sentence,
         "origin_of_maps": origin_of_maps,
         # Files of results, and no links to methods within a page.
         "root": "../results/",

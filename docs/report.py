@@ -11,15 +11,17 @@ from types import SimpleNamespace
 
 import content
 
+from bezierplan.analysis import outcome
 from bezierplan.figures.page import build, reader
 
+# The first is Chromium without windows, which needs half the CPU time of the others.
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
+CHROMIUM = next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
 def main(file: str) -> None:
     """Write the report to a file."""
-    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if browser is None:
+    if CHROMIUM is None:
         sys.exit("report_pdf: needs Chromium; Debian: apt install chromium-headless-shell")
     options = ["--headless", "--no-pdf-header-footer", "--virtual-time-budget=10000"]
     # The sandbox of the browser does not start for root, as in a container.
@@ -29,7 +31,7 @@ def main(file: str) -> None:
         source.write_text(html(), encoding="utf-8")
         printed = f"--print-to-pdf={Path(file).resolve()}"
         subprocess.run(
-            [browser, *options, printed, source.as_uri()], check=True, capture_output=True
+            [CHROMIUM, *options, printed, source.as_uri()], check=True, capture_output=True
         )
 
 
@@ -44,7 +46,7 @@ def html() -> str:
         software=software,
         references=references,
         about=content.about,
-        first_sentence=content.first_sentence,
+        first_sentence=outcome.first_sentence,
         chosen_figure=chosen_figure,
     )
 

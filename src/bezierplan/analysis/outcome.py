@@ -17,8 +17,6 @@ from bezierplan.analysis import benchmark, headline, summary
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
-# Between two sentences: the README has the first of a paper.
-_SENTENCE = re.compile(r"(?<=[.])\s+(?=[A-Z0-9])")
 # Of each study: what its printed numbers say alone; and its readings, if they are scored.
 AUDIT, READINGS = "audit.csv", ("scores.csv", "calibration.csv")
 BASELINE_COMPARISON = "baseline_comparison.csv"
@@ -76,10 +74,15 @@ def table(folder: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) 
     """
     tables = [pd.read_csv(folder / name) for name in TABLES]
     follow = "\n".join(
-        f"- {titles[key].partition(':')[0]}: {_SENTENCE.split(text)[0]}"
+        f"- {titles[key].partition(':')[0]}: {first_sentence(text)}"
         for key, text in following(folder, verdicts, *tables).items()
     )
     heading = (folder / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
     overview = headline.markdown(headline.headline(*tables, titles))
     return f"{overview}\n\n{follow}\n\nScale `{scale}`: {SCALES[scale]}"
+
+
+def first_sentence(text: str) -> str:
+    """The first of some sentences: of a paper the README and the site's home have that alone."""
+    return re.split(r"(?<=[.])\s+(?=[A-Z0-9])", text)[0]
