@@ -415,9 +415,9 @@ def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
         / np.sum((values - values.mean()) ** 2) ** 2
     )
     variances = [max(kurtosis - (k - 3) / k, 0.0) / (k - 1) for k in (n, max(size, 2))]
-    return spread * np.exp(
-        0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, (np.arange(DRAWS) + 0.5) / DRAWS)
-    )
+    logarithms = 0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, (np.arange(DRAWS) + 0.5) / DRAWS)
+    with np.errstate(over="ignore"):  # of two or three values the largest are infinite
+        return spread * np.exp(logarithms)
 
 
 def _trimmed_mean(values: np.ndarray) -> float:
