@@ -24,8 +24,7 @@ def functions(code: Iterable[str]) -> dict[str, Callable[..., Any]]:
 
 
 def audit(code: Iterable[str]) -> Callable[[dict[str, pd.DataFrame]], list[dict]]:
-    """The audit of a study's printed numbers: its own, or the rules that its
-    file lists."""
+    """The audit of a study's printed numbers: its own, or the rules that its file lists."""
     own = [name for name in code if part(name) == "audit"]
     if own:
         return module(own[0]).audit
