@@ -106,7 +106,7 @@ def note(kind, frame, **keys):
 def test_marks_of_profiles_lie_on_their_lines():
     """Not before the last step, where the line is lower."""
     late = pd.concat([PROFILE, PROFILE.head(1).assign(ratio=1.31, share=0.9)])
-    axes, _ = note("performance_profile", late, cost="length")
+    axes, _ = note("performance_profile", late)
     marks = [line for line in axes.lines if len(line.get_xdata()) == 1]
     lines = [line for line in axes.lines if len(line.get_xdata()) > 1]
     assert len(marks) == len(lines) == 3

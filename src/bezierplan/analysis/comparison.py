@@ -306,9 +306,7 @@ def _described(
         # Runs of one group are alike: the groups are the units whose mean is uncertain.
         units = np.array([statistics.statistic(statistic, group) for group in within])
         of_units = "mean"
-    low, high = math.nan, math.nan
-    if not metrics.METRICS[row["metric"]].of_group:
-        low, high = statistics.interval(of_units, units, generator(f"{row_name}/interval"))
+    low, high = statistics.interval(of_units, units, generator(f"{row_name}/interval"))
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])

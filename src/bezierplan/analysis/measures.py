@@ -97,6 +97,21 @@ def over(column: str, bound: str, runs: pd.DataFrame, problems: dict[str, Proble
     return runs[column] / runs[bound] - 1
 
 
+def near_shortest(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) the certified checker accepts a path and it is at most this share longer than
+    the exact shortest one.
+    """
+    return (certified_length(runs, problems) <= (1 + share) * runs["bound"]).to_numpy()
+
+
+@metric(
+    "u", "exact arc length, infinite unless the certified checker accepts the path", least="bound"
+)
+def certified_length(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """The length (n,) of a path that the certified checker accepts, infinite for any other."""
+    return np.where(runs["feasible"].astype(bool), runs["length"], np.inf)
+
+
 @metric(
     "-",
     "arrival / lower bound on the arrival - 1, where all methods of the table arrive",

@@ -1,4 +1,4 @@
-"""What a metric is, and how a function declares that it is one (`measures`, `running_time`)."""
+"""What a metric is, and how a function declares that it is one (`measures`)."""
 
 from __future__ import annotations
 
@@ -48,9 +48,6 @@ class Metric(NamedTuple):
         The metric of the gap to that bound.
     step : float or None
         The distance between possible values of a run, 1 for whole numbers; None if there is none.
-    of_group : bool
-        Whether all runs of a method under a condition share it, so that resampling them does not
-        show how certain it is.
     needs : tuple of str
         Columns that only some runs tables have; with none, and without compute, the column of its
         own name.
@@ -68,7 +65,6 @@ class Metric(NamedTuple):
     bound: str = "bound"
     gap: str = "gap"
     step: float | None = None
-    of_group: bool = False
     needs: tuple[str, ...] = ()
     on: tuple[str, ...] = ()
 

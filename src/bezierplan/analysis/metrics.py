@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.analysis import measures, running_time
+from bezierplan.analysis import measures
 from bezierplan.analysis.metric import ALL_STUDIES, METRICS, Metric, count, generation
 
 if TYPE_CHECKING:
@@ -175,21 +175,11 @@ METRICS |= {
     ),
 }
 
-for _within in running_time.TARGETS:
-    _percent = f"{100 * _within:.0f}"
+for _percent in (1, 2, 5, 10):
     METRICS[f"within_{_percent}pct"] = count(
         f"whether the path is certified and at most {_percent} % longer than the exact shortest "
         "one",
-        lambda runs, _, within=_within: running_time.solves(runs, within),
+        partial(measures.near_shortest, _percent / 100),
     )
-    for _cost, _unit in (("evaluations", "-"), ("cpu_s", "s")):
-        METRICS[f"{_cost}_to_{_percent}pct"] = Metric(
-            _unit,
-            f"{_cost} of all runs of the same method and condition over the number of those "
-            f"within {_percent} %: expected running time",
-            partial(running_time.work_to, _cost, _within),
-            least=0.0,
-            of_group=True,
-        )
 
 ALL_STUDIES.update(METRICS)

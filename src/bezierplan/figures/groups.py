@@ -57,10 +57,8 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
     def rows(group: Results) -> Iterable[dict[str, Any]]:
         numbers = values(group)
         key = [f"{column}={group.runs[column].iloc[0]}" for column in keys]
-        low, high = np.nan, np.nan
-        if not metrics.METRICS[metric].of_group:
-            rng = generator("/".join([metric, statistic, *key]))
-            low, high = statistics.interval(statistic, numbers, rng)
+        rng = generator("/".join([metric, statistic, *key]))
+        low, high = statistics.interval(statistic, numbers, rng)
         value = statistics.statistic(statistic, numbers)
         yield {"n": len(numbers), "value": value, "low95": low, "high95": high}
 
@@ -71,6 +69,26 @@ def measured(results: Results, metric: str) -> Results:
     """Results with a metric in the column value. Raises KeyError for an unknown metric."""
     numbers = metrics.values(results.runs, metric, results.problems)
     return results._replace(runs=results.runs.assign(value=numbers))
+
+
+def by_problem(results: Results) -> pd.DataFrame:
+    """The lower median of the metric of `measured`: one row per condition, one column per method.
+
+    Raises ValueError if a method has no run under some condition: a comparison needs shared
+    problems.
+    """
+    table = (
+        results.runs.groupby(["condition", "method"])["value"]
+        .quantile(0.5, interpolation="lower")
+        .unstack("method")
+    )
+    if table.isna().any(axis=None):
+        method = table.columns[table.isna().any()][0]
+        raise ValueError(
+            f"{method} has no run under {table.index[table[method].isna()][0]}; compared methods "
+            "need the same problems"
+        )
+    return table
 
 
 def values(group: Results) -> np.ndarray:

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from bezierplan.analysis import running_time
 from bezierplan.figures import glance, style
-from bezierplan.figures.groups import measured
+from bezierplan.figures.groups import by_problem, measured
 from bezierplan.figures.panels import MetricPanel, Note
 from bezierplan.schema.model import Metric
 
@@ -59,11 +58,11 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     import pandas as pd
     from scipy import stats
 
-    runs = measured(results, options.metric).runs
+    ranked = measured(results, options.metric)
     if options.unit == "problem":
-        table = running_time.by_problem(runs, runs["value"].to_numpy())
+        table = by_problem(ranked)
     else:
-        table = runs.pivot(index=["condition", "repeat"], columns="method", values="value")
+        table = ranked.runs.pivot(index=["condition", "repeat"], columns="method", values="value")
     units, methods = table.shape
     if methods < 3 or table.isna().any(axis=None):
         raise ValueError(
