@@ -293,8 +293,8 @@ class Readings(Job):
 
     study: str
     tables: dict[str, Pivot]
-    votes: dict[str, list[str]]
-    """By table, the metrics whose printed numbers score."""
+    votes: dict[str, dict[str, dict]]
+    """By table and metric, the printed numbers that score: column -> value or list of values."""
     choices: list[Choice]
     experiments: dict[str, Experiment]
     folder: str

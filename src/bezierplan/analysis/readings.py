@@ -61,7 +61,7 @@ DESIGN, CHANGED = 16, 0.25
 """Combinations that are tried, and the share of the choices that each changes."""
 CLIMB = 2
 """Alternatives that are added to the best reading."""
-HIDDEN = 16
+HIDDEN = 20
 """Readings that the search is calibrated with."""
 
 
@@ -89,18 +89,19 @@ def name_of(reading: Reading) -> str:
 
 
 def quantities(
-    tables: dict[str, Pivot], votes: dict[str, list[str]], files: dict[str, str]
+    tables: dict[str, Pivot], votes: dict[str, dict[str, dict]], files: dict[str, str]
 ) -> list[Quantity]:
-    """The printed numbers that vote. votes: table -> metrics; files: of published numbers."""
+    """The printed numbers that vote. votes: table -> metric -> which of them (column -> value or
+    list of values); files: of published numbers.
+    """
     all_quantities = []
     for name, spec in tables.items():
         printed = comparison.as_read(published_table(files[Path(spec.published).stem]), spec.reads)
         keys = printed.columns[: printed.columns.get_loc("metric")].to_list()
         for entry in spec.values:
             for statistic in entry.statistics if entry.metric in votes[name] else ():
-                chosen = printed[
-                    (printed["metric"] == entry.metric) & (printed["statistic"] == statistic)
-                ]
+                wanted = {"metric": entry.metric, "statistic": statistic}
+                chosen = select(printed, votes[name][entry.metric] | wanted)
                 chosen = chosen.assign(n=chosen["n"].fillna(1))
                 if statistic == "share":
                     chosen = chosen.assign(value=chosen["value"] * chosen["n"])

@@ -17,6 +17,7 @@ from bezierplan.schema.model import (
     Name,
     Names,
     Setting,
+    Where,
     listed,
     mapping_or,
     matching,
@@ -97,8 +98,9 @@ class AssumptionsFile(Model):
     """The file."""
 
     assumptions: list[Assumption] = Field(description="a list of assumptions", min_length=1)
-    votes: dict[Name, listed(Metric)] = Field(
+    votes: dict[Name, dict[Metric, Where]] = Field(
         {},
-        description="table → its metrics whose printed numbers score readings (`snakemake "
-        "readings`); those to which something was fitted have no vote",
+        description="table → metric → the printed numbers that score readings (`snakemake "
+        "readings`): column → value or list of values, {} for all; name none to which something "
+        "was fitted",
     )
