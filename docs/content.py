@@ -14,7 +14,7 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from bezierplan.analysis import baseline_comparison, outcome
+from bezierplan.analysis import outcome
 from bezierplan.commands import studies_of
 from bezierplan.figures.page import build, reader, why
 from bezierplan.schema.checked import Fault
@@ -56,9 +56,7 @@ def content() -> tuple[SimpleNamespace, Path]:
         study.name, study.definition, study.data = name_of(key), studies[key], page.data
         study.shown = page.data["studies"][key]["shown"]
         study.verdict = following[key]
-        measured = reader.of_study(tables[2], key)
-        study.baseline_in_words = baseline_comparison.sentence(measured)
-        study.baseline = reader.with_corners(measured)
+        study.baseline = reader.with_corners(reader.of_study(tables[2], key))
         study.outcome = page.headline.table.loc[key]
         if scale != SCALES[0]:
             _as_stored(study)

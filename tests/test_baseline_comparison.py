@@ -104,61 +104,6 @@ def test_experiments_are_paired_each_with_its_own_baseline():
     assert baseline_comparison.measured(found, "base")["length"].tolist() == [3.0]
 
 
-def described(**changes):
-    row = {
-        "study": "one",
-        "method": "tried",
-        "baseline": "base",
-        "conditions": 1,
-        "feasible": 1.0,
-        "feasible_baseline": 1.0,
-    }
-    row |= {"compared": 1, "length": 1.25, "bent": 1, "curvature": 2.0, "cpu": 8.0}
-    return row | changes
-
-
-@pytest.mark.parametrize(
-    ("changes", "verdict"),
-    [
-        ({}, "1 method feasible as often as the baseline, none is shorter or less curved."),
-        (
-            {"feasible": 0.5},
-            "Of 0 methods feasible as often as the baseline, none is shorter or less curved.",
-        ),
-        ({"length": 0.9995}, "none is shorter or less curved."),
-        (
-            {"curvature": 0.5},
-            "1 is shorter or less curved; the least curved, tried, has 0.5 times the curvature, "
-            "1.25 times the length and 8 times the CPU time.",
-        ),
-        (
-            {"compared": 0, "length": np.nan, "curvature": np.nan, "feasible": 0.0},
-            "none is shorter or less curved.",
-        ),
-    ],
-)
-def test_the_verdict_follows_from_the_numbers(changes, verdict):
-    assert baseline_comparison.sentence(pd.DataFrame([described(**changes)])).endswith(verdict)
-
-
-def test_the_section_has_a_sentence_for_each_study():
-    table = pd.DataFrame(
-        [
-            described(),
-            described(study="two", cpu=1234.5),
-            described(study="two", method="cornered", curvature=math.inf),
-        ]
-    )
-    paragraphs = baseline_comparison.section(table, {"one": "The first", "two": "The second"})
-    assert paragraphs[2].startswith(
-        "**The first** 1 method: feasible in 100 % of the runs (baseline: 100 %), at 8 times"
-    )
-    assert "2 methods" in paragraphs[3]
-    assert "at 8 to 1,230 times the baseline's CPU time" in paragraphs[3]
-    assert "1 gives paths with corners" in paragraphs[3]
-    assert baseline_comparison.section(table[:0], {}) == []
-
-
 def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
     """Its cells would be those of either side, as rounding has it."""
     grid = from_lines(["....", ".##.", "...."], cell=1.0, unit="m")
@@ -182,10 +127,3 @@ def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
         assert found[1] in (3.5, 4.0), name
     with pytest.raises(ValueError, match="run clear is said to be feasible"):
         elhoseny2017.length_in_cells("length4", runs.assign(octile_bound=6.0), {"room": problem})
-
-
-def test_equal_curvature_is_not_less():
-    own = pd.DataFrame(
-        [described(curvature=1.0), described(curvature=0.9995), described(curvature=0.9)]
-    )
-    assert "Of 3 methods, 1 has a lower maximum curvature" in baseline_comparison.sentence(own)

@@ -120,71 +120,9 @@ def _medians(results: Results) -> pd.DataFrame:
     )
 
 
-def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
-    """Paragraphs of the summary: a heading, what is compared, and a sentence for each study; none
-    without rows.
-
-    rows: those of all studies, with the columns `COLUMNS`. titles: of the studies, by name.
-    """
-    if rows.empty:
-        return []
-    return [
-        f"## Comparison with {BASELINE}",
-        "The baseline is what a practitioner would use without any of these planners. Under each "
-        "condition, the median of a method's runs is divided by the median of the baseline's; "
-        "`baseline_comparison.csv` has the median of these ratios.",
-        *(
-            f"**{titles[study]}** {sentence(own)}"
-            for study, own in rows.groupby("study", sort=False)
-        ),
-    ]
-
-
-def sentence(rows: pd.DataFrame) -> str:
-    """What follows from the rows of one study."""
-    count = len(rows)
-    parts = [
-        f"{counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs "
-        f"(baseline: {number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} "
-        "times the baseline's CPU time."
-    ]
-    if rows["length"].notna().any():
-        cornered, less = np.isinf(rows["curvature"]).sum(), (rows["curvature"] < 1 - EQUAL).sum()
-        parts.append(
-            f"Feasible paths are {span(rows['length'])} times as long. Of "
-            f"{counted(count, 'method')}, {less} {'has' if less == 1 else 'have'} a lower maximum "
-            f"curvature, {cornered} {'gives' if cornered == 1 else 'give'} paths with corners."
-        )
-    return " ".join([*parts, _verdict(rows)])
-
-
-def _verdict(own: pd.DataFrame) -> str:
-    """Whether a method that is feasible as often as the baseline is shorter or curves less."""
-    reliable = own[own["feasible"] >= own["feasible_baseline"]]
-    better = reliable[(reliable["length"] < 1 - EQUAL) | (reliable["curvature"] < 1 - EQUAL)]
-    words = (
-        f"Of {counted(len(reliable), 'method')} feasible as often as the baseline, "
-        f"{len(better) or 'none'} {'are' if len(better) > 1 else 'is'} shorter or less curved"
-    )
-    if better.empty:
-        return f"{words}."
-    best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
-    return (
-        f"{words}; the least curved, {best['method']}, has {number(best['curvature'])} times the "
-        f"curvature, {number(best['length'])} times the length and {number(best['cpu'])} times the "
-        "CPU time."
-    )
-
-
 def counted(count: int, noun: str) -> str:
     """A number of things in words."""
     return f"{count} {noun}" + ("s" if count != 1 else "")
-
-
-def span(values: pd.Series, digits: int = 3) -> str:
-    """The least and the largest of some numbers, once if they print alike."""
-    low, high = number(values.min(), digits), number(values.max(), digits)
-    return low if low == high else f"{low} to {high}"
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import baseline_comparison, headline, verdict, wholes
+from bezierplan.analysis import headline, verdict, wholes
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
@@ -149,8 +149,8 @@ def report(
     follow: dict[str, str],
     scale: str,
 ) -> str:
-    """The summary of a scale as markdown: what follows for each study, the headline, the methods
-    compared with the baseline, then the claims of each study with their verdicts.
+    """The summary of a scale as markdown: what follows for each study, the headline, then
+    the claims of each study with their verdicts.
 
     measures: rows with the columns `baseline_comparison.COLUMNS`. follow: as from `verdicts`.
     """
@@ -167,7 +167,6 @@ def report(
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
         "gives one. Here each claim has its verdict under the default interpretation; "
         "`claims.csv` has the others too.",
-        *baseline_comparison.section(measures, titles),
     ]
     for study, title in titles.items():
         primary = claims[(claims["study"] == study) & claims["primary"]].set_index("id")

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import baseline_comparison, comparison, tables
+from bezierplan.analysis import comparison, tables
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import why
@@ -74,7 +74,6 @@ def studies(
             assumptions=[_assumption(key, each) for each in described.assumptions],
             audit=records(files.get("audit", pd.DataFrame())),
             baseline=with_corners(baseline) if len(baseline) else [],
-            baseline_in_words=baseline_comparison.sentence(baseline) if len(baseline) else "",
             gap=gap(own_tables),
             shown=[],
             verdict=verdict.read_text(encoding="utf-8") if verdict.is_file() else "",
