@@ -64,7 +64,8 @@ def test_a_score_hardly_depends_on_seeds_or_on_how_many_runs_are_ours():
 
     def score(reading, first, last):
         chunks = {name: maps.scoring[name]._replace(repeats=[first, last]) for name in methods}
-        runner = readings.Runner(made.choices, {"maps": maps._replace(scoring=chunks)}, "", found)
+        one = {"maps": maps._replace(scoring=chunks)}
+        runner = readings.Runner(made.choices, one, "", found, {})
         return readings.scored(voting, printed, readings.measured(voting, runner.results(reading)))
 
     reading = {"O21b": "control_points"}
@@ -88,7 +89,7 @@ def test_the_search_finds_a_hidden_reading_and_no_excluded_one(monkeypatch):
         def __init__(self):
             self.choices = choices
 
-        def results(self, reading, layout=None):
+        def results(self, reading, layout=None, size=0):
             return None if reading == {"O1": 1, "O2": 1} else reading
 
     def measured(voting, reading):

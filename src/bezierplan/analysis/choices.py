@@ -2,6 +2,7 @@
 which a job is made.
 """
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from bezierplan.analysis.table_kinds import Pivot
@@ -10,10 +11,13 @@ from bezierplan.running.descriptions import Descriptions
 from bezierplan.schema.model import one_or_list
 
 READ = 100
-"""Runs of each method on each problem that score a reading; at least two where layouts are drawn,
-of which `LAYOUTS` are for this, and the others print the numbers of hidden readings.
+"""Runs of each method on each problem that score a reading; where layouts are drawn, in `LAYOUTS`
+together, and in each no more than the paper's.
 """
-LAYOUTS = 30
+LAYOUTS, FEWER = 30, 10
+"""Layouts that score a reading where a printed number is of one of them, and where it is a mean
+over several; the others print the numbers of hidden readings.
+"""
 
 Reading = dict[str, Any]
 """Id of a choice -> its alternative; {} for the default."""
@@ -38,12 +42,31 @@ class Choice(NamedTuple):
 
 class Experiment(NamedTuple):
     """Chunks by method, those whose runs score a reading and those that print a hidden one's
-    numbers, of which each has one layout, if there are any; and descriptions of the problems.
+    numbers; descriptions of the problems; and whether a number is of one layout.
     """
 
     scoring: dict[str, Chunk]
     printing: dict[str, Chunk]
     descriptions: Descriptions
+    in_one_layout: bool
+
+
+def voting(
+    tables: Mapping[str, Pivot], votes: dict[str, dict[str, dict[str, Any]]]
+) -> dict[str, Pivot]:
+    """The tables of which printed numbers vote, with the rows alone of which any does.
+
+    votes: table -> metric -> column -> the values whose numbers vote; all if none are named.
+    """
+    chosen = {}
+    for name, metrics in votes.items():
+        rows = [*metrics.values()]
+        where = {
+            column: [value for each in rows for value in one_or_list(each[column])]
+            for column in set.intersection(*map(set, rows))
+        }
+        chosen[name] = tables[name].but(where=tables[name].where | where)
+    return chosen
 
 
 def experiment(
@@ -61,6 +84,8 @@ def experiment(
             for table in tables
         )
 
+    in_one_layout = any(table.within for table in tables)
+    layouts = LAYOUTS if in_one_layout else FEWER
     scoring, printing = {}, {}
     for method, chunk in chunks.items():
         if not shown("method", method):
@@ -71,10 +96,10 @@ def experiment(
             for name, place in chunk.problems.items()
             if shown("problem", name) and shown("workspace", place["workspace"])
         }
-        first = {name: place for name, place in met.items() if place.get("layout", 0) < LAYOUTS}
+        first = {name: place for name, place in met.items() if place.get("layout", 0) < layouts}
         others = {name: place for name, place in met.items() if name not in first} or met
         drawn = any("layout" in place for place in met.values())
-        last = max(2, READ // LAYOUTS) if drawn else READ
+        last = min(READ // LAYOUTS, size) if drawn else READ
         scoring[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
         printing[method] = chunk._replace(vary=vary, problems=others, repeats=[last, last + size])
-    return Experiment(scoring, printing, descriptions)
+    return Experiment(scoring, printing, descriptions, in_one_layout)

@@ -312,7 +312,7 @@ class Readings(Job):
         study_code.functions(self.code)
         voting = readings.quantities(self.tables, self.votes, inputs.by_table(input_files.sources))
         found = readings.read_problems(inputs.experiments(self.shows, input_files))
-        runner = readings.Runner(self.choices, self.experiments, Path(self.folder), found)
+        runner = readings.Runner(self.choices, self.experiments, Path(self.folder), found, {})
         for table, file in zip(readings.of_study(self.study, voting, runner), output_files):
             table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
 

@@ -9,6 +9,7 @@ the mean, over the printed numbers that vote, of the logarithm of their density 
   much.
 - A count or share: beta-binomial, as if ours came from `WORTH` runs, however many there are; with
   the probability `ANY`, it can be any.
+- A mean over n runs of what only free paths have says that n of n were free, which is a count too.
 
 Extremes and seconds have no vote. The search tries each alternative alone, combinations of a
 space-filling design, and then adds to the best reading, one by one, what was best alone.
@@ -53,7 +54,6 @@ WORTH, ANY = 50, 0.05
 BLOCKS = 5
 VOTING = {
     **{name: name for name in ("mean", "median", "count")},
-    "unstated": "median",
     "share": "count",
 }
 """Statistics of printed numbers that vote -> what ours are."""
@@ -97,9 +97,11 @@ def quantities(
     all_quantities = []
     for name, spec in tables.items():
         printed = comparison.as_read(published_table(files[Path(spec.published).stem]), spec.reads)
+        printed = printed.replace({"statistic": {"unstated": "median"}})
         keys = printed.columns[: printed.columns.get_loc("metric")].to_list()
         for entry in spec.values:
             for statistic in entry.statistics if entry.metric in votes[name] else ():
+                statistic = statistic.replace("unstated", "median")
                 wanted = {"metric": entry.metric, "statistic": statistic}
                 chosen = select(printed, votes[name][entry.metric] | wanted)
                 chosen = chosen.assign(n=chosen["n"].fillna(1))
@@ -107,33 +109,39 @@ def quantities(
                     chosen = chosen.assign(value=chosen["value"] * chosen["n"])
                 if statistic not in VOTING:
                     continue
-                all_quantities.append(
-                    Quantity(
-                        spec.experiment,
-                        spec.where | spec.primary,
-                        entry.where,
-                        entry.metric,
-                        VOTING[statistic],
-                        entry.decimals,
-                        spec.within,
-                        keys,
-                        chosen,
-                    )
+                quantity = Quantity(
+                    spec.experiment,
+                    spec.where | spec.primary,
+                    entry.where,
+                    entry.metric,
+                    VOTING[statistic],
+                    entry.decimals,
+                    spec.within,
+                    keys,
+                    chosen,
                 )
+                all_quantities.append(quantity)
+                if statistic == "mean" and metrics.METRICS[entry.metric].feasible_only:
+                    free = chosen.assign(value=chosen["n"])
+                    all_quantities.append(
+                        quantity._replace(
+                            metric="feasible", statistic="count", decimals=0, printed=free
+                        )
+                    )
     return all_quantities
 
 
 def measured(voting: list[Quantity], results: dict[str, Results]) -> np.ndarray:
     """What our runs say of the k printed numbers: the mean or share, its variance between
     experiments of the paper's size, and the variance of ours; first by all runs, then without each
-    of the blocks: (BLOCKS + 1, k, 3). NaN without runs that count.
+    of the blocks: (BLOCKS + 1, k, 3). NaN without runs that count, variances with a single one.
     """
     columns = []
     for each in voting:
         found = results[each.experiment]
         runs = select(select(found.runs, each.where), each.of_runs)
         runs = runs.assign(value=metrics.values(runs, each.metric, found.problems))
-        block = runs[each.within or "repeat"] % BLOCKS
+        block = runs["layout" if "layout" in runs else "repeat"] % BLOCKS
         for row in each.printed.to_dict("records"):
             own = np.logical_and.reduce([runs[key] == row[key] for key in each.keys])
             columns.append(
@@ -147,9 +155,11 @@ def measured(voting: list[Quantity], results: dict[str, Results]) -> np.ndarray:
 
 def _moments(runs: pd.DataFrame, size: float, of: Quantity) -> tuple[float, float, float]:
     values, counts = runs["value"].dropna(), of.statistic == "count"
-    if counts or len(values) < 2:
-        return values.sum() / max(len(runs), 1) if counts else math.nan, 0.0, 0.0
-    counted, centre = max(size * len(values) / len(runs), 1), values.agg(of.statistic)
+    if counts:
+        return values.sum() / max(len(runs), 1), 0.0, 0.0
+    counted, centre = max(size * len(values) / max(len(runs), 1), 1), values.agg(of.statistic)
+    if len(values) < 2:
+        return centre, math.nan, math.nan
     if of.within is None:
         variance = values.var()
         return centre, variance / counted, variance / len(values)
@@ -176,8 +186,8 @@ def _densities(voting: list[Quantity], printed: np.ndarray, ours: np.ndarray) ->
     step = np.concatenate([[10.0**-each.decimals] * len(each.printed) for each in voting])
     unit = np.maximum(np.abs(printed), step)
     centre, variance, error = ours.T
-    relative = np.nan_to_num((printed - centre) / unit, nan=1.0)
-    scale = np.sqrt(DISCREPANCY**2 + (variance + error + step**2 / 12) / unit**2)
+    relative = np.where(np.isnan(variance), 1.0, (printed - centre) / unit)
+    scale = np.sqrt(DISCREPANCY**2 + (np.nan_to_num(variance + error) + step**2 / 12) / unit**2)
     means = stats.t.logpdf(relative / scale, FREEDOM) - np.log(scale)
     true = np.where(counted, centre, 0.0) * WORTH + 0.5
     counts = stats.betabinom.pmf(np.round(printed), size, true, WORTH + 1 - true)
@@ -206,23 +216,29 @@ def under(chunk: Chunk, reading: Reading, choices: list[Choice]) -> Chunk:
 
 
 class Runner(NamedTuple):
-    """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds."""
+    """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds.
+    stored: the runs that were made, which other readings share that change another method.
+    """
 
     choices: list[Choice]
     experiments: dict[str, Experiment]
     folder: Path
     defaults: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
+    stored: dict[str, pd.DataFrame]
 
-    def results(self, reading: Reading, layout: int | None = None) -> dict[str, Results] | None:
-        """By experiment: those that score a reading, or those that print the numbers of a hidden
-        one; None if its settings exclude each other.
+    def results(
+        self, reading: Reading, layout: int | None = None, size: int = 0
+    ) -> dict[str, Results] | None:
+        """By experiment: those that score a reading, or, of at most `size` repeats, those that
+        print the numbers of a hidden one; None if its settings exclude each other.
         """
         results = {}
         for name, each in self.experiments.items():
             chunks = each.scoring if layout is None else each.printing
             chunks = [under(chunk, reading, self.choices) for chunk in chunks.values()]
             if layout is not None:
-                chunks = [_in_layout(chunk, layout) for chunk in chunks]
+                layouts = 1 if each.in_one_layout else size
+                chunks = [_in_layouts(_first(chunk, size), layout, layouts) for chunk in chunks]
             try:
                 for chunk in chunks:
                     for place in chunk.problems.values():
@@ -231,9 +247,17 @@ class Runner(NamedTuple):
             except Fault:
                 return None
             made, bounds = self._world(name, reading, chunks[0].problems)
-            runs = [execution.run_chunk(made, chunk)[0].to_pandas() for chunk in chunks]
+            world = "" if made is self.defaults[name][0] else name_of(reading)
+            runs = [self._runs(made, chunk, world) for chunk in chunks]
             results[name] = joined(pd.concat(runs, ignore_index=True), made, bounds)
         return results
+
+    def _runs(self, made: dict[str, Problem], chunk: Chunk, world: str) -> pd.DataFrame:
+        """Runs of a chunk, made once in a world."""
+        name = f"{world}: {chunk}"
+        if name not in self.stored:
+            self.stored[name] = execution.run_chunk(made, chunk)[0].to_pandas()
+        return self.stored[name]
 
     def _world(
         self, experiment: str, reading: Reading, names: Iterable[str]
@@ -258,13 +282,21 @@ class Runner(NamedTuple):
         return made, problems.bounds_of(made).to_pandas()
 
 
-def _in_layout(chunk: Chunk, number: int) -> Chunk:
-    """A chunk in one of its layouts alone."""
+def _first(chunk: Chunk, size: int) -> Chunk:
+    """The first repeats of a chunk."""
+    first, last = chunk.repeats
+    return chunk._replace(repeats=[first, min(first + size, last)])
+
+
+def _in_layouts(chunk: Chunk, number: int, size: int) -> Chunk:
+    """A chunk in some of its layouts alone, others for each number."""
     layouts = sorted({place["layout"] for place in chunk.problems.values() if "layout" in place})
-    own = layouts[number % len(layouts)] if layouts else None
+    own = np.roll(layouts, -number * size)[:size]
     return chunk._replace(
         problems={
-            name: place for name, place in chunk.problems.items() if place.get("layout") == own
+            name: place
+            for name, place in chunk.problems.items()
+            if "layout" not in place or place["layout"] in own
         }
     )
 
@@ -378,7 +410,8 @@ def _of_hidden(
     voting: list[Quantity], runner: Runner, truth: Reading, number: int
 ) -> np.ndarray | None:
     """What an experiment of the paper's size prints under a reading (k,)."""
-    results = runner.results(truth, layout=number)
+    size = int(max(each.printed["n"].max() for each in voting))
+    results = runner.results(truth, layout=number, size=size)
     if results is None:
         return None
     values = iter(measured(voting, results)[0, :, 0])

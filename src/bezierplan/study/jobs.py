@@ -346,7 +346,7 @@ def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
 
 def readings(study: Study, scale: str) -> Readings:
     """The readings of a study."""
-    tables = {name: study.compared()[name] for name in study.votes}
+    tables = choices.voting(study.compared(), study.votes)
     experiments = {}
     for name in dict.fromkeys(each.experiment for each in tables.values()):
         content = study.experiments[name]
