@@ -8,6 +8,7 @@ collisions, and mutation draws another cell, unless it flips a bit as in BCA. Wi
 chromosome is itself a path, initially one through a random free cell of each row.
 """
 
+import itertools
 from enum import IntEnum
 from typing import Annotated, NamedTuple
 
@@ -200,15 +201,30 @@ def _first_paths(
     ]
     paths = np.zeros((population, longest), dtype=np.int64)
     sizes = np.zeros(population, dtype=np.int64)
-    marks = np.zeros(len(places.row), dtype=np.int64)
-    tries = _MOST_DRAWS if all(map(len, rows)) else 0
-    for i in range(population):
-        for _ in range(tries):
-            drawn = [free[rng.integers(len(free))] for free in rows]
-            cells = np.array([places.start, *drawn, places.target])
-            sizes[i] = cell_paths.join(places, cells, paths[i], marks)
+    if all(map(len, rows)):
+        ends = np.cumsum([0, *map(len, rows)])
+        _join_rows(
+            rng, places, np.array([*itertools.chain(*rows)], dtype=np.int64), ends, paths, sizes
+        )
+    return paths, sizes
+
+
+@compiled
+def _join_rows(rng, lattice, free, ends, paths, sizes):
+    """Fill in paths and their sizes, in place, until one cannot be found.
+
+    free: (n,) the free cells, row by row. ends: (rows + 1,) where each row begins and the last
+    ends.
+    """
+    marks = np.zeros(len(lattice.row), dtype=np.int64)
+    cells = np.empty(len(ends) + 1, dtype=np.int64)
+    cells[0], cells[-1] = lattice.start, lattice.target
+    for i in range(len(paths)):
+        for _ in range(_MOST_DRAWS):
+            for row in range(len(ends) - 1):
+                cells[row + 1] = free[integer(rng, ends[row], ends[row + 1])]
+            sizes[i] = cell_paths.join(lattice, cells, paths[i], marks)
             if sizes[i]:
                 break
         if sizes[i] == 0:
             break
-    return paths, sizes
