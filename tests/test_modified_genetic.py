@@ -15,8 +15,9 @@ from hypothesis.extra import numpy
 from studies import planned, study
 
 from bezierplan.geometry import cell_length
+from bezierplan.papers.elhoseny2017.functions import q
 from bezierplan.planners import modified_genetic as planner
-from bezierplan.planners.parts import diversity, gene_curves, gene_lattice, gene_lists
+from bezierplan.planners.parts import gene_curves, gene_lattice, gene_lists
 from bezierplan.planners.parts.settings import filled
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces import random_field
@@ -390,9 +391,9 @@ def test_q_of_a_pool_is_the_mean_over_all_pairs():
     for place, row in enumerate(rows):
         ones = np.flatnonzero(row)
         gene_lists.put(ones, len(ones), 1.0, pool, place)
-    every = [diversity.q_of_rows(rows[i], rows[j]) for j in range(12) for i in range(j)]
+    every = [q(rows[i], rows[j]) for j in range(12) for i in range(j)]
     assert gene_lists.sum_of_q(pool, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
-    first = [diversity.q_of_rows(rows[i], rows[j]) for j in range(8) for i in range(j)]
+    first = [q(rows[i], rows[j]) for j in range(8) for i in range(j)]
     parts = gene_lists.sum_of_q(pool, 0, 8, 441) + gene_lists.sum_of_q(pool, 8, 12, 441)
     assert parts == pytest.approx(sum(every), rel=1e-12)
     assert sum(first) != sum(every)
@@ -400,16 +401,17 @@ def test_q_of_a_pool_is_the_mean_over_all_pairs():
 
 
 def test_q_statistic():
-    assert diversity.q_of_rows([1, 1, 0, 0], [1, 1, 0, 0]) == 1.0
-    assert diversity.q_of_rows([1, 1, 0, 0], [0, 0, 1, 1]) == -1.0
-    assert diversity.q_of_rows([1, 1, 1, 1], [1, 1, 1, 1]) == 1.0
-    assert diversity.q_of_rows([1, 1, 1, 1], [1, 1, 1, 0]) == 0.0
+    def of(*texts):
+        return q(*(np.array(list(text), dtype=int) for text in texts))
+
+    assert of("1100", "1100") == 1.0
+    assert of("1100", "0011") == -1.0
+    assert of("1111", "1111") == 1.0
+    assert of("1111", "1110") == 0.0
     # The example of elhoseny2017, Section 3.3.1.
-    one, two, three = (
-        [int(bit) for bit in text] for text in ("1100110010", "1010101011", "1111000000")
-    )
-    assert diversity.q_of_rows(one, two) == diversity.q_of_rows(one, three) == 0.0
-    assert diversity.q_of_rows(two, three) == pytest.approx(-1 / 3, rel=1e-15)
+    one, two, three = "1100110010", "1010101011", "1111000000"
+    assert of(one, two) == of(one, three) == 0.0
+    assert of(two, three) == pytest.approx(-1 / 3, rel=1e-15)
 
 
 # MGA-C: what it takes to get through a maze.

@@ -14,10 +14,10 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import About, Plan, Range
-from bezierplan.planners.parts.cell_paths import length, plan_of, put, step_between
+from bezierplan.planners.parts.cell_paths import length, places_of, plan_of, put, step_between
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, Lattice, lattice
+from bezierplan.workspaces.lattice import Corners, Lattice
 from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
@@ -112,8 +112,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 28.
     """
-    corners = Corners(settings.corners).name
-    places = lattice(problem.workspace, problem.start, problem.target, corners)
+    places = places_of(problem, settings.corners)
     colony = search(places, rng, settings)
     evaluations = settings.ants * len(colony.history)
     return plan_of(problem, colony.best, colony.history, evaluations, "iterations")

@@ -15,7 +15,6 @@ from bezierplan.planners import About, Plan, Range, ant_colony
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, lattice
 from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
@@ -77,8 +76,7 @@ def plan(
     ----------
     ma2020, Section 4.1, reference 30.
     """
-    corners = Corners(ants.corners).name
-    places = lattice(problem.workspace, problem.start, problem.target, corners)
+    places = cell_paths.places_of(problem, ants.corners)
     first, moves = rng.spawn(2)
     colony = ant_colony.search(places, first, ants)
     best, history = colony.best, colony.history

@@ -15,7 +15,7 @@ from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, lattice
+from bezierplan.workspaces.lattice import Corners
 from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
@@ -86,8 +86,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 31.
     """
-    corners = Corners(settings.corners).name
-    places = lattice(problem.workspace, problem.start, problem.target, corners)
+    places = cell_paths.places_of(problem, settings.corners)
     first, moves = rng.spawn(2)
     if places.start == places.target:
         # No search needed: all fish have arrived.

@@ -25,7 +25,7 @@ from bezierplan.planners.parts.genetic import (
 )
 from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.settings import with_settings
-from bezierplan.workspaces.lattice import Corners, Lattice, lattice
+from bezierplan.workspaces.lattice import Corners, Lattice
 from bezierplan.workspaces.problem import Problem
 
 workspaces = ("grid",)
@@ -102,8 +102,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     ----------
     ma2020, Section 4.1, reference 29.
     """
-    grid = problem.workspace
-    places = lattice(grid, problem.start, problem.target, Corners(settings.corners).name)
+    places = cell_paths.places_of(problem, settings.corners)
     starts, moves = rng.spawn(2)
     if places.start == places.target:
         # No search needed: one chromosome without genes.

@@ -193,10 +193,11 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
     from scipy.spatial import KDTree
 
     # Every node is the nearest to itself.
-    nearest = KDTree(points).query(points, neighbours + 1)[1]
-    linked = np.zeros((count, count), dtype=bool)
-    linked[np.arange(count)[:, None], nearest] = True
-    return np.nonzero(np.triu(linked | linked.T, 1))
+    nearest, node = KDTree(points).query(points, neighbours + 1)[1], np.arange(count)[:, None]
+    linked = np.zeros(count * count, dtype=bool)
+    linked[np.minimum(node, nearest) * count + np.maximum(node, nearest)] = True
+    linked[:: count + 1] = False
+    return np.divmod(np.flatnonzero(linked), count)
 
 
 def _visible(
@@ -222,13 +223,32 @@ def _shortest_way(
     """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and
     empty if they are not connected.
     """
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import dijkstra
-
     lengths = np.hypot(*(points[tails] - points[heads]).T)
-    links = csr_array((lengths, (tails, heads)), shape=2 * (len(points),))
-    far, before = dijkstra(links, directed=False, indices=0, return_predecessors=True)
-    way = [1] if far[1] < np.inf else []
+    length, before = _from_start(len(points), tails, heads, lengths)
+    way = [1] if length < np.inf else []
     while way and way[-1]:
         way.append(before[way[-1]])
-    return float(far[1]), np.array(way[::-1], dtype=int)
+    return length, np.array(way[::-1], dtype=int)
+
+
+@compiled
+def _from_start(count, tails, heads, lengths):
+    """Dijkstra's algorithm over `count` nodes, until node 1 is next: its distance from node 0, and
+    for each node (count,) the one before it.
+    """
+    steps = np.full((count, count), np.inf)
+    for k in range(len(tails)):
+        steps[tails[k], heads[k]] = steps[heads[k], tails[k]] = lengths[k]
+    far, before = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
+    waits = np.ones(count, dtype=np.bool_)
+    far[0], node = 0.0, 0
+    while node != 1:
+        waits[node] = False
+        for k in range(count):
+            if far[node] + steps[node, k] < far[k]:
+                far[k], before[k] = far[node] + steps[node, k], node
+        node = 1
+        for k in range(count):
+            if waits[k] and far[k] < far[node]:
+                node = k
+    return far[1], before

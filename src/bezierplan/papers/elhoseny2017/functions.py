@@ -13,7 +13,7 @@ import pandas as pd
 
 from bezierplan.analysis.results import select
 from bezierplan.geometry.cell_length import DIAGONAL
-from bezierplan.planners.parts.diversity import q_of_rows
+from bezierplan.planners.parts.diversity import q_statistic
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
@@ -43,6 +43,11 @@ def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
     }
 
 
+def q(one: np.ndarray, other: np.ndarray) -> float:
+    """Equation 10: Q of two solutions (n,) of 0 and 1."""
+    return q_statistic(*counts(one, other).values())
+
+
 def q_table(published: "Published") -> pd.DataFrame:
     """Table 1 and derived quantities: genes of the solutions, counts and Q (equation 10) of their
     pairs, and the mean Q.
@@ -56,7 +61,7 @@ def q_table(published: "Published") -> pd.DataFrame:
         {
             "solutions": f"{one}, {other}",
             **counts(genes[one], genes[other]),
-            "Q": q_of_rows(genes[one], genes[other]),
+            "Q": q(genes[one], genes[other]),
         }
         for one, other in itertools.combinations(genes, 2)
     ]
@@ -72,11 +77,11 @@ def q_example(check: "Check", results: "Experiments", published: "Published") ->
     """
     genes, printed = solutions(published), said(published)
     q_values = {
-        f"Q of {one} and {other}": q_of_rows(genes[one], genes[other])
+        f"Q of {one} and {other}": q(genes[one], genes[other])
         for one, other in itertools.combinations(genes, 2)
     }
     mean = float(np.mean(list(q_values.values())))
-    differences = [abs(q - printed[pair]) for pair, q in q_values.items()]
+    differences = [abs(value - printed[pair]) for pair, value in q_values.items()]
     holds = max(differences) < 1e-12 and round(mean, 2) == printed["mean Q"]
     most = max(*differences, abs(mean - printed["mean Q"]))
     return "+" if holds else "-", most, None, len(q_values)

@@ -12,7 +12,7 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
-from bezierplan.workspaces.lattice import points
+from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
 ONE_CELL, RECONNECT, WALK = range(3)
@@ -35,6 +35,11 @@ class Rules(NamedTuple):
     longest_part: int
     tries: int = 0
     shorter_parts: bool = True
+
+
+def places_of(problem: Problem, corners: int) -> Lattice:
+    """The lattice of a problem on a grid. Raises ValueError as `lattice`."""
+    return lattice(problem.workspace, problem.start, problem.target, Corners(corners).name)
 
 
 def plan_of(

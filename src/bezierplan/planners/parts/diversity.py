@@ -33,10 +33,3 @@ def shared(first: np.ndarray, second: np.ndarray) -> int:
         else:
             j += 1
     return common
-
-
-def q_of_rows(one: np.ndarray, other: np.ndarray) -> float:
-    """Q of two chromosomes given as rows of 0 and 1, of equal length."""
-    one, other = np.asarray(one, dtype=bool), np.asarray(other, dtype=bool)
-    both, neither = int((one & other).sum()), int((~one & ~other).sum())
-    return q_statistic(both, neither, int((one & ~other).sum()), int((~one & other).sum()))
