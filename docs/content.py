@@ -24,7 +24,10 @@ ROOT = Path(__file__).parents[1]
 OUTCOME = ROOT / "docs" / "outcome"
 SCALES = ("extended", "full", "smoke")
 # What the stored outcome says of a claim.
-_OF_CLAIM = ("verdict", "holds", "where_it_holds", "reason", "published", "n", "effect")
+_OF_CLAIM = (
+    *("verdict", "verdict_best_reading", "holds", "where_it_holds"),
+    *("reason", "published", "n", "effect"),
+)
 
 
 def results() -> tuple[str, Path]:

@@ -251,7 +251,7 @@ def _gathering_one(given: Studies, key: str) -> Iterator[Made]:
         yield Made(job, given_to(job, key, sources=job.sources), output)
     claims, audit = jobs.claims(study, SCALE), jobs.audit(study, SCALE)
     output = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"}
-    yield Made(claims, given_to(claims, key, sources=claims.sources), output)
+    yield Made(claims, given_to(claims, key, sources=claims.sources, beside=[]), output)
     yield Made(audit, given_to(audit, key, sources=audit.sources), {"made": f"{folder}/audit.csv"})
 
 

@@ -5,6 +5,7 @@ and degenerate runs.
 import itertools
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -76,6 +77,7 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
         "functions": {},
         "variant_of": {},
         "paired": {},
+        "labels": {},
         "repeats": {"tried": 10},
     } | material
     results = (
@@ -84,18 +86,20 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
         else {}
     )
     claims = [Claim.model_validate({"id": "C1", "place": "1", "statement": "It is so."} | claim)]
-    return judging.judge(
-        claims,
-        results,
-        given.pop("published"),
-        {
-            name: [Display.model_validate(part) for part in parts]
-            for name, parts in given.pop("artefacts").items()
-        },
-        "study",
-        given.pop("functions"),
-        **given,
+    artefacts = {
+        name: [Display.model_validate(part) for part in parts]
+        for name, parts in given["artefacts"].items()
+    }
+    job = SimpleNamespace(
+        study="study",
+        claims=claims,
+        artefacts=artefacts,
+        variant_of=given["variant_of"],
+        paired=given["paired"],
+        paper_repeats=given["repeats"],
+        labels=given["labels"],
     )
+    return judging.judge(job, results, given["published"], given["functions"])
 
 
 def judged(check: dict, *runs: pd.DataFrame, **material) -> pd.Series:
@@ -1146,3 +1150,22 @@ def test_few_runs_without_an_effect_are_seldom_taken_for_one():
     found = [judged(LOWER, normal_runs(trial, 10, 0.0))["verdict"] for trial in range(100)]
     assert found.count("supported") + found.count("contradicted") <= 5
     assert found.count("undecided") > 50
+
+
+def test_claims_depend_on_the_best_reading_if_its_score_tells_it_apart():
+    claims = pd.DataFrame({"id": ["C1", "C2", "C2"], "primary": [True, True, False]})
+    claims = claims.assign(verdict="supported", verdict_best_reading=None, reason="why")
+    verdicts = pd.DataFrame({"id": ["C1", "C2"], "default": "supported", "reading": "O1=2"})
+    verdicts = verdicts.assign(best=["undecided", "contradicted"])
+    for apart, verdict, reason in (
+        (True, "depends", "on the reading: supported by default, contradicted with O1=2; why"),
+        (
+            False,
+            "supported",
+            "contradicted with O1=2, which its score does not tell from the default; why",
+        ),
+    ):
+        found = judging.beside_reading(claims.copy(), verdicts.assign(apart=apart))
+        assert [*found["verdict"]] == ["supported", verdict, "supported"]
+        assert [*found["verdict_best_reading"]] == [None, "contradicted", None]
+        assert [*found["reason"]] == ["why", reason, "why"]

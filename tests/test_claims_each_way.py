@@ -9,6 +9,7 @@ their own.
 import itertools
 from collections import defaultdict
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -305,19 +306,16 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
 def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFrame]:
     own = study(key)
     functions = study_code.functions(own.code_for("functions"))
-    return judge.judge(
-        [Claim.model_validate(claim).in_primary_variant()],
-        *(
-            results,
-            printed or published(key),
-            artefacts(key),
-            key,
-            functions,
-        ),
+    job = SimpleNamespace(
+        study=key,
+        claims=[Claim.model_validate(claim).in_primary_variant()],
+        artefacts=artefacts(key),
         variant_of=own.variants(),
         paired={name: own.experiments[name].paired for name in results},
-        repeats=dict.fromkeys(results, 10),
+        paper_repeats=dict.fromkeys(results, 10),
+        labels={},
     )
+    return judge.judge(job, results, printed or published(key), functions)
 
 
 @pytest.fixture

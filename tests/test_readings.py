@@ -107,6 +107,34 @@ def test_the_search_finds_a_hidden_reading_and_no_excluded_one(monkeypatch):
     assert paper["best"] < hidden["score"].min()
 
 
+def test_a_number_that_is_not_named_has_no_vote():
+    made, _ = job("tharwat2018")
+    files = {name: f"{STUDIES['tharwat2018'].folder}/published/{name}.csv" for name in made.tables}
+    votes = {"table3": {"objective": {"method": ["cpso1_tent"]}}}
+    (voting,) = readings.quantities({"table3": made.tables["table3"]}, votes, files)
+    assert [*voting.printed["method"]] == ["cpso1_tent"]
+
+
+def test_claims_are_judged_under_the_best_reading_that_no_sentence_excludes(monkeypatch):
+    choices = [Choice(name, [1, 2.0], "tries", {"mine": {}}, [], {}, "") for name in ("O1", "O2")]
+    scores = {
+        "reading": ["O2=1", "O1=1, O2=2.0", "default"],
+        "excluded_by": ["Section 1", None, None],
+        "score": [3.0, 2.0, 1.0],
+        "error": 0.1,
+    }
+    runner = readings.Runner(choices, {}, "", {}, {})
+    monkeypatch.setattr(readings.Runner, "results", lambda self, reading: reading)
+
+    def judged(reading):
+        return pd.DataFrame({"study": "walks", "id": ["C1"], "verdict": [str(reading)]})
+
+    (row,) = readings.verdicts(runner, pd.DataFrame(scores), judged).to_dict("records")
+    assert row["default"] == "{}"
+    assert (row["best"], row["reading"]) == ("{'O1': 1, 'O2': 2.0}", "O1=1, O2=2.0")
+    assert row["apart"]
+
+
 @pytest.mark.parametrize("key", READ)
 def test_the_kept_calibration_is_of_this_search(key):
     scores, calibration = (

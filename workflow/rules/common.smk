@@ -14,6 +14,8 @@ os.environ.update(
     PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1"
 )
 
+from bezierplan.analysis import markdown
+from bezierplan.figures.jobs import Specification
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema import checked
@@ -179,7 +181,7 @@ def caption(wildcards, output):
     `output`: no file depends on it.
     """
     name = wildcards.get("table") or wildcards.figure
-    return jobs.escaped(jobs.caption(STUDIES[wildcards.study], name, wildcards.scale))
+    return markdown.escaped(jobs.caption(STUDIES[wildcards.study], name, wildcards.scale))
 
 
 COMPARED = [(key, name) for key, study in STUDIES.items() for name in study.with_published()]
@@ -188,10 +190,13 @@ READ = [key for key, study in STUDIES.items() if study.votes]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
-def calibrations(scale, studies):
-    """Files of calibrated readings, which take minutes: at scale extended alone."""
+def of_readings(scale, studies, *files):
+    """Files of the readings of some studies, which take minutes: at scale extended alone."""
     return [
-        f"results/{scale}/{key}/readings/calibration.csv" for key in studies if scale == "extended"
+        f"results/{scale}/{key}/readings/{file}"
+        for key in READ
+        if scale == "extended" and key in studies
+        for file in files
     ]
 
 
@@ -216,6 +221,7 @@ def shown(wildcards):
         *artefacts,
         *summary,
         *verdicts,
+        *of_readings(wildcards.scale, READ, "specification.svg"),
         *(
             f"results/{wildcards.scale}/{key}/{name}.csv"
             for name, keys in named.items()

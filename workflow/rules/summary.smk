@@ -43,7 +43,7 @@ rule summary:
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
         audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
-        calibrations=lambda wildcards: calibrations(wildcards.scale, READ),
+        calibrations=lambda wildcards: of_readings(wildcards.scale, READ, "calibration.csv"),
         sources=sources(of(jobs.summary)),
     output:
         numbers="results/{scale}/numbers.csv",
@@ -73,7 +73,9 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison")
         ],
         audit=f"{RESULTS}/audit.csv",
-        calibrations=lambda wildcards: calibrations(wildcards.scale, {wildcards.study} & {*READ}),
+        calibrations=lambda wildcards: of_readings(
+            wildcards.scale, {wildcards.study}, "calibration.csv"
+        ),
         sources=sources(of(jobs.verdict)),
     output:
         report(

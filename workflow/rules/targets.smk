@@ -39,7 +39,7 @@ rule extended:
 # `extended` makes them too.
 rule readings:
     input:
-        calibrations("extended", READ),
+        of_readings("extended", READ, "calibration.csv", "specification.svg", "verdicts.csv"),
 
 
 # What `make verify-outcome` compares with docs/outcome.

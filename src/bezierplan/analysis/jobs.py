@@ -10,7 +10,7 @@ import hashlib
 import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -267,22 +267,20 @@ class Claims(Job):
 
     def run(self, input_files, output_files, threads):
         """Judge the claims."""
+        import pandas as pd
+
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import judge
         from bezierplan.running import inputs
 
         judged, checks = judge.judge(
-            self.claims,
+            self,
             results.read_all(inputs.experiments(self.shows, input_files), self.repeats),
             results.published_tables(input_files.sources),
-            self.artefacts,
-            self.study,
             study_code.functions(self.code),
-            variant_of=self.variant_of,
-            paired=self.paired,
-            repeats=self.paper_repeats,
-            labels=self.labels,
         )
+        for file in input_files.beside:
+            judged = judge.beside_reading(judged, pd.read_csv(file))
         self.write(judged, output_files.claims)
         self.write(checks, output_files.checks)
 
@@ -306,15 +304,51 @@ class Readings(Job):
 
     def run(self, input_files, output_files, threads):
         """Score the readings."""
+        from bezierplan.analysis import readings
+        from bezierplan.running import inputs
+
+        runner = self.runner(input_files)
+        voting = readings.quantities(self.tables, self.votes, inputs.by_table(input_files.sources))
+        for table, file in zip(readings.of_study(self.study, voting, runner), output_files):
+            table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
+
+    def runner(self, input_files):
+        """What makes runs of readings, in the problems of files."""
         from bezierplan.analysis import readings, study_code
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
-        voting = readings.quantities(self.tables, self.votes, inputs.by_table(input_files.sources))
         found = readings.read_problems(inputs.experiments(self.shows, input_files))
-        runner = readings.Runner(self.choices, self.experiments, Path(self.folder), found, {})
-        for table, file in zip(readings.of_study(self.study, voting, runner), output_files):
-            table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
+        return readings.Runner(self.choices, self.experiments, Path(self.folder), found, {})
+
+
+@dataclass(frozen=True)
+class VerdictsOfReadings(Readings):
+    """The claims that rest on the experiments of readings, under the default and under the best
+    reading.
+    """
+
+    claims: Claims
+
+    def modules(self):
+        """Those of both."""
+        return [*super().modules(), *self.claims.modules()]
+
+    def run(self, input_files, output_files, threads):
+        """Judge the claims under both."""
+        import pandas as pd
+
+        from bezierplan.analysis import readings, results, study_code
+        from bezierplan.analysis.claims import judge
+
+        job = replace(self.claims, claims=judge.covered(self.claims.claims, self.experiments))
+        given = results.published_tables(input_files.sources), study_code.functions(job.code)
+        table = readings.verdicts(
+            self.runner(input_files),
+            pd.read_csv(input_files.scores),
+            lambda found: judge.judge(job, found, *given)[0],
+        )
+        self.write(table, output_files[0])
 
 
 @dataclass(frozen=True)

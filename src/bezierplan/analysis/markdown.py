@@ -1,6 +1,11 @@
-"""Tables as markdown."""
+"""Text for reports: tables as markdown, and literal reStructuredText."""
 
-import pandas as pd
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def table_text(table: pd.DataFrame) -> str:
@@ -11,4 +16,12 @@ def table_text(table: pd.DataFrame) -> str:
     ]
     return "\n".join(
         "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows
+    )
+
+
+def escaped(text: str) -> str:
+    """Text as one line of literal reStructuredText: no markup, no directive, no HTML."""
+    return "".join(
+        f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign
+        for sign in " ".join(text.split())
     )

@@ -47,8 +47,9 @@ def write(
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:
         shutil.copyfile(RESULTS / key / AUDIT, KEPT / f"{key}_{AUDIT}")
-        for file in (RESULTS / key / "readings").glob("*.csv"):
-            shutil.copyfile(file, KEPT / f"{key}_{file.name}")
+        for file in (RESULTS / key / "readings").glob("*"):
+            if file.suffix in (".csv", ".svg"):
+                shutil.copyfile(file, KEPT / f"{key}_{file.name}")
     claims.to_csv(KEPT / "claims.csv", index=False)
     settings.to_csv(KEPT / "settings.csv", index=False)
     scored = benchmark.of_results(FULL, experiments)

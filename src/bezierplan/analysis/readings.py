@@ -63,6 +63,8 @@ CLIMB = 2
 """Alternatives that are added to the best reading."""
 HIDDEN = 20
 """Readings that the search is calibrated with."""
+MANY = 10
+"""Times the runs of a score from which claims are judged."""
 
 
 class Quantity(NamedTuple):
@@ -217,14 +219,14 @@ def under(chunk: Chunk, reading: Reading, choices: list[Choice]) -> Chunk:
 
 class Runner(NamedTuple):
     """Makes the runs of readings. defaults: experiment -> problems by name, and their bounds.
-    stored: the runs that were made, which other readings share that change another method.
+    runs: those that were made, which other readings share that change another method.
     """
 
     choices: list[Choice]
     experiments: dict[str, Experiment]
     folder: Path
     defaults: dict[str, tuple[dict[str, Problem], pd.DataFrame]]
-    stored: dict[str, pd.DataFrame]
+    runs: dict[str, pd.DataFrame]
 
     def results(
         self, reading: Reading, layout: int | None = None, size: int = 0
@@ -255,9 +257,9 @@ class Runner(NamedTuple):
     def _runs(self, made: dict[str, Problem], chunk: Chunk, world: str) -> pd.DataFrame:
         """Runs of a chunk, made once in a world."""
         name = f"{world}: {chunk}"
-        if name not in self.stored:
-            self.stored[name] = execution.run_chunk(made, chunk)[0].to_pandas()
-        return self.stored[name]
+        if name not in self.runs:
+            self.runs[name] = execution.run_chunk(made, chunk)[0].to_pandas()
+        return self.runs[name]
 
     def _world(
         self, experiment: str, reading: Reading, names: Iterable[str]
@@ -423,6 +425,48 @@ def _of_hidden(
             for each in voting
             for size in each.printed["n"]
         ]
+    )
+
+
+# --------------------------------------------------------------------------------------------------
+# Claims
+
+
+def verdicts(
+    runner: Runner, scores: pd.DataFrame, judge: Callable[[dict[str, Results]], pd.DataFrame]
+) -> pd.DataFrame:
+    """The verdicts on claims under the default and under the best reading that no sentence
+    excludes, each from `MANY` times the runs that score a reading. scores: as from `of_study`.
+    judge: the table of claims, from results.
+
+    Columns: study, id, default, best, reading (the best), apart (whether the scores tell it from
+    the default).
+    """
+    free = scores[scores["excluded_by"].isna()].set_index("reading")
+    best, default = free.iloc[0], free.loc["default"]
+    parts = best.name.split(", ")
+    reading = {
+        each.id: value
+        for each in runner.choices
+        for value in each.alternatives
+        if name_of({each.id: value}) in parts
+    }
+    experiments = {
+        name: each._replace(
+            scoring={
+                method: chunk._replace(repeats=[0, MANY * chunk.repeats[1]])
+                for method, chunk in each.scoring.items()
+            }
+        )
+        for name, each in runner.experiments.items()
+    }
+    many = runner._replace(experiments=experiments)
+    ours, theirs = (judge(many.results(each)) for each in ({}, reading))
+    return ours[["study", "id"]].assign(
+        default=ours["verdict"],
+        best=theirs["verdict"],
+        reading=best.name,
+        apart=best["score"] - default["score"] > 2 * math.hypot(best["error"], default["error"]),
     )
 
 

@@ -152,8 +152,11 @@ def published_table(file: str) -> pd.DataFrame:
 
 
 def published_tables(files: Iterable[str]) -> dict[str, pd.DataFrame]:
-    """Several files of published numbers, by table."""
-    return {name: published_table(file) for name, file in by_table(files).items()}
+    """Several files of published numbers, by table; files that are not in a folder of that name are
+    left out.
+    """
+    named = by_table(file for file in files if PurePath(file).parent.name == "published")
+    return {name: published_table(file) for name, file in named.items()}
 
 
 def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:

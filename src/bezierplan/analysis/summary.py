@@ -162,7 +162,9 @@ def report(
         "A published number counts if it can be tested and is not derivable from other published "
         "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
         "identified numbers. `verdict_papers_size`: the verdict from as many runs as the paper "
-        "made. Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: "
+        "made. `verdict_best_reading`: where it differs, that under the reading of the paper with "
+        "the best score that no sentence excludes. "
+        "Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: "
         "it bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
         "gives one. Here each claim has its verdict under the default interpretation; "
@@ -179,12 +181,13 @@ def report(
 
 
 def _listed(claims: pd.DataFrame) -> str:
-    """Claims with their verdicts, as markdown."""
+    """Claims with their verdicts, as markdown, without columns that are empty."""
     columns = [
-        *("statement", "verdict", "verdict_papers_size"),
+        *("statement", "verdict", "verdict_papers_size", "verdict_best_reading"),
         *("holds", "where_it_holds", "published", "effect", "n"),
     ]
-    shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
+    filled = [name for name in columns if name in claims and claims[name].notna().any()]
+    shown = claims[filled].astype(object).fillna("")
     # Read from a file with gaps, whole numbers are floats.
     digits = {"n": ".0f", "effect": ".3g"}
     for column in shown.columns.intersection(list(digits)):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis.jobs import Job
+from bezierplan.analysis.jobs import Job, Readings
 from bezierplan.figures.page.page_job import ExperimentView, PageJob
 from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
@@ -54,9 +54,7 @@ class Figure(Job):
         from bezierplan.running import inputs
         from bezierplan.workspaces import files as workspace_files
 
-        published = results.published_tables(
-            file for file in input_files.sources if Path(file).parent.name == "published"
-        )
+        published = results.published_tables(input_files.sources)
         numbers = results.joined_numbers(published)
         read = results.read_all(inputs.experiments(self.shows, input_files), self.repeats)
         experiments = {
@@ -80,6 +78,22 @@ class Figure(Job):
         )
         sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
         Path(output_files.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Specification(Readings):
+    """The readings of a study with their scores, as a figure."""
+
+    def run(self, input_files, output_files, threads):
+        """Draw the figure from its data, which are first written and read back."""
+        import pandas as pd
+
+        from bezierplan.figures import sheet, specification
+
+        tables = pd.read_csv(input_files.scores), pd.read_csv(input_files.calibration)
+        specification.data(*tables).to_csv(output_files.data, index=False, lineterminator="\n")
+        figure = specification.draw(pd.read_csv(output_files.data), self.choices)
+        sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
 
 
 @dataclass(frozen=True)

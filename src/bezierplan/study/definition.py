@@ -31,7 +31,7 @@ class Study(ExperimentsFile, ArtefactsFile):
     folder: Path
     claims: list[Claim]
     assumptions: list[Assumption]
-    votes: dict[str, dict]
+    votes: dict
 
     def accepted(self, method: str) -> dict[str, Any]:
         """Settings accepted by a method's planner, with their annotations."""

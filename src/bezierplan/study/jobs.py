@@ -21,6 +21,7 @@ from bezierplan.analysis.jobs import (
     TableOfRuns,
     TableWithoutRuns,
     Verdict,
+    VerdictsOfReadings,
 )
 from bezierplan.analysis.table_kinds import FunctionTable, Layout, Pivot, Table
 from bezierplan.figures import style
@@ -291,14 +292,6 @@ def caption(study: Study, artefact: str, scale: str) -> str:
     return ". ".join(filter(None, sentences)) + "."
 
 
-def escaped(text: str) -> str:
-    """Text as one line of literal reStructuredText: no markup, no directive, no HTML."""
-    return "".join(
-        f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign
-        for sign in " ".join(text.split())
-    )
-
-
 # --------------------------------------------------------------------------------------------------
 # Claims, readings, audit
 
@@ -344,8 +337,8 @@ def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
     ]
 
 
-def readings(study: Study, scale: str) -> Readings:
-    """The readings of a study."""
+def readings(study: Study, scale: str, of: type[Readings] = Readings, **more: object) -> Readings:
+    """The readings of a study, or another job on them."""
     tables = choices.voting(study.compared(), study.votes)
     experiments = {}
     for name in dict.fromkeys(each.experiment for each in tables.values()):
@@ -358,7 +351,7 @@ def readings(study: Study, scale: str) -> Readings:
         )
     methods = {method for each in experiments.values() for method in each.scoring}
     homes = {home for each in experiments.values() for home in each.descriptions.workspaces}
-    return Readings(
+    return of(
         study.key,
         tables,
         study.votes,
@@ -368,7 +361,13 @@ def readings(study: Study, scale: str) -> Readings:
         sources=[*study.published_files(), *study.maps(homes)],
         code=study.code_for("metrics", "worlds"),
         shows={name: {} for name in experiments},
+        **more,
     )
+
+
+def verdicts_of_readings(study: Study, scale: str) -> VerdictsOfReadings:
+    """The claims of a study under its best reading."""
+    return readings(study, scale, VerdictsOfReadings, claims=claims(study, scale))
 
 
 def audit(study: Study, scale: str) -> Audit:

@@ -40,7 +40,7 @@ claim_checks.csv, one row per comparison.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,7 +53,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.columns import CHECK_COLUMNS, CLAIM_COLUMNS
 from bezierplan.analysis.claims.effects import Comparison, Finding
 from bezierplan.analysis.claims.kinds import kind_of
-from bezierplan.analysis.claims.material import Display, Material, Untestable
+from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
@@ -80,39 +80,74 @@ class _Judgement(NamedTuple):
 
 
 def judge(
-    claims: Sequence[Claim],
-    results: dict[str, Results],
-    published: dict[str, pd.DataFrame],
-    artefacts: dict[str, list[Display]],
-    study: str,
-    functions: dict[str, Any],
-    *,
-    variant_of: dict[str, str],
-    paired: dict[str, bool],
-    repeats: dict[str, int],
-    labels: dict[str, str] | None = None,
+    job: Any, results: dict[str, Results], published: dict, functions: dict
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`.
 
-    study: its name; all random draws are seeded by names. functions: by name, of the study's file
-    in `papers/`. The others as in `Material`. Nothing depends on the order of the runs. Raises
-    Fault for a claim that mixes runs of several conditions or names an unknown function.
+    job: of the class `jobs.Claims`; all random draws are seeded by names. functions: by name, of
+    the study's file in `papers/`. The others as in `Material`. Nothing depends on the order of the
+    runs. Raises Fault for a claim that mixes runs of several conditions or names an unknown
+    function.
     """
     material = Material(
-        results, published, artefacts, functions, variant_of, paired, repeats, labels or {}
+        results,
+        published,
+        job.artefacts,
+        functions,
+        job.variant_of,
+        job.paired,
+        job.paper_repeats,
+        job.labels,
     )
     claim_rows, check_rows = [], []
-    for claim in claims:
+    for claim in job.claims:
         first, *_ = assignments = variants(claim)
         rows = []
         for assignment in assignments:
-            row, details = _judge_variant(claim, first, assignment, study, material)
+            row, details = _judge_variant(claim, first, assignment, job.study, material)
             rows.append(row | {"primary": assignment is first})
             check_rows += details
         claim_rows += [rows[0] | _by_reading(claim, rows), *rows[1:]]
     return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"}), pd.DataFrame(
         check_rows, columns=CHECK_COLUMNS
     )
+
+
+# Under another reading.
+
+
+def covered(claims: Sequence[Claim], experiments: Container[str]) -> list[Claim]:
+    """The claims that rest on the runs of some experiments alone, and on no times, each in its
+    primary variant.
+    """
+    return [
+        claim.in_primary_variant()
+        for claim in claims
+        if all(
+            check.experiments
+            and all(name in experiments for name in check.experiments)
+            and not _is_timed(check)
+            for check in claim.checks
+        )
+    ]
+
+
+def beside_reading(claims: pd.DataFrame, verdicts: pd.DataFrame) -> pd.DataFrame:
+    """Claims with their verdicts under the best reading where these differ from those under the
+    default, and neither is open. They depend on it if its score tells it from the default.
+    verdicts: as from `readings.verdicts`.
+    """
+    both = verdicts[["default", "best"]]
+    sure = ~both.isin(("undecided", "untestable", "depends")).any(axis=1)
+    for row in verdicts[sure & (both["default"] != both["best"])].itertuples():
+        here = claims["primary"] & (claims["id"] == row.id)
+        words = f"{row.best} with {row.reading}, which its score does not tell from the default"
+        if row.apart:
+            words = f"on the reading: {row.default} by default, {row.best} with {row.reading}"
+            claims.loc[here, "verdict"] = "depends"
+        claims.loc[here, "verdict_best_reading"] = row.best
+        claims.loc[here, "reason"] = (f"{words}; " + claims["reason"]).str.removesuffix("; ")
+    return claims
 
 
 # From comparisons to a verdict.
