@@ -254,11 +254,11 @@ class Runner(NamedTuple):
             results[name] = joined(pd.concat(runs, ignore_index=True), made, bounds)
         return results
 
-    def _runs(self, made: dict[str, Problem], chunk: Chunk, world: str) -> pd.DataFrame:
+    def _runs(self, maps: dict[str, Problem], chunk: Chunk, world: str) -> pd.DataFrame:
         """Runs of a chunk, made once in a world."""
         name = f"{world}: {chunk}"
         if name not in self.runs:
-            self.runs[name] = execution.run_chunk(made, chunk)[0].to_pandas()
+            self.runs[name] = execution.run_chunk(maps, chunk)[0].to_pandas()
         return self.runs[name]
 
     def _world(
