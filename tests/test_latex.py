@@ -7,7 +7,7 @@ import re
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import latex
+from bezierplan.figures import latex
 
 
 def written(**columns: list[str]) -> str:

@@ -216,33 +216,6 @@ class TableWithoutRuns(Job):
 
 
 @dataclass(frozen=True)
-class Latex(Job):
-    """A table as LaTeX, with its caption, which alone holds the title. One of the paper's form has
-    the printed numbers in the same cells.
-    """
-
-    label: str
-    caption: str
-    note: str | None
-
-    def run(self, input_files, output_files, threads):
-        """Set the table."""
-        import pandas as pd
-
-        from bezierplan.analysis import latex
-
-        table, *beside = (
-            pd.read_csv(file, dtype=str, keep_default_na=False)
-            for file in [input_files.table, *input_files.beside]
-        )
-        notes = [self.note] if self.note else []
-        if beside:
-            table, notes = latex.laid_over(table, *beside), [latex.LEGEND, *notes]
-        text = latex.document(table, self.caption, f"tab:{self.label}", notes)
-        Path(output_files[0]).write_text(text, encoding="utf-8")
-
-
-@dataclass(frozen=True)
 class Claims(Job):
     """The claims of a study, judged on the runs of some experiments."""
 

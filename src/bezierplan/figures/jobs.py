@@ -1,4 +1,6 @@
-"""The jobs of the workflow that draw: figures, and the page of a scale (`analysis.jobs`)."""
+"""The jobs of the workflow that draw or set: figures, tables for print, and the page of a scale
+(`analysis.jobs`).
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +12,33 @@ from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
 from bezierplan.running.chunk import Chunk
 from bezierplan.workspaces.kinds import modules_of
+
+
+@dataclass(frozen=True)
+class Latex(Job):
+    """A table as LaTeX, with its caption, which alone holds the title. One of the paper's form has
+    the printed numbers in the same cells.
+    """
+
+    label: str
+    caption: str
+    note: str | None
+
+    def run(self, input_files, output_files, threads):
+        """Set the table."""
+        import pandas as pd
+
+        from bezierplan.figures import latex
+
+        table, *beside = (
+            pd.read_csv(file, dtype=str, keep_default_na=False)
+            for file in [input_files.table, *input_files.beside]
+        )
+        notes = [self.note] if self.note else []
+        if beside:
+            table, notes = latex.laid_over(table, *beside), [latex.LEGEND, *notes]
+        text = latex.document(table, self.caption, f"tab:{self.label}", notes)
+        Path(output_files[0]).write_text(text, encoding="utf-8")
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from bezierplan.analysis.jobs import (
     Bounds,
     Claims,
     Judgement,
-    Latex,
     Problems,
     Readings,
     Runs,
@@ -26,7 +25,7 @@ from bezierplan.analysis.jobs import (
 from bezierplan.analysis.table_kinds import FunctionTable, Layout, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure as FigureOfStudy
-from bezierplan.figures.jobs import Figure
+from bezierplan.figures.jobs import Figure, Latex
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
