@@ -205,6 +205,7 @@ def gathering(given: Studies) -> Iterator[Made]:
     output["summary"] = f"{folder}/summary.md"
     files = {
         "comparisons": [f"{folder}/{key}/beyond/lengths.comparison.csv" for key in given],
+        "wholes": [f"{folder}/{key}/beyond/lengths.wholes.csv" for key in given],
         "claims": [f"{folder}/{key}/claims.csv" for key in given],
         "baseline_comparison": baseline,
         "audits": [],
@@ -242,6 +243,7 @@ def _gathering_one(given: Studies, key: str) -> Iterator[Made]:
                 ("comparison", "comparison.csv"),
                 ("published", "published.csv"),
                 ("marks", "marks.csv"),
+                ("wholes", "wholes.csv"),
             )
         }
         yield Made(job, given_to(job, key, sources=job.sources), output)

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pandas as pd
 from pivots import pivot_of
 
+from bezierplan.analysis import wholes
 from bezierplan.analysis.claims import kinds
 from bezierplan.figures.page import build
 from bezierplan.figures.page.page_job import (
@@ -62,6 +63,8 @@ CLAIMS = [
 
 CHECK = {"variant": "metric=length", "check": 1, "primary": True, "decisive": True, "test": "lower"}
 CHECK |= {"metric": "length", "statistic": "mean", "unit": "unit", "condition": "problem=p"}
+WHOLE = {"study": "one", "table": "table1", "place": HOSTILE, "metric": "length", "printed": 10.5}
+WHOLE |= {"quantity": "level", "low95_predicted": 10, "high95_predicted": 11, "in_range": True}
 CHECK |= {"comparison": "b lower than c", "mark": "+", "mark_family": "+", "effect": -1.0}
 CHECK |= {"low95": -2.0, "high95": -0.2, "margin": 0.5, "effect_published": -2.0, "counted": None}
 OPEN = {"decisive": False, "mark": "?", "mark_family": "?", "effect": 0.4, "low95": None}
@@ -118,6 +121,7 @@ def page(folder: Path) -> SimpleNamespace:
         "one/paper/table1.comparison": numbers[printed],
         "one/paper/table1": laid.assign(length=["10.715", "14.000"], objective=["10.715", ""]),
         "one/paper/table1.published": laid.assign(length="10.51", objective=["10.51", ""]),
+        "one/paper/table1.wholes": pd.DataFrame([WHOLE], columns=wholes.COLUMNS),
         "one/beyond/more.comparison": numbers,
         "one/beyond/listed": pd.DataFrame({"x": range(12), HOSTILE: HOSTILE}),
         "numbers": numbers[printed].assign(study="one", table="table1", counted=True),

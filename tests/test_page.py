@@ -125,6 +125,8 @@ def test_a_printed_table_has_the_papers_rows_and_columns_with_both_numbers_in_ea
         (["a"], [("10.51", "10.715", first), ("10.51", "10.715", third)]),
         (["b"], [("10.51", "14.000", second), ("", "", None)]),
     ]
+    (column,) = content.studies["one"].tables[0]["whole"].itertuples()
+    assert column.level == "10.5 (10 to 11)"
 
 
 def test_counts_are_shown_for_as_many_runs_as_the_paper_made():

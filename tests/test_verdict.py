@@ -3,9 +3,8 @@
 import numpy as np
 import pandas as pd
 import pytest
-from scipy import stats
 
-from bezierplan.analysis import outcome, summary, verdict, wholes
+from bezierplan.analysis import outcome, summary, verdict
 from bezierplan.commands import studies_of
 from bezierplan.places import TREE
 
@@ -18,10 +17,11 @@ def kept():
         "numbers": "numbers.csv",
         "claims": "claims.csv",
         "baseline": "baseline_comparison.csv",
+        "wholes": "wholes.csv",
     }
     tables = {name: pd.read_csv(KEPT / file) for name, file in files.items()}
     audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in studies_of()]
-    tables |= {"wholes": wholes.of_numbers(tables["numbers"]), "audit": pd.concat(audits)}
+    tables["audit"] = pd.concat(audits)
     files = KEPT.glob(f"*_{outcome.READINGS[1]}")
     return tables | {"calibration": pd.concat(map(pd.read_csv, files))}
 
@@ -59,40 +59,8 @@ def test_values_that_are_not_there_take_the_sentence_away(kept):
 
 
 def test_a_study_without_sentences_has_no_verdict(kept):
-    assert summary.verdicts(kept["numbers"], kept["claims"], kept["baseline"], {}, [], []) == {}
-
-
-# Columns as wholes
-
-
-@pytest.mark.parametrize("size", [4, 6])
-def test_rank_correlation_and_its_chance(size):
-    rng = np.random.default_rng(size)
-    first, second = rng.normal(size=(2, size))
-    found, chance = wholes.rank_correlation(first, second)
-    assert found == pytest.approx(stats.spearmanr(first, second).statistic)
-    exact = stats.permutation_test(
-        (first,),
-        lambda each: stats.spearmanr(each, second).statistic,
-        permutation_type="pairings",
-        n_resamples=np.inf,
-    )
-    assert chance == pytest.approx(exact.pvalue, abs=1e-9)
-
-
-def test_printed_means_of_tharwat2018_are_in_the_reverse_order(kept):
-    found = kept["wholes"].query("study == 'tharwat2018' and metric == 'objective'")
-    found = found.set_index(["table", "quantity"])
-    order = found.loc[("table3", "order")]
-    assert order["printed"] == pytest.approx(-0.786, abs=1e-3)
-    assert order["chance"] == pytest.approx(0.028, abs=1e-3)
-    assert found.loc[("table3", "level"), "printed"] == pytest.approx(10.925, abs=1e-3)
-    assert found.loc[("table3", "spread"), "printed"] == pytest.approx(0.316, abs=1e-3)
-
-
-def test_columns_of_few_methods_are_no_wholes(kept):
-    three = kept["numbers"].query("table == 'table3' and metric == 'objective'").iloc[:3]
-    assert wholes.of_numbers(three).empty
+    tables = [kept[name] for name in ("numbers", "claims", "baseline", "wholes")]
+    assert summary.verdicts(*tables, {}, [], []) == {}
 
 
 def test_a_value_that_is_no_number_takes_the_sentence_away():

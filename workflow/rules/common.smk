@@ -99,7 +99,7 @@ def files_of(scale, study, name):
     """The files of a table or figure."""
     endings = ["svg", "png", "pdf", "csv", "txt"] if name in study.figures else ["csv", "tex"]
     endings += ["comparison.csv"] if name in study.compared() else []
-    endings += ["published.csv", "marks.csv"] if name in study.with_published() else []
+    endings += ["published.csv", "marks.csv", "wholes.csv"] if name in study.with_published() else []
     return [f"results/{scale}/{study.key}/{tree(name)}/{name}.{ending}" for ending in endings]
 
 

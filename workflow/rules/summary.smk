@@ -40,6 +40,7 @@ rule summary:
         comparisons=[
             f"results/{{scale}}/{key}/{tree(name)}/{name}.comparison.csv" for key, name in COMPARED
         ],
+        wholes=[f"results/{{scale}}/{key}/{tree(name)}/{name}.wholes.csv" for key, name in COMPARED],
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
         audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
@@ -70,7 +71,7 @@ rule verdict:
     input:
         summary=[
             f"results/{{scale}}/{name}.csv"
-            for name in ("numbers", "claims", "baseline_comparison")
+            for name in ("numbers", "claims", "baseline_comparison", "wholes")
         ],
         audit=f"{RESULTS}/audit.csv",
         calibrations=lambda wildcards: of_readings(

@@ -1,5 +1,5 @@
 # Tables in the paper's form; published.csv holds the printed numbers in the same rows and columns,
-# marks.csv the verdicts, comparison.csv each printed number next to ours.
+# marks.csv the verdicts, comparison.csv each printed number next to ours, wholes.csv each column.
 
 
 rule table:
@@ -22,6 +22,7 @@ rule table:
         ),
         published=f"{RESULTS}/{{tree}}/{{table}}.published.csv",
         marks=f"{RESULTS}/{{tree}}/{{table}}.marks.csv",
+        wholes=f"{RESULTS}/{{tree}}/{{table}}.wholes.csv",
         comparison=report(
             f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
             category="{study}",

@@ -152,7 +152,7 @@ class Judgement(Job):
 
 @dataclass(frozen=True)
 class TableOfRuns(Job):
-    """A table of runs, and its comparison with published numbers."""
+    """A table of runs, and its comparison with published numbers, one by one and as wholes."""
 
     name: str
     """`study/table`, of the table that it extends, so that equal rows have equal numbers."""
@@ -164,13 +164,15 @@ class TableOfRuns(Job):
     """Method -> the method whose published numbers it is compared with."""
     baselines: list[str]
     reconstructed: bool
+    paired: bool
+    """Whether runs with equal repeat numbers start alike."""
     repeats: int
 
     def run(self, input_files, output_files, threads):
         """Make the table and its comparison."""
         import pandas as pd
 
-        from bezierplan.analysis import comparison, results, study_code, tables
+        from bezierplan.analysis import comparison, results, study_code, tables, wholes
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
@@ -196,6 +198,8 @@ class TableOfRuns(Job):
             for rows, laid in ((numbers, output_files.published), (verdicts, output_files.marks)):
                 laid_out = tables.alike(rows, self.spec, self.labels, like=table)
                 laid_out.to_csv(laid, lineterminator="\n")
+            whole = wholes.of_table(runs, self.spec, compared, self.name, self.paired)
+            self.write(whole, output_files.wholes)
         self.write(compared, output_files.comparison)
 
 
@@ -394,6 +398,7 @@ class Summary(Job):
         study_code.functions(self.code)
         summed = summary.gathered(
             dict(zip(self.tables, input_files.comparisons, strict=True)),
+            list(input_files.wholes),
             self.titles,
             list(input_files.claims),
             input_files.baseline_comparison,

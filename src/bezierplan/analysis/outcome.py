@@ -19,7 +19,7 @@ KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 # Of each study: what its printed numbers say alone; and its readings, if they are scored.
 AUDIT, READINGS = "audit.csv", ("scores.csv", "calibration.csv")
-BASELINE_COMPARISON = "baseline_comparison.csv"
+BASELINE_COMPARISON, WHOLES = "baseline_comparison.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 SCALES = {
     "full": "the papers' own numbers of runs.",
@@ -42,7 +42,7 @@ def write(
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers, claims, measured = (pd.read_csv(RESULTS / name) for name in TABLES)
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
-    for name in ("numbers.csv", BASELINE_COMPARISON):
+    for name in ("numbers.csv", BASELINE_COMPARISON, WHOLES):
         shutil.copyfile(RESULTS / name, KEPT / name)
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:
@@ -55,7 +55,8 @@ def write(
     scored = benchmark.of_results(FULL, experiments)
     scored.to_csv(KEPT / benchmark.STORED.name, index=False, float_format="%.6g")
     follow = following(KEPT, verdicts, numbers, claims, measured)
-    report = summary.report(numbers, claims, measured, titles, follow, RESULTS.name)
+    whole = pd.read_csv(KEPT / WHOLES)
+    report = summary.report(numbers, claims, measured, whole, titles, follow, RESULTS.name)
     (KEPT / "summary.md").write_text(report, encoding="utf-8")
     readme = README.read_text(encoding="utf-8")
     readme = summary.with_block(readme, BLOCK, table(KEPT, titles, verdicts))
@@ -66,7 +67,7 @@ def following(folder: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) 
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
     calibrations = sorted(map(str, folder.glob(f"*_{READINGS[1]}")))
-    return summary.verdicts(*tables, verdicts, audits, calibrations)
+    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, calibrations)
 
 
 def table(folder: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:

@@ -222,7 +222,7 @@ def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[f
 
 def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
     """A named statistic of experiments with `size` values, as predicted from our values (n,), n at
-    least 1: (DRAWS,).
+    least 1: (DRAWS,). Of values (n, k), which are drawn row by row, of each column: (DRAWS, k).
 
     Drawn in two stages, because our values are a sample too: first the population, then an
     experiment from it. Numbers are drawn with replacement twice; for booleans, the share is drawn
@@ -243,7 +243,7 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
         places.sort(axis=1)
         asked_first = np.where(np.diff(places, axis=1, prepend=-1) > 0, np.arange(size), 0)
         chosen = np.maximum.accumulate(asked_first, axis=1)
-        return values[np.take_along_axis(world, chosen, axis=1)]
+        return np.moveaxis(values[np.take_along_axis(world, chosen, axis=1)], 1, -1)
 
     return _in_blocks(name, size, draw)
 
@@ -372,7 +372,7 @@ def _experiments(
         drawn = _std_draws(values, size)
         return drawn, drawn, TAIL
     drawn = predicted(name, values, size, rng)
-    return drawn, drawn, TAIL if name in ("count", "share") else _expanded_tail(len(values))
+    return drawn, drawn, TAIL if name in ("count", "share") else expanded_tail(len(values))
 
 
 def scaled(name: str, values: np.ndarray, among: int, size: int | None) -> float:
@@ -450,7 +450,7 @@ def can_fail(
     return (published <= ours and below) or (published >= ours and above)
 
 
-def _expanded_tail(n: int) -> float:
+def expanded_tail(n: int) -> float:
     """The tail at each end of bootstrap draws from n values for a central 95 % (the expanded
     percentile interval, Hesterberg 2015).
 

@@ -30,6 +30,7 @@ class Summary(NamedTuple):
 
 def gathered(
     comparison_files: Mapping[tuple[str, str], str],
+    wholes_files: list[str],
     titles: dict[str, str],
     claims_files: list[str],
     baseline_comparison_file: str,
@@ -38,15 +39,17 @@ def gathered(
     calibration_files: list[str],
     scale: str,
 ) -> Summary:
-    """The summary of all studies. comparison_files: by study and table. titles: of the studies.
-    verdict_files: by study. audit_files: of the same studies. calibration_files: of those whose
-    readings were scored.
+    """The summary of all studies. comparison_files: by study and table. wholes_files: of the
+    same tables. titles: of the studies. verdict_files: by study. audit_files: of the same studies.
+    calibration_files: of those whose readings were scored.
     """
     everything = numbers({name: pd.read_csv(file) for name, file in comparison_files.items()})
     claims = read_claims(claims_files)
-    measured, whole = pd.read_csv(baseline_comparison_file), wholes.of_numbers(everything)
-    follow = verdicts(everything, claims, measured, verdict_files, audit_files, calibration_files)
-    text = report(everything, claims, measured, titles, follow, scale)
+    measured = pd.read_csv(baseline_comparison_file)
+    whole = pd.concat(map(pd.read_csv, wholes_files), ignore_index=True)
+    tables = (everything, claims, measured, whole)
+    follow = verdicts(*tables, verdict_files, audit_files, calibration_files)
+    text = report(*tables, titles, follow, scale)
     return Summary(everything, claims, whole, text)
 
 
@@ -54,6 +57,7 @@ def verdicts(
     numbers: pd.DataFrame,
     claims: pd.DataFrame,
     measures: pd.DataFrame,
+    whole: pd.DataFrame,
     files: dict[str, str],
     audit_files: list[str],
     calibration_files: list[str],
@@ -65,7 +69,7 @@ def verdicts(
     tables = {"numbers": numbers, "claims": claims, "baseline": measures, "audit": audits}
     if calibration_files:
         tables["calibration"] = pd.concat(map(pd.read_csv, calibration_files), ignore_index=True)
-    return verdict.of_studies(files, tables | {"wholes": wholes.of_numbers(numbers)})
+    return verdict.of_studies(files, tables | {"wholes": whole})
 
 
 def read_claims(files: list[str]) -> pd.DataFrame:
@@ -145,14 +149,16 @@ def report(
     numbers: pd.DataFrame,
     claims: pd.DataFrame,
     measures: pd.DataFrame,
+    whole: pd.DataFrame,
     titles: dict[str, str],
     follow: dict[str, str],
     scale: str,
 ) -> str:
-    """The summary of a scale as markdown: what follows for each study, the headline, then
-    the claims of each study with their verdicts.
+    """The summary of a scale as markdown: what follows for each study, the headline, columns of
+    tables as wholes, then the claims of each study with their verdicts.
 
-    measures: rows with the columns `baseline_comparison.COLUMNS`. follow: as from `verdicts`.
+    measures: rows with the columns `baseline_comparison.COLUMNS`. whole: with `wholes.COLUMNS`.
+    follow: as from `verdicts`.
     """
     parts = [
         f"{HEADING}{scale}",
@@ -169,6 +175,7 @@ def report(
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
         "gives one. Here each claim has its verdict under the default interpretation; "
         "`claims.csv` has the others too.",
+        *wholes.section(whole),
     ]
     for study, title in titles.items():
         primary = claims[(claims["study"] == study) & claims["primary"]].set_index("id")

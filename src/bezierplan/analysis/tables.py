@@ -50,7 +50,8 @@ def cells(
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted
     (n,): the metric of the runs that count, which satisfy the entry's `where` and have one; asked:
-    how many satisfy `where`, with or without one; groups: the numbers as one array for each value
+    how many satisfy `where`, with or without one; by_run: theirs, NaN without one, by problem and
+    repeat; groups: the numbers as one array for each value
     of the column `within`, None without that key; least, most: the range of the metric for one run
     (`least` of an entry is stronger than that of its metric); and over all runs of the group: runs
     (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones)
@@ -84,6 +85,7 @@ def cells(
     feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
     asked = [runs.index.isin(select(runs, entry.where).index) for entry in entries]
     units = runs[spec.within].to_numpy() if spec.within else None
+    names = pd.MultiIndex.from_frame(runs[["problem", "repeat"]])
     rows = []
     for key, group in runs[keys].groupby(keys, dropna=False):
         positions = group.index.to_numpy()
@@ -116,11 +118,12 @@ def cells(
                 "decimals": entry.decimals,
                 "asked": len(of_entry),
                 "numbers": np.sort(numbers),
+                "by_run": pd.Series(places[value][of_entry], names[of_entry]),
                 "groups": groups,
             }
             rows += [cell | {"statistic": statistic} for statistic in entry.statistics]
     of_runs = ["runs", "draws", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
-    of_cell = ["value", "metric", "statistic", "decimals", "asked", "numbers", "groups"]
+    of_cell = ["value", "metric", "statistic", "decimals", "asked", "numbers", "by_run", "groups"]
     columns = [*keys, *of_runs, *of_cell]
     # Of type object, so that integers stay integers next to published numbers without runs.
     return pd.DataFrame(rows, columns=columns).assign(

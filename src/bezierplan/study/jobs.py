@@ -218,16 +218,16 @@ def table_of_runs(study: Study, scale: str, table: str) -> TableOfRuns:
     where = {"method": experiment.methods} | spec.where
     if spec.printed:
         where |= spec.primary
-    more = {} if spec.printed else study.variants()
-    baselines = [] if spec.printed else study.methods_of(spec.experiment)
+    beside = [] if spec.printed else study.methods_of(spec.experiment)
     file = study.published_file(table)
     return TableOfRuns(
         name=f"{study.key}/{spec.extends or table}",
         spec=spec.but(title=table, note=None, labels={}, monotone=[], where=where),
         labels=labels_of(study, table),
-        variants={name: method for name, method in more.items() if name in experiment.methods},
-        baselines=[name for name in baselines if name in study.baselines],
+        variants={name: method for name, method in study.variants().items() if name in beside},
+        baselines=[name for name in beside if name in study.baselines],
         reconstructed=study.reconstructed(spec),
+        paired=experiment.paired,
         repeats=experiment.repeats[scale],
         sources=[file] if file else [],
         shows=shown_by(study, table, scale),

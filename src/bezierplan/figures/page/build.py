@@ -14,7 +14,7 @@ from typing import Any
 
 import bezierplan
 from bezierplan import places
-from bezierplan.analysis import baseline_comparison, headline
+from bezierplan.analysis import baseline_comparison, headline, wholes
 from bezierplan.figures.page import HERE, OUTCOME, addresses, answer, charts, glossary, reader, runs
 from bezierplan.figures.page.page_job import PageJob
 from bezierplan.figures.page.why import meaning
@@ -178,6 +178,7 @@ def environment(page: SimpleNamespace, folder: Path, *more: Path) -> Any:
         "grid": grid,
         "marks": MARKS,
         "root": "",  # before the paths of files of results
+        "of_columns": wholes.LEGEND,
         "meaning": lambda metric: meaning(metric or ""),
         "methods_shown": {each["address"] for own in page.studies.values() for each in own.methods},
         "size": size,

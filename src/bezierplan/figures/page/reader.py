@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import comparison, tables
+from bezierplan.analysis import comparison, tables, wholes
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import why
@@ -162,8 +162,11 @@ def _table(
         each[each["table"] == name] if len(each) else each for each in (counted, outcome)
     )
     cells = _numbers(row["address"], table, spec, counted, outcome, labels)
-    laid = _laid(folder / row["stem"], table, artefact, cells) if spec.printed else None
-    return row | {"numbers": cells, "laid": laid}
+    if not spec.printed:
+        return row | {"numbers": cells, "laid": None}
+    whole = wholes.in_words(read(folder / f"{row['stem']}.wholes.csv"))
+    laid = _laid(folder / row["stem"], table, artefact, cells)
+    return row | {"numbers": cells, "laid": laid, "whole": whole}
 
 
 def _laid(stem: Path, numbers: pd.DataFrame, artefact: TableView, cells: list[Row]) -> Row:
