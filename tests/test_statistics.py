@@ -309,17 +309,6 @@ def test_prediction_interval_is_what_the_quantile_accepts():
                 )
 
 
-def test_holm_against_a_worked_example():
-    """Times 4, 3, 2 and 1 from the least p on, never below the one before, and at most 1 (Holm
-    1979).
-    """
-    assert statistics.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx(
-        [0.03, 0.06, 0.06, 0.02]
-    )
-    assert statistics.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
-    assert len(statistics.holm(np.array([]))) == 0
-
-
 def test_experiments_within_one_group_vary_as_the_groups_do():
     """Runs in one layout are alike: the mean of ten of them is that of a layout, not that of all
     layouts together.

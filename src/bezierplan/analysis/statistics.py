@@ -480,11 +480,3 @@ def _extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.
     beyond = np.cumprod(np.arange(len(values), 0, -1) / np.arange(len(values) + size, size, -1))
     gaps = np.searchsorted(-beyond, -(np.arange(DRAWS) + 0.5) / DRAWS)
     return ends[gaps], ends[gaps + 1]
-
-
-def holm(p: np.ndarray) -> np.ndarray:
-    """The p (n,) of a family, corrected by Holm's step-down procedure: (n,)."""
-    order = np.argsort(p)
-    corrected = np.empty(len(p))
-    corrected[order] = np.minimum(np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)), 1)
-    return corrected

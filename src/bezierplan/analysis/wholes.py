@@ -11,7 +11,7 @@ Columns: study, table, place (the other keys), metric, methods (how many), quant
 share of experiments that lie as far out), chance_any_order, outside, together, why.
 
 - level: the mean over methods; spread: the sample standard deviation; order: Spearman's rank
-  correlation with our means. chance_any_order: its chance if all orders are equally likely
+  correlation with our means. chance_any_order: the same among orders drawn by chance
 - deviations: how many means, less the mean of all, lie outside their intervals, and which
   (`outside`). chance: the share of experiments whose sum of squared standardized deviations is as
   large. `deviations of the others`: the same without the mean that lies farthest out
@@ -19,13 +19,13 @@ share of experiments that lie as far out), chance_any_order, outside, together, 
   what holds on our map or by our definition, and decides nothing
 """
 
-import itertools
 from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import comparison, statistics, tables
+from bezierplan.analysis.audit_rows import place
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.results import Results
 from bezierplan.analysis.table_kinds import Pivot
@@ -34,16 +34,13 @@ from bezierplan.workspaces.seeds import generator
 LEAST = 4
 """Methods that a column needs: of fewer, no order is unlikely."""
 
-MOST = 8
-"""Most methods whose orders are counted; the chance is NaN beyond."""
-
 COLUMNS = [
     *("study", "table", "place", "metric", "methods", "quantity", "printed", "ours"),
     *("low95_predicted", "high95_predicted", "in_range", "chance", "chance_any_order"),
     *("outside", "together", "why"),
 ]
 
-REASONS = (comparison.UNDEFINED, comparison.NO_MAP, comparison.ONE_DRAW)
+REASONS = {comparison.UNDEFINED, comparison.NO_MAP, comparison.ONE_DRAW}
 
 LEGEND = (
     "Each column of printed means as a whole, and in brackets where 95 % of experiments of the "
@@ -58,32 +55,35 @@ _EXACT = 1e-9
 
 
 def of_table(
-    results: Results, spec: Pivot, comparisons: pd.DataFrame, name: str, paired: bool
+    results: Results, spec: Pivot, numbers: pd.DataFrame, name: str, paired: bool
 ) -> pd.DataFrame:
     """The wholes of all columns of means of a table.
 
-    comparisons: as from `comparison.compare`. name: `study/table`, which seeds the draws. paired:
+    numbers: as from `comparison.compare`. name: `study/table`, which seeds the draws. paired:
     whether runs with equal repeat numbers start alike.
     """
-    keys = comparisons.columns[: comparisons.columns.get_loc("metric")].to_list()
-    means = comparisons[comparisons["primary"] & (comparisons["statistic"] == "mean")]
+    keys = numbers.columns[: numbers.columns.get_loc("metric")].to_list()
+    means = numbers[numbers["primary"] & (numbers["statistic"] == "mean")]
     means = means.dropna(subset=["in_range", "value_ours"]).astype(dict.fromkeys(keys, object))
     rows = []
     if "method" in keys and len(means) >= LEAST:
-        cell, places = [*keys, "metric", "statistic"], [key for key in keys if key != "method"]
+        cell = [*keys, "metric", "statistic"]
         ours = tables.cells(results, spec, keys)[[*cell, "decimals", "draws", "by_run"]]
-        for (*values, metric), group in means.merge(ours).groupby([*places, "metric"], sort=False):
+        column = [key for key in cell if key not in ("method", "statistic")]
+        for (*_, metric), group in means.merge(ours).groupby(column, sort=False):
             if len(group) >= LEAST:
-                place = ", ".join(f"{key}={value}" for key, value in zip(places, values))
-                same = dict(zip(COLUMNS, [*name.split("/"), place, metric, len(group)]))
+                where = place(group.iloc[0], column[:-1])
+                same = dict(zip(COLUMNS, [*name.split("/"), where, metric, len(group)]))
                 same["together"] = paired or bool((group["draws"] > 1).all())
-                same["why"] = next((why for why in REASONS if why in set(group["why"])), "")
-                found = experiments(group, same["together"], f"{name}/{place}/{metric}/wholes")
-                rows += [same | row for row in _of(group, *found)]
+                same["why"] = max(REASONS.intersection(group["why"]), default="")
+                rng = generator(f"{name}/{where}/{metric}/wholes")
+                rows += [same | row for row in _of(group, same["together"], rng)]
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def experiments(group: pd.DataFrame, together: bool, seed: str) -> tuple[np.ndarray, float]:
+def experiments(
+    group: pd.DataFrame, together: bool, rng: np.random.Generator
+) -> tuple[np.ndarray, float]:
     """The means that experiments of the paper's size print, (experiments, methods), and the tail to
     leave out at each end. group: a row for each method, with `by_run` (`tables.cells`).
     """
@@ -91,33 +91,36 @@ def experiments(group: pd.DataFrame, together: bool, seed: str) -> tuple[np.ndar
     if together:
         parts = [pd.concat(parts, axis=1, join="inner")]
     size = min(int(group["n_published"].fillna(1).min()), statistics.MOST_PREDICTED)
-    rng, means = generator(seed), []
+    means = []
     for values in (part.to_numpy().reshape(len(part), -1) for part in parts):
-        counts = ~np.isnan(values)
-        sums = np.hstack([np.where(counts, values, 0.0), counts])
+        sums = np.hstack([np.nan_to_num(values), ~np.isnan(values)])
         total, share = np.split(statistics.predicted("mean", sums, size, rng), 2, axis=1)
         with np.errstate(invalid="ignore"):  # of an experiment none of whose runs counts
             means.append(total / share)
-    drawn = np.round(np.hstack(means), group["decimals"].iloc[0])
+    table = np.round(np.hstack(means), group["decimals"].iloc[0])
     tail = statistics.expanded_tail(min(map(len, parts)))
-    return drawn[~np.isnan(drawn).any(axis=1)], tail
+    return table[~np.isnan(table).any(axis=1)], tail
 
 
-def _of(group: pd.DataFrame, means: np.ndarray, tail: float) -> Iterator[dict]:
-    """The rows of one column, judging by the means of experiments."""
-    printed, ours = (
-        group[column].to_numpy(dtype=float) for column in ("value_published", "value_ours")
-    )
-    every = np.vstack([printed, means])
+def _of(group: pd.DataFrame, together: bool, rng: np.random.Generator) -> Iterator[dict]:
+    """The rows of one column."""
+    means, tail = experiments(group, together, rng)
+    every = np.vstack([group["value_published"], means])
     yield _placed("level", every.mean(axis=1), tail)
     yield _placed("spread", every.std(axis=1, ddof=1), tail)
-    order = _placed("order", rank_correlations(every, ours), tail)
-    yield order | {"chance_any_order": chance_any_order(printed, ours)}
+    orders = rng.permuted(np.tile(every[0], (statistics.DRAWS, 1)), axis=1)
+    correlations, by_chance = (
+        rank_correlations(rows, group["value_ours"]) for rows in (every, orders)
+    )
+    any_order = _share(np.abs(by_chance) >= abs(correlations[0]) - _EXACT)
+    yield _placed("order", correlations, tail) | {"chance_any_order": any_order}
     methods = group["method"].to_numpy()
     for quantity in ("deviations", "deviations of the others"):
         outside, chance, farthest = deviations(every, tail)
-        row = {"quantity": quantity, "methods": len(methods), "printed": outside.sum()}
-        yield row | {
+        yield {
+            "quantity": quantity,
+            "methods": len(methods),
+            "printed": outside.sum(),
             "in_range": chance >= 2 * tail,
             "chance": chance,
             "outside": ", ".join(methods[outside]),
@@ -127,40 +130,23 @@ def _of(group: pd.DataFrame, means: np.ndarray, tail: float) -> Iterator[dict]:
 
 def _placed(quantity: str, values: np.ndarray, tail: float) -> dict:
     """The first of values (n,) among the others; ties count in its favour."""
-    printed, drawn = values[0], values[1:][~np.isnan(values[1:])]
-    low, median, high = np.quantile(drawn, [tail, 0.5, 1 - tail])
-    beyond = min(_share(drawn <= printed + _EXACT), _share(drawn >= printed - _EXACT))
-    return {
-        "quantity": quantity,
-        "printed": printed,
-        "ours": median,
-        "low95_predicted": low,
-        "high95_predicted": high,
-        "in_range": beyond >= tail,
-        "chance": min(2 * beyond, 1.0),
-    }
+    printed, others = values[0], values[1:][~np.isnan(values[1:])]
+    low, median, high = np.quantile(others, [tail, 0.5, 1 - tail])
+    beyond = min(_share(others <= printed + _EXACT), _share(others >= printed - _EXACT))
+    row = {"quantity": quantity, "printed": printed, "ours": median}
+    row |= {"low95_predicted": low, "high95_predicted": high}
+    return row | {"in_range": beyond >= tail, "chance": min(2 * beyond, 1.0)}
 
 
 def rank_correlations(rows: np.ndarray, column: np.ndarray) -> np.ndarray:
     """Spearman's rank correlation of each of some rows (n, k) with a column (k,): (n,). NaN where
     all numbers are equal.
     """
-    ranks, own = (
-        pd.DataFrame(np.atleast_2d(each)).rank(axis=1).to_numpy() - (len(column) + 1) / 2
-        for each in (rows, column)
-    )
+    ranks = pd.DataFrame(np.vstack([column, rows])).rank(axis=1).to_numpy()
+    ranks = ranks - ranks.mean(axis=1, keepdims=True)
+    sizes = np.linalg.norm(ranks, axis=1)
     with np.errstate(invalid="ignore"):
-        return (ranks @ own[0]) / np.sqrt((ranks**2).sum(axis=1) * (own[0] @ own[0]))
-
-
-def chance_any_order(first: np.ndarray, second: np.ndarray) -> float:
-    """The share of all orders of a column (k,) whose rank correlation with another is as far from
-    0.
-    """
-    if len(first) > MOST:
-        return np.nan
-    every = np.abs(rank_correlations(np.array(list(itertools.permutations(first))), second))
-    return float(np.mean(every >= every[0] - _EXACT))
+        return (ranks @ ranks[0] / (sizes * sizes[0]))[1:]
 
 
 def deviations(means: np.ndarray, tail: float) -> tuple[np.ndarray, float, int]:
@@ -184,14 +170,12 @@ def _share(as_far: np.ndarray) -> float:
 
 def in_words(whole: pd.DataFrame) -> pd.DataFrame:
     """Wholes for a reader: a row for each column of a table."""
-    whole = whole.astype({"place": object, "why": object}).fillna({"place": "", "why": ""})
-    columns = whole[["study", "table", "metric", "place"]].to_numpy()
-    texts = whole.assign(
-        column=[", ".join(filter(None, words)) for words in columns],
-        text=[_text(row) for row in whole.to_dict("records")],
-    )
-    wide = texts.pivot_table("text", "column", "quantity", "first", sort=False)
-    return wide.assign(note=texts.groupby("column")["why"].first()).rename_axis(columns=None)
+    rows: dict[str, dict] = {}
+    for each in whole.astype(object).fillna("").to_dict("records"):
+        words = [each[key] for key in ("study", "table", "metric", "place")]
+        row = rows.setdefault(", ".join(filter(None, words)), {"note": each["why"]})
+        row[each["quantity"]] = _text(each)
+    return pd.DataFrame.from_dict(rows, orient="index").rename_axis("column")
 
 
 def _text(row: dict) -> str:

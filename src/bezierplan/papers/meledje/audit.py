@@ -11,7 +11,6 @@ import pandas as pd
 
 from bezierplan.analysis import rules
 from bezierplan.analysis.audit_rows import checked, compared
-from bezierplan.analysis.statistics import holm
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Published
@@ -96,3 +95,11 @@ def _fisher_rows(
         )
         for (name, other), (own, theirs), value in zip(pairs, counts, p.tolist())
     ]
+
+
+def holm(p: np.ndarray) -> np.ndarray:
+    """The p (n,) of a family, corrected by Holm's step-down procedure: (n,)."""
+    order = np.argsort(p)
+    corrected = np.empty(len(p))
+    corrected[order] = np.minimum(np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)), 1)
+    return corrected
