@@ -177,7 +177,7 @@ def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
     )
 
 
-LOWER, PAIRS, TREND, SHARE, ALL, WITHIN, DIFFERENCE, ORDERED = DATA["checks"].values()
+LOWER, PAIRS, TREND, SHARE, ALL, WITHIN, ORDERED = DATA["checks"].values()
 TIERS = {"a": sample("a"), "b": sample("b", 1), "c": sample("c", 1.2), "d": sample("d", 2.5)}
 APART, ALIKE = (
     table({"a": sample("a"), "b": sample("b", 1)}),
@@ -223,13 +223,6 @@ def test_a_case_is_supported_and_its_contrary_contradicted(name):
         row = judged(check, runs)
         holds, of = row["holds"].split(" of ")
         assert (row["verdict"], holds) == (verdict, of if verdict == "supported" else "0")
-
-
-@pytest.mark.parametrize("paired", [True, False])
-@pytest.mark.parametrize(("mean", "verdict"), [(3, "supported"), (0, "no effect")])
-def test_difference_and_its_absence(mean, verdict, paired):
-    runs = table({"a": sample("a", mean), "b": sample("b"), "c": sample("c", 0.05)})
-    assert judged(DIFFERENCE | {"paired": paired}, runs)["verdict"] == verdict
 
 
 # Effects and their sizes.
@@ -997,8 +990,6 @@ ANY_KIND = {
     "share": SHARE,
     "all": ALL,
     "equal_within": WITHIN,
-    "difference": DIFFERENCE | {"groups": ["a", "b", "c"]},
-    "paired difference": DIFFERENCE | {"groups": ["a", "b", "c"], "paired": True},
 }
 
 
@@ -1020,7 +1011,7 @@ def test_degenerate_values_give_no_fault(n, value):
             assert (row["verdict"], bool(row["reason"])) == ("undecided", True)
 
 
-@pytest.mark.parametrize("kind", ["lower", "median", "ordered", "equal_within", "difference"])
+@pytest.mark.parametrize("kind", ["lower", "median", "ordered", "equal_within"])
 def test_missing_group_is_undecided(kind):
     row = judged(ANY_KIND[kind], table({"a": sample("a")}))
     assert (row["verdict"], row["reason"]) == ("undecided", "no run of b counts")

@@ -156,8 +156,6 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
             case "trend":
                 x = sorted(values.get(check["x"], [])) if check["x"] in values else []
                 pairs = list(itertools.pairwise(x))
-            case "difference":
-                pairs = list(itertools.pairwise(check["groups"])) if truth else []
             case "equal_within":
                 target = check.get("target", 0)
                 off = target if truth else target + 10 * check["margin"]
@@ -166,8 +164,7 @@ def levels(checks, truth, values) -> dict[tuple, dict]:
                 continue
             case _:
                 continue
-        upwards = check.get("direction") in (None, "lower", "up")
-        upwards = upwards == truth or check["test"] == "difference"
+        upwards = (check.get("direction") in (None, "lower", "up")) == truth
         edges[place] |= {(low, high) if upwards else (high, low) for low, high in pairs}
     found = {}
     for place in {*edges, *equal}:

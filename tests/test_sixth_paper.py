@@ -16,7 +16,7 @@ from bezierplan.analysis.claims import kinds
 ROOT = Path(__file__).parents[1]
 # Where a paper is the source of a formula, a docstring or an example may name it.
 # Of two layouts, as many as scale smoke has.
-VERDICTS = dict.fromkeys(("C1", "C4", "C5", "C6"), "undecided") | {"C7": "untestable"}
+VERDICTS = dict.fromkeys(("C1", "C4", "C5"), "undecided") | {"C6": "untestable"}
 VERDICTS |= dict.fromkeys(("C2", "C3"), "supported")
 EXAMPLES = {"commands/outcome.py"}
 

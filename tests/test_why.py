@@ -116,7 +116,6 @@ GROUPS = OF_RUNS | {"groups": ["a"], "than": ["b"], "margin": 0.5}
 NEEDED = {
     "lower": GROUPS | {"direction": "lower"},
     "equal_within": GROUPS | {"statistic": "mean"},
-    "difference": OF_RUNS | {"groups": ["a", "b", "c"], "margin": 0.5},
     "trend": OF_RUNS | {"margin": 0.5},
     "share": OF_RUNS,
     "function": {"name": "found", "effect_unit": "-"},

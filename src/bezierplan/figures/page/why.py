@@ -15,7 +15,7 @@ from bezierplan.analysis.metrics import METRICS
 from bezierplan.figures.amounts import amount
 
 if TYPE_CHECKING:
-    from bezierplan.analysis.claims.kinds import difference, equal_within, function, trend
+    from bezierplan.analysis.claims.kinds import equal_within, function, trend
 
 Row = dict[str, Any]
 
@@ -130,14 +130,6 @@ def _equal(row: Row, check: equal_within.Options, name: str) -> str:
     )
 
 
-def _differ(row: Row, check: difference.Options, name: str) -> str:
-    """Of groups that should differ at all."""
-    return (
-        f"{_quantity(row)} differs between {name} by {_size(row, check)}{_interval(row, check)}; "
-        f"the claim says that it differs{_margin(row, check)}"
-    )
-
-
 def _trend(row: Row, check: trend.Options, name: str) -> str:
     """Of a quantity that should rise or fall along another."""
     along, moves = check.x.replace("_", " "), "rises" if row["effect"] > 0 else "falls"
@@ -212,7 +204,6 @@ def _effect(row: Row, check: Check, name: str) -> str:
 _TEMPLATES = {
     "lower": _between,
     "equal_within": _equal,
-    "difference": _differ,
     "trend": _trend,
     "share": _share,
     "function": _function,
