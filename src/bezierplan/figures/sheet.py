@@ -192,7 +192,7 @@ def _fit_height(figure: Figure) -> None:
         empty = figure.bbox.height - max(box.y1 for box in boxes) + min(box.y0 for box in boxes)
         figure.set_figheight(figure.get_figheight() - (empty - floor) / figure.dpi + 0.1)
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    figure.set_layout_engine(None)
 
 
 def _caption(letters: list[str], clauses: list[str]) -> str:

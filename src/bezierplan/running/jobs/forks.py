@@ -38,14 +38,14 @@ FIRST = (
 )
 # What later jobs import, in the order in which they need it.
 LATER = (
-    "bezierplan.running.worlds",
-    "bezierplan.running.rides",
-    "bezierplan.analysis.results",
+    "bezierplan.geometry.arc_length",
+    "bezierplan.running.judge.recheck",
+    "shapely",
     "bezierplan.analysis.claims.judge",
     "scipy.stats",
     "bezierplan.figures.sheet",
     "seaborn",
-    "matplotlib.backends.backend_agg",
+    "matplotlib.backends.backend_pdf",
     "matplotlib.backends.backend_svg",
     "bezierplan.figures.page.build",
 )
