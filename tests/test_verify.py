@@ -5,6 +5,7 @@ named.
 import contextlib
 import json
 import random
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -262,10 +263,11 @@ def test_a_planner_whose_repeats_are_all_alike_ends_the_workflow_in_one_line(tmp
     done = started(tmp_path, "rng = np.random.default_rng(42)")
     assert done.returncode == 1
     (line,) = {line for line in done.stderr.splitlines() if "full account:" in line}
-    assert "planner bend/bend.py: history, path_points: stored the same in all 6 repeats" in line
+    assert f"run bend/bends/*/bend: planner bend/bend.py: 6 {ALIKE}" in line
+    assert "delete" not in line
 
 
-ALIKE = "history, path_points: stored the same in all 6 repeats"
+ALIKE = "repeats have the same history and path; a planner draws its random numbers from the rng"
 SLIPS = {
     "a seed of its own": ("rng = np.random.default_rng(42)", ALIKE),
     "a generator that is reset": ("rng.bit_generator.state = np.random.PCG64(1).state", ALIKE),
@@ -273,7 +275,12 @@ SLIPS = {
     "an answer that is kept": (
         "rng = globals().setdefault('kept', [rng.spawn(1)[0].normal()])\n"
         "    rng = type('', (), {'normal': lambda *_: kept[0]})",
-        ALIKE,
+        "nothing kept from an earlier run",
+    ),
+    "the best of all runs": (
+        "best = globals().setdefault('kept', []); best.append(rng.normal())\n"
+        "    rng = type('', (), {'normal': lambda *_: min(best)})",
+        "nothing kept from an earlier run",
     ),
     "a generator of its module": (
         "rng = globals().setdefault('kept', np.random.default_rng(1))",
@@ -293,13 +300,13 @@ def test_a_slip_of_a_planner_is_told(case, tmp_path):
     problems_file, file = str(tmp_path / "e.parquet"), str(tmp_path / "0.parquet")
     problems.write(MADE, dict.fromkeys(MADE, "field"), problems_file)
     chunk = CHUNK._replace(planner=str(tmp_path / "bend.py"), repeats=[0, 6])
-    try:
+
+    def run_and_judge():
         rows.write(execution.run_chunk(MADE, chunk)[0], file)
-        said = [*map(str, recheck.judged(recheck.Task(problems_file, {file: chunk})).faults)]
-    except PlannerFailure as failure:
-        said = [str(failure)]
-    assert len(said) == 1
-    assert told in said[0]
+        recheck.judged(recheck.Task(problems_file, {file: chunk}))
+
+    with pytest.raises(PlannerFailure, match=re.escape(told)):
+        run_and_judge()
 
 
 # --------------------------------------------------------------------------------------------------

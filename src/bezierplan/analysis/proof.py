@@ -96,7 +96,15 @@ def _make(
         [
             *(sys.executable, "-m", "snakemake", "--snakefile", workflow, "--forceall"),
             *("--cores", str(processes), "--nolock", "--drop-metadata"),
-            *("--workflow-profile", "none", "--allowed-rules", *_RULES, "--"),
+            *(
+                "--workflow-profile",
+                "none",
+                "--scheduler",
+                "greedy",
+                "--allowed-rules",
+                *_RULES,
+                "--",
+            ),
             *(file for file in files if file.suffix in _ENDINGS),
         ],
         capture_output=True,

@@ -3,7 +3,8 @@ world that moves, a run is a drive.
 """
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -77,8 +78,8 @@ def told_chunk(chunk: Chunk) -> str:
 def made(
     chunk: Chunk,
     problems: dict[str, Problem],
-    tasks: Iterable[worker.Task],
-    again: worker.Task | None = None,
+    tasks: Sequence[worker.Task],
+    again: Sequence[worker.Task] = (),
     worlds: dict[str, World] | None = None,
     function: str = "plan",
 ) -> Iterator[worker.Reply]:
@@ -236,7 +237,7 @@ def run_chunk(
 
     A warm-up makes times comparable, and its runs must repeat themselves. Raises PlannerFailure,
     naming the run, if a planner fails, does not return a valid plan for the problem (`row`),
-    changes a problem or a world, or gives another plan when its first run is repeated.
+    changes a problem or a world, or gives another plan when its first or last run is repeated.
     """
     met = {name: problems[name] for name in chunk.problems}
     moving = {name: worlds[name] for name in met} if worlds else {}
@@ -245,17 +246,17 @@ def run_chunk(
     first, last = chunk.repeats
     order = _order(chunk, len(every), range(first, first + 1 if deterministic else last))
     tasks = [task(chunk, every[k], repeat) for k, repeat in order]
-    # What needs no random numbers must not be changed by others.
-    warm_up = task(chunk, every[order[0][0]], order[0][1] + deterministic)
-    warm, done = [], {}
-    for number, result, cpu, wall in made(chunk, met, tasks, warm_up, moving):
-        k, repeat = order[max(number, 0)]
+    # The first run, and in a process of its own the last one. What needs no random numbers must not
+    # be changed by others.
+    again = [task(chunk, every[k], repeat + deterministic) for k, repeat in (order[0], order[-1])]
+    warm, done = defaultdict(list), {}
+    for number, result, cpu, wall in made(chunk, met, tasks, again, moving):
+        k, repeat = order[number]
         outcome, trace = judged(every[k], repeat, result)
         if number < 0:
-            warm.append(outcome)
+            warm[number + len(order)].append(outcome)
             continue
-        if number == 0:
-            refuse_unrepeatable(warm, outcome, chunk, deterministic)
+        refuse_unrepeatable(warm[number], outcome, chunk, deterministic)
         times = Times(outcome["id"], cpu, wall)._asdict()
         if moving:
             times |= rides.replan_times(result, chunk.policy["step_seconds"])._asdict()

@@ -173,7 +173,7 @@ def _made(
     for reply in (
         worker.made(work, tasks)
         if hashing is None
-        else process.made(work, tasks, None, name, LIMIT, hashing)
+        else process.made(work, tasks, (), name, LIMIT, hashing)
     ):
         task = tasks[reply.number]
         with answer.of(task.name):

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -38,25 +38,26 @@ _LOOK = 0.05
 
 def made(
     work: worker.Work,
-    tasks: Iterable[worker.Task],
-    again: worker.Task | None,
+    tasks: Sequence[worker.Task],
+    again: Sequence[worker.Task],
     name: str,
     limit: float | None = None,
     hashing: int = 0,
 ) -> Iterator[worker.Reply]:
-    """`worker.made` in a process of its own, with plain values; before them that of `again` in a
-    process with another seed of `hash`, which must not count. hashing: that seed. Raises
+    """`worker.made` in a process of its own, with plain values; before them that of the last of
+    `again` in a process with another seed of `hash`. hashing: that seed. Raises
     PlannerFailure as `answers` does.
     """
-    content = work._asdict() | {
+    if again:
+        for each in made(work, again[-1:], (), name, limit, hashing + 1):
+            yield each._replace(number=-1)
+    parts = work._asdict() | {
         "planner": str(Path(work.planner).resolve()) if is_file(work.planner) else work.planner,
         "problems": worker.packed_problems(work.problems),
         "worlds": {key: to_json(world) for key, world in (work.worlds or {}).items()},
+        "tasks": tasks,
+        "again": again,
     }
-    if again:
-        for each in made(work, [again], None, name, limit, hashing + 1):
-            yield each._replace(number=-1)
-    parts = content | {"tasks": list(tasks), "again": again}
     for number, found, cpu, wall in answers(
         "guard.worker.plain_answers", parts, name, limit, hashing
     ):

@@ -9,7 +9,7 @@ import resource
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -115,7 +115,9 @@ def _planned(
 
 
 class Reply(NamedTuple):
-    """What a planner has made. number: of its task, -1 of a warm-up. cpu, wall: seconds."""
+    """What a planner has made. number: of its task; of a repetition, from the end: -1 is the last
+    task. cpu, wall: seconds.
+    """
 
     number: int
     result: Any
@@ -125,13 +127,13 @@ class Reply(NamedTuple):
 
 def made(
     work: Work,
-    tasks: Iterable[Task],
-    again: Task | None = None,
+    tasks: Sequence[Task],
+    again: Sequence[Task] = (),
     begin: Callable[[str], None] = lambda name: None,
 ) -> Iterator[Reply]:
-    """What a planner makes of tasks, one after the other. again: the task of warm-up runs before
-    them, of which the first and the last are yielded. begin: told the name of each run. Raises
-    PlannerFailure, naming the run.
+    """What a planner makes of tasks, one after the other. again: first the task of warm-up runs
+    before them, of which the first and the last are yielded. begin: told the name of each run.
+    Raises PlannerFailure, naming the run.
     """
 
     def one(number: int, task: Task) -> Reply:
@@ -140,7 +142,7 @@ def made(
             return Reply(number, *timed(partial(work.once, task)))
 
     if again:
-        yield from warm_up(partial(one, -1, again))
+        yield from warm_up(partial(one, -len(tasks), again[0]))
     for number, task in enumerate(tasks):
         yield one(number, task)
 
@@ -195,14 +197,14 @@ def plain_answers(
     worlds: dict[str, str],
     policy: dict[str, Any] | None,
     tasks: list[list[Any]],
-    again: list[Any] | None,
+    again: list[list[Any]],
 ) -> Iterator[list[Any]]:
     """`made` as plain values."""
     met, of_tasks = unpacked_problems(problems), [Task(*each) for each in tasks]
     moving = {name: from_json(text) for name, text in worlds.items()}
     work, name = Work(planner, met, function, moving, policy), ""
-    for number, found, cpu, wall in made(work, of_tasks, again and Task(*again), begin):
-        name = of_tasks[max(number, 0)].name
+    for number, found, cpu, wall in made(work, of_tasks, [Task(*each) for each in again], begin):
+        name = of_tasks[number].name
         with answer.of(name):
             found = found if moving or function != "plan" else answer.plain(found)
         yield [number, plain.packed(found), cpu, wall]

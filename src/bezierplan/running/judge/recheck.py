@@ -28,7 +28,7 @@ from bezierplan.running import execution, problems, rows, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.columns import DriveOutcome, Outcome, Planned
 from bezierplan.running.guard import interface
-from bezierplan.running.jobs.watchdog import end_with_parent
+from bezierplan.running.jobs.watchdog import PlannerFailure, end_with_parent
 from bezierplan.running.judge import answer
 from bezierplan.schema.words import plain
 from bezierplan.workspaces.problem import Problem
@@ -45,6 +45,7 @@ MADE_AGAIN = 100
 # So many repeats of each condition, all alike, from a planner that draws random numbers, are no
 # chance.
 _ALIKE = 5
+_ANSWER = ("condition", "history", "path_points")
 
 
 class Difference(NamedTuple):
@@ -152,7 +153,9 @@ def _problems(file: str) -> tuple[dict[str, Problem], dict[str, World]]:
 
 
 def judged(task: Task) -> Verdict:
-    """The verdict on a task. Raises ValueError for a file that is not the table to be there."""
+    """The verdict on a task. Raises ValueError for a file that is not the table to be there, and
+    PlannerFailure for repeats that are alike by no chance.
+    """
     by_name, moving = _problems(task.problems)
     faults, lines, files = [], [], {}
     for file, chunk in task.runs.items():
@@ -177,7 +180,7 @@ def judged(task: Task) -> Verdict:
     for file, stored in files.items():
         for row in stored:
             faults += _row_faults(file, row, by_name[row["problem"]], moving, known)
-    faults += _alike(files, task.runs)
+    _refuse_alike(files, chunk)
     return Verdict(
         tuple(faults), len(task.runs), sum(map(len, files.values())), len(known), tuple(lines)
     )
@@ -203,28 +206,21 @@ def _identity_faults(
                 yield Difference(file, known["id"], name, row.get(name), value)
 
 
-def _alike(
-    files: dict[str, list[dict[str, Any]]], chunks: dict[str, Chunk]
-) -> Iterator[Difference]:
-    """A planner of its author's own that is said to draw random numbers, but whose repeats are all
-    alike, on every condition.
+def _refuse_alike(files: dict[str, list[dict[str, Any]]], chunk: Chunk) -> None:
+    """Raise PlannerFailure for a planner of its author's own that is said to draw random numbers,
+    but whose repeats, of a file or of all, are alike on every condition.
     """
-    first = next(iter(chunks.values()))
-    if not files or not is_file(first.planner) or interface.traits(first.planner).deterministic:
+    if not is_file(chunk.planner) or interface.traits(chunk.planner).deterministic:
         return
-    by_condition: dict[str, list[str]] = {}
-    for row in chain(*files.values()):
-        found = repr([row["history"], row["path_points"]])
-        by_condition.setdefault(row["condition"], []).append(found)
-    if all(len(each) >= _ALIKE and len(set(each)) == 1 for each in by_condition.values()):
-        yield Difference(
-            next(iter(files)),
-            f"planner {first.planner}",
-            "history, path_points",
-            f"the same in all {max(map(len, by_condition.values()))} repeats",
-            "another with each rng: a planner draws from the rng that it is given, or says "
-            "deterministic = True",
-        )
+    for entries in (*files.values(), [*chain(*files.values())]):
+        conditions = {row["condition"] for row in entries}
+        answers = {repr([row[name] for name in _ANSWER]) for row in entries}
+        if 0 < len(answers) == len(conditions) and len(entries) >= _ALIKE * len(conditions):
+            raise PlannerFailure(
+                f"{execution.told_chunk(chunk)}: {len(entries) // len(conditions)} repeats "
+                "have the same history and path; a planner draws its random numbers from the rng "
+                "that it is given, or says deterministic = True"
+            )
 
 
 def _row_faults(
@@ -322,9 +318,10 @@ def made_again(
 def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Difference]]:
     """`made_again` of a file."""
     problem_file, file, chunk, digest, share = entry
+    runs = _runs(chunk)
     numbers = [
         n
-        for n, run in enumerate(_runs(chunk))
+        for n, run in enumerate(runs)
         if int(hashlib.sha256(f"{digest} {execution.run_id(chunk, *run)}".encode()).hexdigest(), 16)
         % share
         == 0
@@ -332,7 +329,7 @@ def _again(entry: tuple[str, str, Chunk, str, int]) -> tuple[int, list[Differenc
     if not numbers:
         return 0, []
     made, moving = _problems(problem_file)
-    remade = execution.rows_again(chunk, [_runs(chunk)[n] for n in numbers], made, moving)
+    remade = execution.rows_again(chunk, [runs[n] for n in numbers], made, moving)
     faults = []
     for row, stored in zip(remade, rows.read(file).take(numbers).to_pylist()):
         for name, value in rows.table([row], Planned, Outcome).to_pylist()[0].items():
