@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
-from bezierplan.schema.model import NotNegative, is_number, value
+from bezierplan.schema.model import NotNegative, Positive, is_number, value
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
 from bezierplan.workspaces.limits import SMALLEST_FEATURE, check_bounds
@@ -36,6 +36,11 @@ class Options(Workspace):
     gap: NotNegative = Field(
         0, description="the least distance of circles from start and target, in units"
     )
+    corridor: Positive = Field(
+        None,
+        description="how far centres lie from the straight line between start and target at most, "
+        "in units, a number above 0; left out: anywhere within the bounds",
+    )
     circles: CircleCount = Field(description=CIRCLES)
 
 
@@ -51,19 +56,26 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
 def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
     """One layout of a description with bounds, radius, circles (how many) and unit.
 
-    Centres are uniform within the bounds; a circle that comes nearer to an end, (x, y) in
-    units, than the gap is redrawn. name: that of study and workspace; number: that of the layout.
-    Circles may overlap each other. Raises ValueError if no free place is found.
+    Centres are uniform within the bounds, or within the corridor; a circle that comes nearer to an
+    end, (x, y) in units, than the gap is redrawn. name: that of study and workspace; number: that
+    of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
     """
     rng = generator(name, number)
-    bounds = _bounds(description)
+    bounds = within = _bounds(description)
+    origin, axes, places = np.zeros(2), np.eye(2), np.array(ends)
+    if width := description.get("corridor"):
+        # Centres are drawn in coordinates along and across the straight line.
+        origin, way = places[0], places[1] - places[0]
+        length = float(np.hypot(*way))
+        axes = np.array([way, [-way[1], way[0]]]) / length
+        within, places = (0.0, length, -width, width), np.array([[0.0, 0.0], [length, 0.0]])
     given, gap = description["radius"], description.get("gap", 0)
     centres, radii = [], []
     for _ in range(description["circles"]):
         radius = float(rng.uniform(*given) if isinstance(given, list) else given)
-        centres.append(random_centres(rng, 1, bounds, np.array(ends), radius + gap)[0])
+        centres.append(random_centres(rng, 1, within, places, radius + gap)[0])
         radii.append(radius)
-    return Circles(bounds, np.array(centres), np.array(radii), description["unit"])
+    return Circles(bounds, origin + np.array(centres) @ axes, np.array(radii), description["unit"])
 
 
 def _bounds(description: dict) -> tuple[float, float, float, float]:
