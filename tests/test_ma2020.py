@@ -11,12 +11,9 @@ import pytest
 from studies import drawing
 
 from bezierplan.analysis import audit
-from bezierplan.analysis.claims.kinds import function
-from bezierplan.analysis.results import Results
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.papers.ma2020 import audit as own_audit
-from bezierplan.papers.ma2020 import functions as ma2020
 from bezierplan.planners import bca
 from bezierplan.running import problems
 from bezierplan.schema import checked
@@ -182,45 +179,3 @@ def test_figure_2_swaps_the_genes_behind_the_cut():
     assert codes.min() >= 1
     assert codes.max() <= 400
     assert len(bca.code_centres(20, 20)) == 400
-
-
-def results(points, feasible=True):
-    runs = [
-        {
-            "method": "bca",
-            "feasible": feasible,
-            "path_curve": "bezier",
-            "path_points": np.ravel(way).astype(float),
-        }
-        for way in points
-    ]
-    return {"environments": Results(pd.DataFrame(runs), {}, pd.DataFrame())}
-
-
-SMOOTH = [(0, 0), (3, 9), (12, 8), (20, 20)]
-# The first leg has no length: the curve begins standing still.
-STILL = [(0, 0), (0, 0), (12, 8), (20, 20)]
-# A cusp in the middle.
-CUSP = [(0, 0), (1, 1), (0, 1), (1, 0)]
-
-
-@pytest.mark.parametrize(
-    ("points", "feasible", "mark", "count"),
-    [
-        ([SMOOTH], True, "+", 1),
-        ([SMOOTH, STILL], True, "-", 2),
-        ([CUSP], True, "-", 1),
-        ([SMOOTH], False, "?", 0),
-    ],
-)
-def test_continuous_curvature(points, feasible, mark, count):
-    check = function.Options(
-        test="function",
-        name="continuous_curvature",
-        effect="share",
-        effect_unit="-",
-        experiment="environments",
-    )
-    found = ma2020.continuous_curvature(check, results(points, feasible), {})
-    assert (found[0], found[2], found[3]) == (mark, None, count)
-    assert count == 0 or found[1] == 0

@@ -252,7 +252,8 @@ def _by_own_criterion(claim: Claim, verdict: str) -> str:
     """
     if claim.criterion is None or verdict == "undecided":
         return ""
-    return f"{'holds' if verdict == 'supported' else 'fails'} by our criterion alone"
+    word = {"supported": "holds", "partly": "holds in part"}.get(verdict, "fails")
+    return f"{word} by our criterion alone"
 
 
 def _less_than(deciding: list[_Judgement], verdict: str, material: Material) -> str:

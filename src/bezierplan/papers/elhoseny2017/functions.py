@@ -12,8 +12,10 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.results import select
+from bezierplan.analysis.statistics import interval
 from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.planners.parts.diversity import q_statistic
+from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
@@ -85,6 +87,25 @@ def q_example(check: "Check", results: "Experiments", published: "Published") ->
     holds = max(differences) < 1e-12 and round(mean, 2) == printed["mean Q"]
     most = max(*differences, abs(mean - printed["mean Q"]))
     return "+" if holds else "-", most, None, len(q_values)
+
+
+def fluctuation(
+    check: "Check", results: "Experiments", published: "Published", *, most: float
+) -> "Judgement":
+    """Claim C10: whether runs on one field differ, by a standard deviation of at most a share of
+    their mean.
+
+    The effect is the largest coefficient of variation on a field, with its bootstrap interval; the
+    units are the runs on it.
+    """
+    fields = []
+    for name in check.experiments:
+        values = select(results[name].runs, check.where)[check.metric].dropna().to_numpy()
+        ends = interval("std", values, generator(f"elhoseny2017/C10/{check.metric}/{name}"))
+        fields.append(np.array([values.std(), *ends]) / values.mean())
+    effect, low, high = map(float, max(fields, key=max))
+    mark = "+" if 0 < high <= most else "-" if low > most or high == 0 else "?"
+    return mark, effect, (low, high), len(values)
 
 
 def printed_over_bound(

@@ -1,24 +1,17 @@
-"""ma2020: quantities computed from its printed numbers alone, and the claim about curvature."""
+"""ma2020: claims about paths and printed numbers that a comparison of runs cannot judge."""
 
-import math
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pandas as pd
 
+from bezierplan.analysis import metrics
 from bezierplan.analysis.claims.material import Untestable
-from bezierplan.analysis.results import path_of, pick, select
-from bezierplan.geometry import curves
+from bezierplan.analysis.results import pick, select
 from bezierplan.papers.ma2020.metrics import obstacle_clearance
 
 if TYPE_CHECKING:
     from bezierplan.analysis.claims.kinds.function import Experiments, Judgement, Published
     from bezierplan.analysis.claims.kinds.function import Options as Check
-
-# Number of parameters at which the speed of a curve is sampled, and the share of its maximum below
-# which it counts as zero.
-SPEED_SAMPLES = 20_001
-STILL = 1e-6
 
 
 def drawn_farther(
@@ -43,15 +36,21 @@ def drawn_farther(
     return "+" if min(excess) > 0 else "-", float(min(excess)), None, 2 * len(excess)
 
 
-def printed_rise(
-    check: "Check", results: "Experiments", published: "Published", *, parameter: str, rise: float
+def excess_of_corners(
+    check: "Check", results: "Experiments", published: "Published", *, beside: str, least: float
 ) -> "Judgement":
-    """Claim C16: whether a printed parameter rises from environment 1 to environment 2 by as much
-    as the text says. The effect is the rise.
+    """Claim C27: whether superfluous corners cause at least a share of the excess of each method's
+    mean length over that of another.
+
+    The effect is the least share, the units are the paths.
     """
-    parameters = published["parameters"].set_index("parameter").loc[parameter]
-    first, second = parameters.sort_values("workspace")["value"]
-    return "+" if math.isclose(second - first, rise) else "-", float(second - first), None, 0
+    experiment = results[check.experiment]
+    runs = select(experiment.runs, check.where)
+    saved = runs["length"] - metrics.values(runs, "length_without_spares", experiment.problems)
+    means = runs.assign(saved=saved).groupby("method")[["length", "saved"]].mean()
+    others = means.drop(beside)
+    share = float((others["saved"] / (others["length"] - means.loc[beside, "length"])).min())
+    return "+" if share >= least else "-", share, None, len(runs)
 
 
 def printed_minima(check: "Check", results: "Experiments", published: "Published") -> "Judgement":
@@ -66,29 +65,6 @@ def printed_minima(check: "Check", results: "Experiments", published: "Published
     )
     apart = (quoted - pd.concat(tables).reindex(quoted.index)).abs()
     return "+" if (apart == 0).all() else "-", float(apart.max()), None, len(quoted)
-
-
-def continuous_curvature(
-    check: "Check", results: "Experiments", published: "Published"
-) -> "Judgement":
-    """Claim C20: whether every feasible path is one polynomial piece with non-zero speed
-    everywhere, so that its curvature is continuous.
-
-    The effect is the largest jump of curvature at the joints of pieces; a path of one piece has no
-    joints.
-    """
-    runs = select(results[check.experiment].runs, check.where)
-    paths = [path_of(run) for _, run in runs[runs["feasible"].astype(bool)].iterrows()]
-    jump = max((curves.curvature_jump(path) for path in paths), default=math.nan)
-    moving = all(_least_speed(curves.bezier_pieces(path)) > STILL for path in paths)
-    return "+" if paths and jump == 0 and moving else "-" if paths else "?", jump, None, len(paths)
-
-
-def _least_speed(pieces: np.ndarray) -> float:
-    """Least speed of Bézier pieces (n, degree + 1, 2) as a share of the greatest."""
-    weights = curves.bernstein(pieces.shape[1] - 2, np.linspace(0, 1, SPEED_SAMPLES))
-    speed = np.hypot(*np.moveaxis(weights @ np.diff(pieces, axis=1), -1, 0))
-    return float(speed.min() / speed.max())
 
 
 def side_of_maps(published: "Published") -> int:

@@ -41,17 +41,36 @@ def spare_corners(path: Path, grid: Grid) -> float:
     """Corners of a polyline that can be left out: a straight leg that enters no occupied cell joins
     the corners before and after. NaN for a curve.
     """
-    import shapely
+    return float(_spare(_turns(path), grid).sum()) if path.curve == "polyline" else np.nan
 
+
+@on_map("u", "length of a polyline without the corners that can be left out", "grid")
+def length_without_spares(path: Path, grid: Grid) -> float:
+    """Length of a polyline from which corners are left out, the first that can be at a time. NaN
+    for a curve.
+    """
     if path.curve != "polyline":
         return np.nan
+    turns = _turns(path)
+    while (spare := _spare(turns, grid)).any():
+        turns = np.delete(turns, spare.argmax() + 1, axis=0)
+    return float(np.hypot(*np.diff(turns, axis=0).T).sum())
+
+
+def _turns(path: Path) -> np.ndarray:
+    """The ends and corners (n, 2) of a polyline."""
     steps = np.diff(path.points, axis=0)
     moved = np.hypot(*steps.T) > 0
     places, turned = path.points[1:][moved], headings(steps[moved])
-    turns = np.concatenate([path.points[:1], places[:-1][turned > CORNER], places[-1:]])
+    return np.concatenate([path.points[:1], places[:-1][turned > CORNER], places[-1:]])
+
+
+def _spare(turns: np.ndarray, grid: Grid) -> np.ndarray:
+    """Whether each inner corner of a polyline (n, 2) can be left out (n - 2,)."""
+    import shapely
+
     legs = shapely.linestrings(np.stack([turns[:-2], turns[2:]], axis=1))
-    inside = _inside(*_hashable(grid))
-    return float((~shapely.intersects(inside, legs)).sum())
+    return ~shapely.intersects(_inside(*_hashable(grid)), legs)
 
 
 def _hashable(grid: Grid) -> tuple[bytes, int, float, tuple[float, float]]:
