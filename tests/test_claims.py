@@ -1141,10 +1141,12 @@ def test_few_runs_without_an_effect_are_seldom_taken_for_one():
 
 
 def test_claims_depend_on_the_best_reading_if_its_score_tells_it_apart():
-    claims = pd.DataFrame({"id": ["C1", "C2", "C2"], "primary": [True, True, False]})
+    """C1 is open, and C3 rests on fewer comparisons there."""
+    claims = pd.DataFrame({"id": ["C1", "C2", "C2", "C3"], "primary": [True, True, False, True]})
     claims = claims.assign(verdict="supported", verdict_best_reading=None, reason="why")
-    verdicts = pd.DataFrame({"id": ["C1", "C2"], "default": "supported", "reading": "O1=2"})
-    verdicts = verdicts.assign(best=["undecided", "contradicted"])
+    claims["holds"] = ["4 of 4", "4 of 4", None, "4 of 14"]
+    verdicts = pd.DataFrame({"id": ["C1", "C2", "C3"], "default": "supported", "reading": "O1=2"})
+    verdicts = verdicts.assign(best=["undecided", *2 * ["contradicted"]], holds="3 of 4")
     for apart, verdict, reason in (
         (True, "depends", "on the reading: supported by default, contradicted with O1=2; why"),
         (
@@ -1154,6 +1156,6 @@ def test_claims_depend_on_the_best_reading_if_its_score_tells_it_apart():
         ),
     ):
         found = judging.beside_reading(claims.copy(), verdicts.assign(apart=apart))
-        assert [*found["verdict"]] == ["supported", verdict, "supported"]
-        assert [*found["verdict_best_reading"]] == [None, "contradicted", None]
-        assert [*found["reason"]] == ["why", reason, "why"]
+        assert [*found["verdict"]] == ["supported", verdict, "supported", "supported"]
+        assert [*found["verdict_best_reading"]] == [None, "contradicted", None, None]
+        assert [*found["reason"]] == ["why", reason, "why", "why"]

@@ -127,7 +127,9 @@ def test_claims_are_judged_under_the_best_reading_that_no_sentence_excludes(monk
     monkeypatch.setattr(readings.Runner, "results", lambda self, reading: reading)
 
     def judged(reading):
-        return pd.DataFrame({"study": "walks", "id": ["C1"], "verdict": [str(reading)]})
+        claims = pd.DataFrame({"study": "walks", "id": ["C1", "C2"], "holds": "1 of 1"})
+        checks = pd.DataFrame({"id": ["C1", "C2"], "n": [10, 0]})
+        return claims.assign(verdict=str(reading)), checks
 
     (row,) = readings.verdicts(runner, pd.DataFrame(scores), judged).to_dict("records")
     assert row["default"] == "{}"

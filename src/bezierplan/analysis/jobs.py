@@ -323,7 +323,7 @@ class VerdictsOfReadings(Readings):
         table = readings.verdicts(
             self.runner(input_files),
             pd.read_csv(input_files.scores),
-            lambda found: judge.judge(job, found, *given)[0],
+            lambda found: judge.judge(job, found, *given),
         )
         self.write(table, output_files[0])
 

@@ -433,14 +433,15 @@ def _of_hidden(
 
 
 def verdicts(
-    runner: Runner, scores: pd.DataFrame, judge: Callable[[dict[str, Results]], pd.DataFrame]
+    runner: Runner, scores: pd.DataFrame, judge: Callable[[dict[str, Results]], tuple]
 ) -> pd.DataFrame:
     """The verdicts on claims under the default and under the best reading that no sentence
-    excludes, each from `MANY` times the runs that score a reading. scores: as from `of_study`.
-    judge: the table of claims, from results.
+    excludes, each from `MANY` times the runs that score a reading; without those that compare what
+    has no runs there. scores: as from `of_study`. judge: the tables of claims and of their checks,
+    from results.
 
-    Columns: study, id, default, best, reading (the best), apart (whether the scores tell it from
-    the default).
+    Columns: study, id, holds (under the default), default, best, reading (the best), apart (whether
+    the scores tell it from the default).
     """
     free = scores[scores["excluded_by"].isna()].set_index("reading")
     best, default = free.iloc[0], free.loc["default"]
@@ -461,8 +462,9 @@ def verdicts(
         for name, each in runner.experiments.items()
     }
     many = runner._replace(experiments=experiments)
-    ours, theirs = (judge(many.results(each)) for each in ({}, reading))
-    return ours[["study", "id"]].assign(
+    (ours, checks), (theirs, others) = (judge(many.results(each)) for each in ({}, reading))
+    empty = {*checks["id"][checks["n"] == 0], *others["id"][others["n"] == 0]}
+    return ours.loc[~ours["id"].isin(empty), ["study", "id", "holds"]].assign(
         default=ours["verdict"],
         best=theirs["verdict"],
         reading=best.name,

@@ -134,13 +134,14 @@ def covered(claims: Sequence[Claim], experiments: Container[str]) -> list[Claim]
 
 def beside_reading(claims: pd.DataFrame, verdicts: pd.DataFrame) -> pd.DataFrame:
     """Claims with their verdicts under the best reading where these differ from those under the
-    default, and neither is open. They depend on it if its score tells it from the default.
-    verdicts: as from `readings.verdicts`.
+    default, neither is open, and both rest on all comparisons of the claim. They depend on it if
+    its score tells it from the default. verdicts: as from `readings.verdicts`.
     """
     both = verdicts[["default", "best"]]
     sure = ~both.isin(("undecided", "untestable", "depends")).any(axis=1)
     for row in verdicts[sure & (both["default"] != both["best"])].itertuples():
         here = claims["primary"] & (claims["id"] == row.id)
+        here &= claims["holds"].str.endswith(row.holds[row.holds.index(" of ") :], na=False)
         words = f"{row.best} with {row.reading}, which its score does not tell from the default"
         if row.apart:
             words = f"on the reading: {row.default} by default, {row.best} with {row.reading}"
