@@ -243,8 +243,8 @@ class Runner(NamedTuple):
                 chunks = [_in_layouts(_first(chunk, size), layout, layouts) for chunk in chunks]
             try:
                 for chunk in chunks:
-                    for place in chunk.problems.values():
-                        settings = chunk.settings | place.get("settings", {})
+                    for condition in chunk.conditions():
+                        settings = execution.settings_in(chunk, condition)
                         check_settings(planner_module(chunk.planner), settings, "")
             except Fault:
                 return None
