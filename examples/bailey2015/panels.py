@@ -3,11 +3,15 @@
 import matplotlib.ticker
 
 
-def ratios(axes, frame):
-    """Ratios by method, each field a point; returns what the caption says."""
-    for place, (method, own) in enumerate(frame.groupby("method")):
-        axes.plot([place] * len(own), own["ratio"], ".", label=method)
-    axes.set_xticks(range(frame["method"].nunique()), sorted(frame["method"].unique()))
+def ratios(axes, frame, looks):
+    """Ratios by method, each field a point; returns what the caption says.
+
+    looks: by method, its colour, marker and label in all figures.
+    """
+    for place, (method, look) in enumerate(looks.items()):
+        own = frame[frame["method"] == method]
+        axes.plot([place] * len(own), own["ratio"], **look | {"linestyle": "none"})
+    axes.set_xticks(range(len(looks)), [look["label"] for look in looks.values()])
     axes.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
     axes.set_ylabel("ratio")
     return f"{len(frame)} paths"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field
 
+from bezierplan.figures import style
 from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.schema.model import Metric, Name, Names, listed
 
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 class Options(RunsPanel):
     function: Annotated[Name, Names("drawing")] = Field(
         description="the name of a function of the study's `panels.py`, called with axes of "
-        "matplotlib and a table of the runs: method, problem, condition, repeat and metrics"
+        "matplotlib, a table of the runs (method, problem, condition, repeat and metrics), and by "
+        "method keywords of `axes.plot`: its colour, marker and label in all figures"
     )
     metrics: listed(Metric) = Field(description="a list of metrics, columns of that table")
 
@@ -37,4 +39,5 @@ def data(results: Results, options: Options) -> pd.DataFrame:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Let the function draw; what it returns, if it does, belongs into the caption."""
-    return Note("", scene.functions[options.function](axes, frame) or "")
+    looks = {name: look for name, _, look in style.groups(frame, "method", options.where, scene)}
+    return Note("", scene.functions[options.function](axes, frame, looks) or "")
