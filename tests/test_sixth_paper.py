@@ -52,7 +52,7 @@ def test_faults_are_found_at_once(mine, capsys):
         file.write_text(file.read_text().replace(old, new))
     with pytest.raises(SystemExit):
         main(["check-study", "mine"])
-    lines = capsys.readouterr().out.splitlines()
+    lines = capsys.readouterr().err.splitlines()
     for name, word in zip(changed, ("quotes", "worlds.py", "unknown key"), strict=True):
         assert sum(f"mine/{name}" in line and word in line for line in lines) == 1, lines
     for name, (old, new) in changed.items():

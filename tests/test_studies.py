@@ -440,7 +440,7 @@ def test_methods_of_tharwat2018():
 def test_study_is_free_of_faults(key):
     """All checks pass, and no test has changed the copy that all of them share."""
     study = reading.read_study(STUDIES / key)
-    assert not checks.faults_of(study)
+    assert not checks.Checks(study).check()
     assert study == shared(key)
 
 
@@ -451,6 +451,6 @@ def test_the_default_of_an_assumption_is_what_the_study_uses():
     assert own["O2"] == study.settings["control_points"]
     assert set(own["O14h"].values()) == {study.problems["environment2"].settings["generations"]}
     turned = study.but(settings=study.settings | {"control_points": 5})
-    assert not checks.faults_of(turned)
+    assert not checks.Checks(turned).check()
     first = next(each for each in study.assumptions if each.id == "O2")
     assert alternatives.default_of(turned, first) == 5

@@ -18,6 +18,12 @@ FAULTS = {
 }
 
 
+SENTENCE = """
+sentences: [{{text: "{}", values: {{a: {{of: numbers, column: value_ours}}}}, holds: ["{}"]}}]
+table: {{of: numbers, columns: {{method: method}}}}
+"""
+
+
 def copy(study, folder):
     """A study's folder to be spoilt."""
     home = STUDIES if (STUDIES / study).exists() else DATA
@@ -76,14 +82,55 @@ def test_what_is_no_file_of_the_study(kind, name, tmp_path):
     ("name", "text", "expected"),
     [
         ("metrics.py", "def half(:", "metrics.py: SyntaxError: invalid syntax"),
-        ("panels.py", "import nothing_of_this_name", "panels.py: ModuleNotFoundError: "),
+        ("panels.py", "import nothing_of_this_name", "panels.py: line 1 of panels.py: Module"),
         ("verdict.yaml", "sentences: []", "verdict.yaml: table: missing key"),
+        (
+            "verdict.yaml",
+            SENTENCE.format("{b}", "a > 1"),
+            "sentences: 0: 'b': expected values, of a",
+        ),
+        (
+            "verdict.yaml",
+            SENTENCE.format("{a", "a > 1"),
+            "sentences: 0: expected '}' before end of string",
+        ),
+        (
+            "verdict.yaml",
+            SENTENCE.format("{a}", "c > 1"),
+            "sentences: 0: 'c': expected values, of a",
+        ),
+        ("verdict.yaml", SENTENCE.format("{a}", "a>1"), "holds: 0: 'a>1': expected a value, a rel"),
     ],
 )
 def test_a_fault_of_a_further_file_is_told_in_one_line(name, text, expected, tmp_path):
     folder = copy("walks", tmp_path)
     (folder / name).write_text(text)
     assert expected in told(folder)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("experiments.yaml", "mine: {planner: walk.py", "mine: {planer: walk.py"),
+        ("experiments.yaml", "mine: {planner: walk.py", "mine: {planner: wlak.py"),
+        ("experiments.yaml", "settings: {tries: 20}", "settings: {tries: many}"),
+        ("experiments.yaml", "cell: 1, unit", "cel: 1, unit"),
+        ("experiments.yaml", "vary: {tries:", "vary: {trees:"),
+        ("artefacts.yaml", "tables:", "table:"),
+        ("artefacts.yaml", "decimals: 2},", "decimals: -2},"),
+        ("walk.py", "def plan", "import nothing_of_this_name\n\ndef plan"),
+        ("walk.py", "def plan", "extra = ('length',)\n\ndef plan"),
+        ("walk.py", "def plan", "extra = ('steps')\n\ndef plan"),
+    ],
+)
+def test_a_fault_is_told_without_what_follows_from_it(file, old, new, tmp_path):
+    folder = copy("walks", tmp_path)
+    text = (folder / file).read_text()
+    assert old in text
+    (folder / file).write_text(text.replace(old, new, 1))
+    with pytest.raises(checked.Fault) as caught:
+        reading.load([folder])
+    assert len(caught.value.lines) == 1
 
 
 def test_studies_for_tests_have_no_fault():

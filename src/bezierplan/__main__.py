@@ -68,12 +68,13 @@ def main(words: list[str]) -> None:
     except (ValueError, OSError) as fault:
         # What the operating system says names the file last, and an error number first.
         file = getattr(fault, "filename", None)
-        _refuse(Fault(f"{file}: {fault.strerror}" if file else str(fault)))
+        text = f"{file}: {fault.strerror}" if file else str(fault)
+        _refuse(*Fault(*getattr(fault, "lines", [text])).lines)
 
 
-def _refuse(text: str | Fault) -> NoReturn:
+def _refuse(*lines: str) -> NoReturn:
     """End with the status of wrong input."""
-    sys.stderr.write(f"{text}\n")
+    print(*lines, sep="\n", file=sys.stderr)
     sys.exit(2)
 
 

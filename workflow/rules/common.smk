@@ -29,11 +29,11 @@ script = FORKS.script
 
 
 def or_exit(work, *of):
-    """What a function returns; a fault ends the program, in one line."""
+    """What a function returns; faults end the program, each in one line."""
     try:
         return work(*of)
     except checked.Fault as fault:
-        print(fault, file=sys.stderr)
+        print(*fault.lines, sep="\n", file=sys.stderr)
         sys.exit(2)
 
 

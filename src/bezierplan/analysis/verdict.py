@@ -5,16 +5,16 @@ which they do not follow: a sentence whose conditions fail is left out.
 """
 
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import pandas as pd
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from bezierplan.analysis.audit_rows import RELATIONS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.results import select
 from bezierplan.schema import checked
-from bezierplan.schema.model import Model, parsed
+from bezierplan.schema.model import Model, matching, parsed, wrong
 
 TAKES = {
     "min": pd.Series.min,
@@ -40,7 +40,7 @@ class Value(Model):
 
     def found(self, tables: dict[str, pd.DataFrame]) -> Any:
         """The value in tables of results."""
-        column = select(tables[self.of], self.where)[self.column]
+        column = _rows(tables[self.of], self.where, self.column)[self.column]
         if self.part:
             column = column.str.extract(self.part, expand=False).dropna().astype(float)
         return TAKES[self.take](column)
@@ -51,7 +51,25 @@ class Sentence(Model):
 
     text: str
     values: dict[str, Value] = Field({})
-    holds: list[str] = Field([])
+    holds: list[
+        Annotated[
+            str,
+            matching(
+                r"\w+ ([<>]=?|==) .+",
+                "a value, a relation, and what it is compared with, such as p < 0.05",
+            ),
+        ]
+    ] = Field([])
+
+    @model_validator(mode="after")
+    def _check_names(self) -> "Sentence":
+        try:
+            self.text.format(**dict.fromkeys(self.values, 1))
+            for condition in self.holds:
+                self.values[condition.split()[0]]
+        except (LookupError, ValueError) as error:
+            raise wrong(f"{error}: expected values, of {', '.join(self.values)}") from None
+        return self
 
 
 class Display(Model):
@@ -81,6 +99,12 @@ def read(file: str | Path) -> Verdict:
     return parsed(Verdict, checked.read(Path(file)), str(file))
 
 
+def _rows(table: pd.DataFrame, where: dict[str, Any], *columns: str) -> pd.DataFrame:
+    """Some rows of a table of results. Raises Fault for a column that it does not have."""
+    checked.check_all([*where, *columns], table, "verdict.yaml: column")
+    return select(table, where)
+
+
 def sentences(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> list[Follows]:
     """The sentences of a study with their values. tables: those of the study, by `Source`."""
     return [_sentence(each, tables) for each in verdict.sentences]
@@ -89,6 +113,8 @@ def sentences(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> list[Follows
 def _sentence(sentence: Sentence, tables: dict[str, pd.DataFrame]) -> Follows:
     try:
         values = {name: value.found(tables) for name, value in sentence.values.items()}
+    except checked.Fault:
+        raise
     except (ValueError, KeyError, AttributeError) as error:
         return Follows(sentence.text, f"a value is missing: {error}")
     if missing := [name for name, value in values.items() if value != value]:
@@ -106,8 +132,8 @@ def _sentence(sentence: Sentence, tables: dict[str, pd.DataFrame]) -> Follows:
 def markdown(verdict: Verdict, tables: dict[str, pd.DataFrame]) -> str:
     """The sentences that follow, and the table."""
     follow = [each.text for each in sentences(verdict, tables) if each.fails is None]
-    rows = select(tables[verdict.table.of], verdict.table.where)
     headings = {column: heading for heading, column in verdict.table.columns.items()}
+    rows = _rows(tables[verdict.table.of], verdict.table.where, *headings)
     shown = rows[list(headings)].rename(columns=headings)
     for heading in shown.select_dtypes("number"):
         shown[heading] = [f"{value:.5g}" for value in shown[heading]]

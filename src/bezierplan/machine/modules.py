@@ -9,6 +9,8 @@ from types import ModuleType
 
 from bezierplan.places import PACKAGE
 
+USERS = "study_"
+"""How the names of modules begin that are users' files."""
 PARTS = ("metrics", "worlds", "functions", "panels", "audit")
 """Files of code, without `.py`, that the folder of a study may have."""
 
@@ -30,7 +32,7 @@ def module(name: str) -> ModuleType:
     file = Path(name).resolve()
     # Modules know themselves by name, such as those that numba or pickle keep parts of; this one is
     # no library's.
-    key = f"study_{file.stem}"
+    key = f"{USERS}{file.stem}"
     spec = importlib.util.spec_from_file_location(key, name)
     made = importlib.util.module_from_spec(spec)
     known = {*sys.modules, key}

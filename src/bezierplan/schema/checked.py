@@ -10,14 +10,6 @@ import yaml
 
 from bezierplan.schema.words import plain
 
-try:
-    from yaml import CSafeLoader as SafeLoader
-except ImportError:  # PyYAML was built without libyaml
-    from yaml import SafeLoader
-
-LONGEST_FILE = 4_000_000
-"""Bytes of the longest file that is read: a study's YAML, maps, published numbers."""
-
 
 class Fault(ValueError):
     """A problem in a file that the user must fix, in one line: no character from the file can break
@@ -29,7 +21,7 @@ class Fault(ValueError):
         super().__init__(self.lines[0])
 
 
-class _Loader(SafeLoader):
+class _Loader(yaml.CSafeLoader):
     """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number;
     a key may occur only once.
     """
@@ -77,12 +69,8 @@ def read(file: Path, location: str | None = None) -> Any:
 
 
 def text_of(file: Path, location: str) -> str:
-    """The text of a file. Raises Fault, beginning with a location, unless it is a regular text file
-    of at most `LONGEST_FILE` bytes.
-    """
+    """The text of a file. Raises Fault, beginning with a location, unless it is one."""
     try:
-        if (size := file.stat().st_size) > LONGEST_FILE:
-            raise Fault(f"{location}: {size} bytes; expected at most {LONGEST_FILE}")
         return file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise Fault(f"{location}: cannot be read; expected text in UTF-8") from None
@@ -109,6 +97,8 @@ def check_known(name: Any, names: Iterable[Any], location: str, home: str = "") 
     names = list(names)
     if name not in names:
         where = f"; one of your own stands in {home} of the study's folder" if home else ""
+        if str(name) in map(str, names):  # a number in quotes, or text without
+            name, names = repr(name), map(repr, names)
         raise Fault(f"{location}: {name}: unknown{closest(name, names)}{where}")
 
 
@@ -123,7 +113,7 @@ def closest(word: Any, names: Iterable[Any]) -> str:
     """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence
     about an unknown one.
     """
-    words = sorted(map(str, names))
+    words = sorted({*map(str, names)})
     near = difflib.get_close_matches(str(word), words, n=1)
     hint = f"; did you mean {near[0]}?" if near else ";"
     if len(words) > 40:

@@ -44,7 +44,7 @@ class Model(BaseModel):
         if not isinstance(content, dict):
             raise wrong(
                 f"{shown(content)}: expected a mapping with "
-                f"{', '.join(key for key in fields if fields[key].is_required()) or 'keys'}"
+                f"{', '.join([key for key in fields if fields[key].is_required()] or fields)}"
             )
         for key in content:
             if key not in fields:
@@ -164,8 +164,8 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
     context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
-    if fault["type"] == "literal_error" and isinstance(value, str):
-        known = re.findall(r"'([^']*)'", context["expected"])
+    known = re.findall(r"'([^']*)'", context.get("expected", ""))
+    if known and isinstance(value, str):
         return f"{value}: unknown{closest(value, known)}"
     words = _EXPECTED.get(fault["type"])
     wanted = words.format_map(context) if words else context.get("text", fault["msg"])
@@ -278,11 +278,13 @@ def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
     distinct = Annotated[list[item], Field(min_length=least), AfterValidator(_distinct)]
     if not single:
         return distinct
-    several, lone = (TypeAdapter(each, config=ConfigDict(strict=True)) for each in (distinct, item))
+    several, lone = TypeAdapter(distinct), TypeAdapter(item)
     return Annotated[
         list[item],
         PlainValidator(
-            lambda entry: (several if isinstance(entry, list) else lone).validate_python(entry)
+            lambda entry: (several if isinstance(entry, list) else lone).validate_python(
+                entry, strict=True
+            )
         ),
     ]
 
@@ -319,7 +321,9 @@ def mapping_or(mapping: Any, other: Any) -> PlainValidator:
     """A type of value that is either a mapping of one type, or of another type."""
     as_mapping, as_other = TypeAdapter(mapping), TypeAdapter(other)
     return PlainValidator(
-        lambda entry: (as_mapping if isinstance(entry, dict) else as_other).validate_python(entry)
+        lambda entry: (as_mapping if isinstance(entry, dict) else as_other).validate_python(
+            entry, strict=True
+        )
     )
 
 

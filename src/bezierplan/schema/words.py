@@ -1,5 +1,10 @@
 """Words of unknown origin as one line that no terminal and no log is harmed by."""
 
+import traceback
+from pathlib import Path
+
+from bezierplan.machine.modules import USERS
+
 LONGEST = 500
 """Characters of the longest text of an exception that is shown."""
 
@@ -14,12 +19,15 @@ def plain(text: str, most: int | None = None) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in cut)
 
 
-def told(error: BaseException, most: int = LONGEST) -> str:
-    """An exception as one line: its class and its text, which foreign code may have written."""
-    try:
-        text = str(error)
-    except BaseException as fault:  # of a class of unknown origin
-        text = f"its text cannot be read: {type(fault).__name__}"
-    text = " ".join(text[: 10 * most].split()) if len(text) <= 10 * most else text
+def told(error: BaseException) -> str:
+    """An exception as one line: the line of a user's file that it comes from, if it does; its class
+    and its text, which foreign code may have written.
+    """
+    text = " ".join(str(error).split())
+    places = [
+        f"line {line} of {Path(frame.f_code.co_filename).name}: "
+        for frame, line in traceback.walk_tb(error.__traceback__)
+        if str(frame.f_globals.get("__name__")).startswith(USERS)
+    ]
     name = "sys.exit" if isinstance(error, SystemExit) else type(error).__name__
-    return plain(f"{name}: {text}" if text else name, most)
+    return plain("".join(places[-1:]) + (f"{name}: {text}" if text else name), LONGEST)

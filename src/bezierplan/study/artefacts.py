@@ -11,12 +11,17 @@ from bezierplan.figures import style
 from bezierplan.figures.figure import Figure
 from bezierplan.schema.model import Line, Model, Name, Setting, listed, mapping_or, one_of
 from bezierplan.study.experiments import Settings
+from bezierplan.workspaces.kinds import FileName
 
 
 class ArtefactsFile(Model):
     """The file."""
 
-    labels: dict[Line, Line] = Field({}, description="name → how it is printed")
+    labels: dict[Line, Line] = Field(
+        {},
+        description="name of a method, problem, workspace, column, metric or value → how it is "
+        "printed",
+    )
     looks: dict[Name, Literal[tuple(style.LOOKS)]] = Field(
         {},
         description="name of a method → how it looks in every figure: "
@@ -36,7 +41,7 @@ class ConfigFile(Model):
     studies: listed(Line) = Field(
         description="a list of studies, each the name of a folder in `config/studies` or a path"
     )
-    settings: dict[Name, dict[Name, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
+    settings: dict[Name, dict[FileName, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
         {},
         description="study → settings that override those of the same name in its "
         "`experiments.yaml`",

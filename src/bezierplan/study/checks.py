@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from bezierplan.analysis import metrics, statistics, study_code, verdict
 from bezierplan.analysis.claims.check import Check
@@ -43,33 +43,25 @@ a setting of that name adds nothing.
 """
 
 
-def faults_of(study: Study, invalid: Iterable[str] = ()) -> list[str]:
-    """Everything that is wrong in a study whose files are each valid on their own, one line each.
+class Checks:
+    """The checks of a study whose files are each valid on their own. Their methods raise a fault
+    without the place where it stands.
 
     invalid: names of entries that are left out, because they are not valid.
     """
-    checks = Checks(study, invalid)
-    checks.check()
-    return checks.faults
 
-
-class Checks:
-    """The checks of a study, whose methods raise a fault without the place where it stands, and the
-    faults that they find.
-    """
-
-    def __init__(self, study: Study, invalid: Iterable[str]) -> None:
-        self.study, self.invalid = study, invalid
-        self.faults: list[str] = []
-        self.sound: dict[str, Method] = {}
-        self._place: tuple[str, ...] = ()
+    def __init__(self, study: Study, invalid: Iterable[str] = ()) -> None:
+        self.study, self.invalid = study, {*invalid}
+        self.faults = []
+        self.words = {"generation"}
+        self._place = ()
         self.design = cache(lambda experiment: design(self.study, experiment))
         self.runs = cache(self._runs)
         self.built = cache(self._built)
-        self.known: dict[str, Iterable[str]] = {
-            "experiment": [*study.experiments, *invalid],
+        self.known = {
+            "experiment": [*study.experiments],
             "workspace": study.workspaces,
-            "problem": [*study.problems, *invalid],
+            "problem": study.problems,
             "method": study.methods,
             "own method": study.methods.keys() - study.baselines.keys(),
             "baseline": study.baselines,
@@ -78,9 +70,8 @@ class Checks:
             "world": study_code.part_of(study.code_for("worlds")),
             "drawing": study_code.part_of(study.code_for("panels")),
             "statistic": statistics.STATISTICS,
-            "compared": [*study.with_published(), *invalid],
-            "artefact": [*study.tables, *study.figures, *invalid],
-            "setting": [],
+            "compared": study.with_published(),
+            "artefact": {**study.tables, **study.figures},
             "printed table": [Path(file).stem for file in study.published_files()],
         }
 
@@ -97,40 +88,46 @@ class Checks:
                 found = any(each.endswith(line) for each in self.faults)
                 if not (found if known else self.faults or self.invalid):
                     self.faults.append(": ".join([*self._place, line]))
+                self.invalid.update(self._place[2:3])
         finally:
             self._place = outer
 
     def each(self, section: str, entries: dict[str, Any], work: Callable[[str, Any], None]) -> None:
-        """Check the entries of a section of a file."""
-        for name, entry in entries.items():
+        """Check the entries of a section of a file, and leave out those that have a fault."""
+        for name, entry in [*entries.items()]:
             with self.at(section, name):
                 work(name, entry)
+            if name in self.invalid:
+                entries.pop(name)
 
-    def check(self) -> None:
-        """All that there is."""
+    def check(self) -> list[str]:
+        """All faults, one line each."""
         study = self.study
         with self.at(relative(study.folder / "experiments.yaml")):
             self.each("methods", study.methods, self.method)
-            # A planner that has a fault is not executed again.
-            study = self.study = study.model_copy(update={"methods": self.sound})
+            # A planner that has a fault may have any settings.
+            self.complete = not self.invalid
             with self.at():
                 self.shared_settings()
-            resolved = {name: study.resolved(name) for name in study.methods}
-            self.each("methods", resolved, self.settings)
+            if self.complete:
+                self.each("methods", {**study.methods}, lambda name, _: self.settings(study, name))
             self.each("workspaces", study.workspaces, self.workspace)
             self.each("problems", study.problems, self.problem)
             self.each("experiments", study.experiments, self.experiment)
-            self.baseline_comparison()
+            if compared := study.baseline_comparison:
+                with self.at("baseline_comparison"):
+                    self.names(compared)
+                    for name in compared.experiments:
+                        check_known(compared.baseline, study.methods_of(name), f"{name}: baseline")
         with self.at():
             for file in study.published_files():
                 published.read(Path(file))
             if file := study.verdict_file():
                 verdict.read(file)
         with self.at(relative(study.folder / "artefacts.yaml")):
-            for method in study.looks:
-                check_known(method, study.methods, "looks")
             self.each("tables", study.tables, self.table)
             self.each("figures", study.figures, self.figure)
+            self.prints()
         for section, entries, work in (
             ("claims", study.claims, self.claim),
             ("assumptions", study.assumptions, self.assumption),
@@ -143,15 +140,16 @@ class Checks:
                     if ids.count(identity) > 1:
                         raise Fault(f"{section}: {identity}: another one has this id already")
         with self.at(relative(study.folder / "assumptions.yaml"), "votes"):
-            check_all(study.votes, study.with_published(), "table")
+            check_all(study.votes.keys() - self.invalid, study.with_published(), "table")
             for table, voting in study.votes.items():
                 values = study.tables[table].values
                 check_all(voting, [each.metric for each in values if each.defined], table)
+        return self.faults
 
     # experiments.yaml
 
     def method(self, name: str, method: Method) -> None:
-        """Its planner has the interface of one, and no setting that is named like a column."""
+        """Its planner has the interface of one, and nothing of its own is named like a column."""
         self.names(method)
         location = f"planner: {method.planner}"
         if is_file(method.planner):
@@ -159,10 +157,9 @@ class Checks:
         else:
             check_known(method.planner, known_planners(), "planner", f"{method.planner}.py")
         module = interface.loaded(self.study.planner(name), location)
-        for setting in RESERVED & set(planner_settings(module)):
-            raise Fault(
-                f"{location}: its setting {setting} is a column of results; give it another name"
-            )
+        extra = getattr(module, "extra", ())
+        for taken in RESERVED.intersection([*planner_settings(module), *extra]):
+            raise Fault(f"{location}: its {taken} is a column of results; give it another name")
         interface.refuse_unknown(module, method.settings, "settings")
         if (
             method.policy
@@ -170,8 +167,7 @@ class Checks:
             and not hasattr(module, "resume")
         ):
             raise Fault(f"policy: {method.policy}: warm, but its planner has no function resume")
-        metrics.add_columns(getattr(module, "extra", ()))
-        self.sound[name] = method
+        metrics.add_columns(extra)
 
     def shared_settings(self) -> None:
         """Settings of all methods, of a planner's methods, and of presets exist in some planner."""
@@ -179,6 +175,8 @@ class Checks:
         planners = {method.planner: name for name, method in study.methods.items()}
         used = {setting for name in study.methods for setting in study.accepted(name)}
         self.known["setting"] = used
+        if not self.complete:
+            return
         check_all(study.of_planners, planners, "settings")
         check_all(study.settings.keys() - study.of_planners.keys(), used, "settings")
         for planner, settings in study.of_planners.items():
@@ -189,9 +187,11 @@ class Checks:
             for value, settings in values.items():
                 check_all(settings, used, f"presets: {preset}: {value}")
 
-    def settings(self, name: str, settings: dict[str, Any]) -> None:
+    def settings(self, study: Study, name: str) -> None:
         """Each setting of a method has a value that its planner accepts."""
-        interface.check_settings(planner_module(self.study.planner(name)), settings, "settings")
+        interface.check_settings(
+            planner_module(study.planner(name)), study.resolved(name), "settings"
+        )
 
     def workspace(self, name: str, workspace: Workspace) -> None:
         """It can be read."""
@@ -202,7 +202,8 @@ class Checks:
     def problem(self, name: str, problem: ProblemOfStudy) -> None:
         """It has the keys of its kind of workspace, and lies in free space."""
         self.names(problem)
-        check_all(problem.settings, self.known["setting"], "settings")
+        if self.complete:
+            check_all(problem.settings, self.known["setting"], "settings")
         home = self.study.workspace_of(name)
         for key, needed in (("layouts", bool(home.draws)), ("side", home.with_side)):
             if needed != (getattr(problem, key) is not None):
@@ -244,8 +245,8 @@ class Checks:
         for setting in experiment.vary.keys() & study.presets.keys():
             values = (str(value).lower() for value in experiment.vary[setting])
             check_all(values, study.presets[setting], f"vary: {setting}")
-        methods = [*experiment.methods, *study.baselines]
-        factors = {"method": methods, "problem": experiment.problems} | experiment.vary
+        factors = {"method": [*experiment.methods, *study.baselines]} | experiment.vary
+        factors["problem"] = experiment.problems
         check_all(experiment.fewer, factors, "fewer")
         for factor, fewer in experiment.fewer.items():
             check_all(fewer, map(str, factors[factor]), f"fewer: {factor}")
@@ -268,6 +269,8 @@ class Checks:
                 )
             if hasattr(module, "serves"):
                 interface.asked(module.serves, f"{where}: problem {problem}", self.built(problem))
+        if not self.complete or method in self.invalid:
+            return
         described = job(study, name, method, "full", 0)
         # One problem for each distinct set of problem settings.
         apart = {
@@ -280,15 +283,6 @@ class Checks:
                 module, settings_in(described, condition), f"{varied}: settings"
             )
 
-    def baseline_comparison(self) -> None:
-        """Its baseline joins its experiments."""
-        if compared := self.study.baseline_comparison:
-            with self.at("baseline_comparison"):
-                self.names(compared)
-                for name in compared.experiments:
-                    methods = self.study.methods_of(name)
-                    check_known(compared.baseline, methods, f"{name}: baseline")
-
     # Names defined elsewhere
 
     def names(self, model: Model) -> None:
@@ -299,7 +293,8 @@ class Checks:
         claim = isinstance(model, Check)
         for path, what, name in named(model):
             key = ": ".join(path[:-1] if path[-1].isdecimal() else path)
-            if what in self.known:
+            self.words.add(str(name))
+            if what in self.known and name not in self.invalid:
                 home = {"function": "functions.py", "drawing": "panels.py", "world": "worlds.py"}
                 check_known(name, self.known[what], key, home.get(what, ""))
             elif what in ("file", "published"):
@@ -350,8 +345,7 @@ class Checks:
             if name not in arguments:
                 raise Fault(f"arguments: {name}: missing; {function.__name__} needs it")
             try:
-                strict = TypeAdapter(annotation, config=ConfigDict(strict=True))
-                strict.validate_python(arguments[name])
+                TypeAdapter(annotation).validate_python(arguments[name], strict=True)
             except ValidationError as error:
                 raise fault_of(error, "arguments", name) from None
 
@@ -364,6 +358,16 @@ class Checks:
             runs = self.design(table.experiment)
             published.check(self.study, runs, table)
             runs.check_where(table.primary, "primary")
+
+    def prints(self) -> None:
+        """Looks are of methods; labels of names in results: columns and their values, metrics,
+        statistics, and words of the tables that functions make.
+        """
+        check_all(self.study.looks.keys() - self.invalid, self.study.methods, "looks")
+        runs = self.runs(tuple(self.known["experiment"]), False)
+        values = (str(value) for column in runs.rows for value in runs.values(column))
+        names = [*metrics.METRICS, *statistics.STATISTICS, *runs.types, *self.words, *values]
+        check_all(self.study.labels, names, "labels")
 
     def figure(self, name: str, figure: Figure) -> None:
         """Its panels' names exist."""
@@ -430,9 +434,9 @@ class Checks:
         if not assumption.setting:
             return
         methods = concerned(study, assumption)
-        if not methods:
-            used = {setting for method in study.methods for setting in study.resolved(method)}
-            check_known(assumption.setting, used - {assumption.setting}, "setting")
+        if not methods and self.complete:
+            used = self.known["setting"] - {assumption.setting}
+            check_known(assumption.setting, used, "setting")
         for method, settings in assumption.along.items():
             check_known(method, methods, "with")
             check_all(settings, study.accepted(method), f"with: {method}")
@@ -440,7 +444,7 @@ class Checks:
             changed = with_alternative(study, assumption, value)
             for method in methods:
                 with self.at("alternatives", str(value), method):
-                    self.settings(method, changed.resolved(method))
+                    self.settings(changed, method)
 
 
 def inside(folder: Path, name: str, location: str) -> None:

@@ -2,7 +2,7 @@
 
 import itertools
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,8 +29,8 @@ class Study(ExperimentsFile, ArtefactsFile):
 
     key: str
     folder: Path
-    claims: list[Claim]
-    assumptions: list[Assumption]
+    claims: Sequence[Claim] = ()
+    assumptions: Sequence[Assumption] = ()
     votes: dict
 
     def accepted(self, method: str) -> dict[str, Any]:
@@ -67,7 +67,7 @@ class Study(ExperimentsFile, ArtefactsFile):
         kinds, methods = {self.kind_of(problem) for problem in content.problems}, [*content.methods]
         for name, baseline in self.baselines.items():
             module = planner_module(self.planner(name))
-            varied = content.vary.keys() & planner_settings(module).keys()
+            varied = content.vary.keys() & self.accepted(name).keys()
             served = kinds <= set(getattr(module, "workspaces", kinds))
             if served and not varied and moves == bool(baseline.policy):
                 methods.append(name)

@@ -98,7 +98,7 @@ class Design(NamedTuple):
 
     def check_repeat(self, repeat: Any, location: str) -> None:
         """A repeat is run. Raises Fault, beginning with a location."""
-        if not is_number(repeat) or repeat not in range(self.repeats):
+        if repeat not in range(self.repeats):
             raise Fault(f"{location}: {repeat}: expected a repeat from 0 to {self.repeats - 1}")
 
     def values(self, column: str) -> list[Any]:

@@ -85,8 +85,8 @@ class Problem(Model):
     )
     layouts: Scales = Field(
         None,
-        description="in a workspace drawn at random: "
-        "how many are drawn, for each scale; column `layout`",
+        description="how many a workspace drawn at random has, for smoke, full and extended; "
+        "column `layout`",
     )
     obstacles: listed(Annotated[int, whole(0, 100_000)]) = Field(
         None,
@@ -191,7 +191,9 @@ class BaselineComparison(Model):
     """The baseline with which the summary compares the study's methods."""
 
     baseline: Annotated[Name, Names("baseline")] = Field(description="a baseline")
-    proposed: Name = Field(None, description="the method that the paper proposes")
+    proposed: Annotated[Name, Names("own method")] = Field(
+        None, description="the method that the paper proposes"
+    )
     experiments: listed(ExperimentName) = Field(
         description="the experiments in which the methods are compared with it; "
         "it must join each of them"
@@ -230,7 +232,7 @@ class ExperimentsFile(Model):
         "varies one of its settings. "
         "Baselines appear in comparisons, not in the tables laid out like the paper's",
     )
-    settings: dict[Name, Annotated[Any, mapping_or(Settings, Setting)]] = Field(
+    settings: dict[FileName, Annotated[Any, mapping_or(Settings, Setting)]] = Field(
         description="settings of all methods. A planner's settings are the keyword-only arguments "
         "of its function `plan`; each "
         "needs a value, there "

@@ -196,7 +196,7 @@ def labels_of(study: Study, artefact: str) -> dict[str, str]:
     spec = study.tables.get(artefact) or study.figures[artefact]
     if isinstance(spec, FunctionTable) or getattr(spec, "calls", False):
         return study.labels
-    shown = {getattr(panel, "method", None) for panel in getattr(spec, "panels", [])}
+    shown = set()
     for experiment in methods_of_artefact(study, artefact):
         content = study.experiments[experiment]
         shown |= {*study.methods_of(experiment), *content.problems}

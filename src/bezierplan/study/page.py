@@ -65,7 +65,7 @@ def page(studies: Studies, scale: str, root: str = "") -> Page:
     shown = {key: _study(own, scale, root) for key, own in studies.items()}
     return Page(
         PageJob(scale, shown, outcome=bool(outcome)),
-        [place for place in behind if studies[place.split("/")[0]].moves(place.split("/")[1])],
+        [place for place in behind for key, name in [place.split("/")] if studies[key].moves(name)],
         sources=[*files(), *outcome],
         shows=behind,
         code=[module for own in studies.values() for module in own.code_for("metrics")],
@@ -149,4 +149,4 @@ def _repeats(study: Study, scale: str) -> list[int]:
     for experiment in study.experiments.values():
         fewer = experiment.fewer.values() if scale == "extended" else ()
         counts += [experiment.repeats[scale], *(n for each in fewer for n in each.values())]
-    return [min(counts), max(counts)] if counts else []
+    return [min(counts), max(counts)]

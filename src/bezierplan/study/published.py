@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis import metrics
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
 from bezierplan.schema.model import is_number
@@ -68,14 +68,22 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         design.check_column(column, "column", f"{here}: line 1: column")
     repeats = {"repeat": range(design.repeats)}
     known = {column: repeats.get(column, design.values(column)) for column in keys}
-    known |= {"metric": metrics.METRICS, "statistic": statistics.STATISTICS}
+    shown = {
+        f"{value.metric} {statistic}"
+        for each in study.with_published().values()
+        if each.published == table.published
+        for value in each.values
+        for statistic in (*value.statistics, "unstated")
+    }
     unit = study.workspace_of(study.experiments[table.experiment].problems[0]).unit
-    places: dict[tuple, int] = {}
+    places = {}
     for number, row in lines.items():
         where = f"{here}: line {number}"
         for column, values in known.items():
             if row[column] not in values and _read(row[column]) not in values:
                 check_known(row[column], values, f"{where}: {column}")
+        metric = table.reads.get(row["metric"], row["metric"])
+        check_known(f"{metric} {row['statistic']}", shown, f"{where}: metric and statistic")
         of_metric = metrics.unit(row["metric"], unit)
         for column, fits, wanted in (
             ("value", row["value"], "a number"),
@@ -88,9 +96,6 @@ def check(study: Study, design: Design, table: Pivot) -> None:
         ):
             if not fits:
                 raise Fault(f"{where}: {column}: {row[column]!r}; expected {wanted}")
-        metric = table.reads.get(row["metric"], row["metric"])
-        check_known(metric, metrics.METRICS, "reads")
-        design.check_metric(metric, f"{where}: metric")
         place = tuple(row[key] for key in (*keys, "metric", "statistic"))
         if places.setdefault(place, number) != number:
             raise Fault(

@@ -32,7 +32,8 @@ def config_file() -> Path:
 def read_config(config: Mapping[str, Any]) -> Folders:
     """The studies that a configuration names. Raises Fault."""
     location = "config/config.yaml or --config"
-    content = parsed(ConfigFile, _with_values(dict(config)), location)
+    settings = _with_values(config.get("settings", {}))
+    content = parsed(ConfigFile, {**config, "settings": settings}, location)
     folders: Folders = {}
     for name in content.studies:
         folder = STUDIES / name if "/" not in name else Path(name)
@@ -48,17 +49,13 @@ def read_config(config: Mapping[str, Any]) -> Folders:
     return folders
 
 
-def _with_values(config: dict[str, Any]) -> dict[str, Any]:
-    """A configuration whose settings are numbers where they look like it: Snakemake reads those of
-    the command line as text.
+def _with_values(settings: Any) -> Any:
+    """Settings of a configuration, which are numbers where they look like it: Snakemake reads those
+    of the command line as text.
     """
-
-    def value(entry: Any) -> Any:
-        if isinstance(entry, dict):
-            return {key: value(each) for key, each in entry.items()}
-        return checked.parse(entry, "--config") if isinstance(entry, str) else entry
-
-    return {key: value(entry) if key == "settings" else entry for key, entry in config.items()}
+    if isinstance(settings, dict):
+        return {name: _with_values(each) for name, each in settings.items()}
+    return checked.parse(settings, "--config") if isinstance(settings, str) else settings
 
 
 FILES = {
@@ -71,14 +68,14 @@ FILES = {
 
 def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     """The studies in folders, by name, read and checked. Raises Fault."""
-    from bezierplan.study.checks import faults_of
+    from bezierplan.study.checks import Checks
 
     studies: dict[str, Study] = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
         try:
             study, faults, lost = _read(folder, changed)
-            if faults := [*faults, *faults_of(study, lost)]:
+            if faults := [*faults, *Checks(study, lost).check()]:
                 raise Fault(*faults)
         except Fault as fault:
             more = f" (with the configuration's settings: {changed})" if changed else ""
@@ -113,9 +110,8 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
             study_code.functions([name])
         except (Exception, SystemExit) as error:  # a user's file can fail in any way
             raise Fault(f"{name}: {told(error)}") from None
-    content: dict[str, Any] = {"claims": [], "assumptions": [], "votes": {}} | dict(ArtefactsFile())
-    faults: list[str] = []
-    invalid: list[str] = []
+    content: dict[str, Any] = {"votes": {}}
+    faults, invalid, broken = [], [], []
     for name, model in FILES.items():
         file = folder / f"{name}.yaml"
         try:
@@ -126,9 +122,9 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
                 faults += lines
                 invalid += left
         except Fault as fault:
-            faults += fault.lines
-    if "methods" not in content:
-        raise Fault(*faults)
+            broken += fault.lines
+    if broken:  # What others say of such a file's names would follow from it.
+        raise Fault(*broken, *faults)
     for name, value in changes.items():
         own = content["settings"].get(name)
         content["settings"][name] = (

@@ -7,7 +7,6 @@ stall the one that it is in.
 
 import copy
 import inspect
-import traceback
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
@@ -55,7 +54,7 @@ def imported(planner: str) -> tuple[ModuleType | None, str]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # a user's file can fail in any way
-        return None, _failed(error, planner)
+        return None, told(error)
     return module, interface_fault(module) or ""
 
 
@@ -147,6 +146,8 @@ def interface_fault(module: ModuleType) -> str | None:
                 f"setting {parameter.name}: {annotated}; expected bool, int, float, Literal, or "
                 "Annotated with a Range"
             )
+    if isinstance(extra := getattr(module, "extra", ()), str):
+        return f"extra: {extra!r}: expected a tuple of names, such as ({extra!r},)"
     return _workspaces_fault(getattr(module, "workspaces", ()))
 
 
@@ -186,19 +187,3 @@ def _workspaces_fault(kinds: Any) -> str | None:
         if unknown
         else None
     )
-
-
-def _failed(error: BaseException, file: str) -> str:
-    """What went wrong in an executed file, with the line number if known."""
-    if isinstance(error, SyntaxError):
-        line = error.lineno
-        text = f"{type(error).__name__}: {error.msg}"
-    else:
-        lines = [
-            frame.lineno
-            for frame in traceback.extract_tb(error.__traceback__)
-            if frame.filename.endswith(file)
-        ]
-        line = lines[-1] if lines else None
-        text = told(error)
-    return f"{f'line {line}: ' if line else ''}{text}"

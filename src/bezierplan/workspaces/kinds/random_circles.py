@@ -50,6 +50,11 @@ def draw(description: dict, problem: dict, name: str) -> Circles:
     """
     check_bounds(_bounds(description))
     ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
+    if problem["obstacles"] > description["circles"]:
+        raise ValueError(
+            f"obstacles: {problem['obstacles']}: expected at most {description['circles']}, the "
+            "circles of a layout"
+        )
     return first(layout(description, name, problem["layout"], ends), problem["obstacles"])
 
 
