@@ -47,8 +47,10 @@ def results(repeats: int = 20) -> Results:
     rows = [
         {
             "id": f"study/experiment/{problem}/{method}/{repeat}",
+            "condition": problem,
             "problem": problem,
             "method": method,
+            "planner": "prm",
             "repeat": repeat,
             "length": 1.0 if repeat % 5 == 0 else rng.normal(10 if problem == "long" else 5, 0.1),
             "evaluations": 1000 if method == "fast" else 2000,
@@ -128,6 +130,20 @@ def test_a_table_in_the_papers_form_shows_small_numbers_and_the_printed_ones_in_
     assert list(laid) == list(table)
     assert laid.loc["the long one"].to_list() == ["", "1000", "10", "10.00"]
     assert laid.loc["brief"].to_list() == [""] * 4
+
+
+def test_a_deterministic_method_has_one_run_under_each_condition():
+    ours = results()
+    plain = ours.runs["method"] == "plain"
+    changed = {"planner": "straight_line", "length": 10.0, "feasible": True}
+    runs = ours.runs.assign(
+        **{name: ours.runs[name].mask(plain, changed[name]) for name in changed}
+    )
+    table = compare(ours._replace(runs=runs))
+    found = row(table, "long", "plain", "length")
+    assert (found["n_ours"], found["n_asked"], found["value_ours"]) == (1, 1, 10.0)
+    assert np.isnan(found["low95_ours"])
+    assert row(table, "long", "fast", "length")["n_asked"] == 20
 
 
 def test_failed_runs_are_never_averaged():

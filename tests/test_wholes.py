@@ -41,8 +41,10 @@ def results(values):
     runs = [
         {
             "id": f"s/e/long/{method}/{repeat}",
+            "condition": "long",
             "problem": "long",
             "method": method,
+            "planner": "prm",
             "repeat": repeat,
             "objective": values[repeat, number],
             "length": 1.0,

@@ -90,21 +90,16 @@ def _make(
     workflow.write_text(
         f"module again:\n    snakefile: {str(TREE / 'workflow' / 'Snakefile')!r}\n"
         f"    config: {config | {'studies': studies, 'settings': settings}!r}\n"
-        f"    prefix: {away!r}\n\nuse rule * from again\n"
+        f"    prefix: {away!r}\n\nuse rule * from again\n\n"
+        # What a module does on start is not done.
+        "onstart:\n    workflow.scheduler.job_rate_limiter = None\n"
     )
     done = subprocess.run(
         [
             *(sys.executable, "-m", "snakemake", "--snakefile", workflow, "--forceall"),
             *("--cores", str(processes), "--nolock", "--drop-metadata"),
-            *(
-                "--workflow-profile",
-                "none",
-                "--scheduler",
-                "greedy",
-                "--allowed-rules",
-                *_RULES,
-                "--",
-            ),
+            *("--workflow-profile", "none", "--scheduler", "greedy"),
+            *("--allowed-rules", *_RULES, "--"),
             *(file for file in files if file.suffix in _ENDINGS),
         ],
         capture_output=True,

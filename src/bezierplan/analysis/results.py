@@ -13,6 +13,7 @@ from bezierplan.running import rows as row_files
 from bezierplan.running import worlds
 from bezierplan.running.chunk import Chunk, chunk_files
 from bezierplan.running.columns import TABLES
+from bezierplan.running.guard import interface
 from bezierplan.running.inputs import Files, by_table
 from bezierplan.running.judge import answer
 from bezierplan.schema.model import one_or_list
@@ -179,6 +180,14 @@ def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
     """The runs whose columns equal the given values, or one of the values in a list."""
     chosen = [runs[column].isin(one_or_list(wanted)) for column, wanted in where.items()]
     return runs[np.logical_and.reduce(chosen)] if chosen else runs
+
+
+def repeated(runs: pd.DataFrame) -> np.ndarray:
+    """Which runs (n,) only repeat another, under the same condition: of planners that use no random
+    numbers.
+    """
+    sure = [name for name in runs["planner"].unique() if interface.traits(name).deterministic]
+    return (runs["planner"].isin(sure) & runs.duplicated(["condition", "method"])).to_numpy()
 
 
 def groups(table: pd.DataFrame, columns: list[str]) -> list[pd.DataFrame]:

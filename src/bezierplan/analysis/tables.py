@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.results import Results, select
+from bezierplan.analysis.results import Results, repeated, select
 from bezierplan.analysis.table_kinds import Pivot
 
 SIGNIFICANT = 3
@@ -50,12 +50,13 @@ def cells(
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted
     (n,): the metric of the runs that count, which satisfy the entry's `where` and have one; asked:
-    how many satisfy `where`, with or without one; by_run: theirs, NaN without one, by problem and
-    repeat; groups: the numbers as one array for each value
-    of the column `within`, None without that key; least, most: the range of the metric for one run
-    (`least` of an entry is stronger than that of its metric); and over all runs of the group: runs
-    (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones)
-    of the metric's kind of length; draws (of random maps; 0 on others).
+    how many satisfy `where`, with or without one; of a deterministic method one under each
+    condition, in both; by_run: those of all, NaN without one, by problem and repeat; groups: the
+    numbers as one array for each value of the column `within`, None without that key; least, most:
+    the range of the metric for one run (`least` of an entry is stronger than that of its metric);
+    and over all runs of the group: runs (how many), share_claimed, share_feasible, bound (median)
+    and gap (median of the feasible ones) of the metric's kind of length; draws (of random maps; 0
+    on others).
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.where).sort_values("id", ignore_index=True)
@@ -84,6 +85,7 @@ def cells(
     bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
     feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
     asked = [runs.index.isin(select(runs, entry.where).index) for entry in entries]
+    copies = repeated(runs)
     units = runs[spec.within].to_numpy() if spec.within else None
     names = pd.MultiIndex.from_frame(runs[["problem", "repeat"]])
     rows = []
@@ -98,8 +100,10 @@ def cells(
         }
         for value, (entry, metric) in enumerate(zip(entries, specs)):
             of_entry = positions[asked[value][positions]]
+            # Among others even a repeated run has a rank of its own.
+            single = of_entry[~copies[of_entry] | metric.among_rows]
             # A run without a value counts nowhere.
-            chosen = of_entry[~np.isnan(places[value][of_entry])]
+            chosen = single[~np.isnan(places[value][single])]
             numbers = places[value][chosen]
             least, groups = leasts[value], None
             if units is not None:
@@ -116,7 +120,7 @@ def cells(
                 "value": value,
                 "metric": entry.metric,
                 "decimals": entry.decimals,
-                "asked": len(of_entry),
+                "asked": len(single),
                 "numbers": np.sort(numbers),
                 "by_run": pd.Series(places[value][of_entry], names[of_entry]),
                 "groups": groups,
