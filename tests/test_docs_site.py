@@ -209,6 +209,8 @@ def test_pages_fit_their_width_and_pass_axe(tab, subtests):
             tab.goto(f"/{page}.html")
             width = tab.viewport_size["width"]
             assert tab.evaluate("document.documentElement.scrollWidth") <= width
+            if width < WIDTHS[0] and page != "index":
+                continue  # what a narrow window has of its own is on every page
             found = (
                 Axe().run(tab, options={"runOnly": rules, "preload": False}).response["violations"]
             )

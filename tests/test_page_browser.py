@@ -48,11 +48,6 @@ def small(tmp_path_factory):
     return file
 
 
-@pytest.fixture(params=["small", "smoke"])
-def file(request, small):
-    return small if request.param == "small" else request.getfixturevalue("smoke")
-
-
 @pytest.fixture(scope="module")
 def smoke():
     """`make test` makes it before the tests."""
@@ -102,12 +97,18 @@ WIDTHS = [1280, *([400] if os.environ.get("ALL") else [])]
 """The second width of a window is tried with `make test ALL=1`."""
 
 
-@pytest.mark.parametrize("options", [{}, {"color_scheme": "dark"}], ids=["light", "dark"])
+@pytest.mark.parametrize(
+    ("name", "scheme"), [("small", "light"), ("small", "dark"), ("smoke", "light")]
+)
 @pytest.mark.parametrize("width", WIDTHS)
-def test_page_opens_without_complaint_fits_its_width_and_passes_axe(visit, file, options, width):
+def test_page_opens_without_complaint_fits_its_width_and_passes_axe(
+    visit, request, name, scheme, width
+):
+    """The small page has every kind of content, so its dark colours are those of any page."""
     from axe_playwright_python.sync_playwright import Axe
 
-    tab = visit(file, viewport={"width": width, "height": 800}, **options)
+    file = request.getfixturevalue(name)
+    tab = visit(file, viewport={"width": width, "height": 800}, color_scheme=scheme)
     opened = "document.querySelectorAll('details').forEach((part, n) => { part.open = n < %d; })"
     tab.evaluate(opened % 12)
     tab.wait_for_timeout(200)

@@ -53,8 +53,9 @@ def test_commands_that_are_not_executed_as_printed_stand_in_the_readme():
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
-    """A copy of the tree after `make smoke`; a blank in the path."""
+    """A small copy of the tree after `make smoke`; a blank in the path."""
     tree = trees.copy(tmp_path_factory.mktemp("readme") / "a clone")
+    trees.small(tree)
     (tree / ".venv").symlink_to(ROOT / ".venv")
     executed(tree, "make smoke")
     return tree

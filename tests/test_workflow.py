@@ -21,6 +21,7 @@ import pytest
 import starts
 import trees
 import yaml
+from trees import EXPERIMENTS, edit, small
 
 from bezierplan.analysis.run_tables import run_tables, table_digest
 
@@ -28,24 +29,6 @@ ROOT = Path(__file__).parents[1]
 # Those of the paper, and the baseline that all studies share.
 GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single")
 METHODS = (*GENETIC, "rounded")
-EXPERIMENTS = "config/studies/song2016/experiments.yaml"
-SMALL = {
-    "population: 200": "population: 10",
-    "generations: 100": "generations: 5",
-    "population: 20200": "population: 60",
-    "repeats: {smoke: 2, full: 100, extended: 250}": "repeats: {smoke: 2, full: 4, extended: 8}",
-    "chunk: {smoke: 2, full: 50, extended: 125}": "chunk: {smoke: 2, full: 2, extended: 4}",
-    "smooth_cubic: 125, smooth_single: 125, shortest_path: 125, straight_line: 125, rounded: 125, "
-    "random_search: 125": "smooth_single: 4",
-}
-
-
-def edit(file, old, new):
-    text = file.read_text()
-    assert old in text
-    file.write_text(text.replace(old, new, 1))
-
-
 TRIGGERS = yaml.safe_load((ROOT / "profiles/default/profile.yaml").read_text())["rerun-triggers"]
 
 
@@ -111,8 +94,7 @@ def finished(tmp_path_factory):
     """A tree in which everything was made, kept as a snapshot."""
     tree = trees.copy(tmp_path_factory.mktemp("workflow") / "tree")
     (tree / ".venv").symlink_to(ROOT / ".venv")
-    for old, new in SMALL.items():
-        edit(tree / EXPERIMENTS, old, new)
+    small(tree)
     snakemake(tree)
     # What it holds is named by content, so all copies may share it.
     (tree / ".cache").rename(tree.parent / "cache")
@@ -209,18 +191,11 @@ EDITS = {
         "wheel = np.cumsum(fitness + 0)",
         runs(2, GENETIC) | OF_RUNS,
     ),
-    "a docstring": ("src/bezierplan/planners/parts/genetic.py", '"""', '"""Once more. ', {}),
     "what a job does": (
         "src/bezierplan/analysis/jobs.py",
         "        compared = comparison.compare(\n",
         "        0\n        compared = comparison.compare(\n",
         dict.fromkeys(("table table1", "latex table1", *SUMMARY), 1),
-    ),
-    "how a job is logged": (
-        "src/bezierplan/running/jobs/log.py",
-        'LAST = "CRITICAL "',
-        'LAST = "CRITICAL " + ""',
-        {},
     ),
     "a title": (
         "config/studies/song2016/artefacts.yaml",
@@ -284,31 +259,25 @@ EDITS = {
 
 @pytest.mark.parametrize("name", EDITS)
 def test_edit_reruns_exactly_what_it_changes(name, tree):
+    """By its content: the file keeps the date of its last change."""
     file, old, new, expected = EDITS[name]
+    dates = (tree / file).stat()
     edit(tree / file, old, new)
+    os.utime(tree / file, ns=(dates.st_atime_ns, dates.st_mtime_ns))
     assert planned(tree) == expected
 
 
-@pytest.mark.parametrize(
-    "file", ["workspaces/figure2.txt", "published/table1.csv", "published/table1.csv: copied"]
-)
-def test_content_of_a_source_counts_not_its_date(file, tree):
-    name, _, copied = file.partition(": ")
-    source = tree / "config/studies/song2016" / name
-    dates = source.stat()
-    if not copied:
-        old, new, expected = next(row[1:] for row in EDITS.values() if row[0].endswith(name))
-        edit(source, old, new)
-        os.utime(source, ns=(dates.st_atime_ns, dates.st_mtime_ns))
-        assert planned(tree) == expected
-    else:
-        os.utime(source)
-        assert planned(tree) == {}
-
-
-def test_touched_scripts_rerun_nothing(tree):
+def test_what_changes_no_result_reruns_nothing(tree):
+    """A docstring, how jobs are logged, a new planner, and dates of scripts and of sources."""
+    planners = tree / "src/bezierplan/planners"
+    edit(planners / "parts/genetic.py", '"""', '"""Once more. ')
+    edit(
+        tree / "src/bezierplan/running/jobs/log.py", 'LAST = "CRITICAL "', 'LAST = "CRITICAL " + ""'
+    )
+    shutil.copy(planners / "binary_genetic.py", planners / "another.py")
     for file in (tree / "workflow").rglob("*.*"):
         os.utime(file)
+    os.utime(tree / "config/studies/song2016/published/table1.csv")
     assert planned(tree) == {}
 
 
@@ -323,14 +292,6 @@ def test_cut_off_table_of_runs_is_named_and_made_again(finished, tree):
     file.unlink()
     snakemake(tree, file.relative_to(tree))
     assert digests(tree) == digests(finished)
-
-
-def test_new_planner_reruns_nothing(tree):
-    shutil.copy(
-        tree / "src/bezierplan/planners/binary_genetic.py",
-        tree / "src/bezierplan/planners/another.py",
-    )
-    assert planned(tree) == {}
 
 
 def test_deleted_figure_alone_is_made_again(tree):
