@@ -188,13 +188,15 @@ def report(
 
 
 def _listed(claims: pd.DataFrame) -> str:
-    """Claims with their verdicts, as markdown, without columns that are empty."""
+    """Claims with their verdicts, and on what these depend, as markdown; without empty columns."""
     columns = [
         *("statement", "verdict", "verdict_papers_size", "verdict_best_reading"),
         *("holds", "where_it_holds", "published", "effect", "n"),
     ]
     filled = [name for name in columns if name in claims and claims[name].notna().any()]
     shown = claims[filled].astype(object).fillna("")
+    depends = shown["verdict"] == "depends"
+    shown.loc[depends, "verdict"] = "depends: " + claims["reason"]
     # Read from a file with gaps, whole numbers are floats.
     digits = {"n": ".0f", "effect": ".3g"}
     for column in shown.columns.intersection(list(digits)):
