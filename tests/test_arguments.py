@@ -181,6 +181,33 @@ def test_a_list_of_problems_is_planned_in_one_call(tmp_path):
     assert rows["clearance"].to_numpy() == pytest.approx(0.3, abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        ("x,y\n1,2\n", "column: start_x: unknown"),
+        ("start_x,start_y,target_x,target_y\n2,10,18,10\n,1,2,3\n", r"row 2: start: \(nan, 1"),
+        ("start_x,start_y,target_x,target_y\na,1,2,3\n", r"row 1: start: \('a', 1\); expected x"),
+    ],
+)
+def test_a_fault_of_a_list_of_problems_names_file_and_row(rows, told, tmp_path):
+    file = tmp_path / "problems.csv"
+    file.write_text(rows)
+    with pytest.raises(ValueError, match=f"^{file}: {told}"):
+        bp.plan_all(bp.read_map(bp.example_map("gaps")), file)
+
+
+def test_a_list_of_no_problems_has_no_rows(tmp_path):
+    file = tmp_path / "problems.csv"
+    file.write_text("start_x,start_y,target_x,target_y\n")
+    assert "feasible" in bp.plan_all(PROBLEM.workspace, file)
+
+
+@pytest.mark.parametrize("seed", [-1, 1.5, float("nan"), "1"])
+def test_a_seed_is_a_whole_number(seed):
+    with pytest.raises(ValueError, match=r"^seed: .*expected a whole number"):
+        bp.plan(PROBLEM, seed=seed)
+
+
 def test_an_answer_is_json_and_a_picture_in_a_notebook(tmp_path):
     answer = bp.plan(PROBLEM)
     answer.save(tmp_path / "path.json")

@@ -22,8 +22,8 @@ PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m
 
 COMMANDS = {
     file.stem.replace("_", "-"): file
-    for file in sorted((PACKAGE / "commands").glob("*.py"))
-    if file.stem not in ("__init__", "arguments")
+    for file in sorted((PACKAGE / "commands").glob("[!_]*.py"))
+    if file.stem != "arguments"
 }
 """The file of each command."""
 
@@ -33,25 +33,26 @@ def main(words: list[str]) -> None:
     with status 2, of a planner with 1.
     """
     name, *rest = words or ["--help"]
-    if name in ("-h", "--help"):
-        print(f"usage: {PROGRAM} COMMAND ...\n\ncommands; `COMMAND --help` shows its arguments:")
-        for command, file in COMMANDS.items():
-            text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-            sentence = re.split(r"\.\s", f"{text}\n")[0]
-            print(f"  {command:16}{' '.join(sentence.split())}")
-        return
-    if name == "--version":
-        print(f"bezierplan {bezierplan.__version__}")
-        return
-    if name not in COMMANDS:
-        _refuse(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}")
     try:
-        command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")
-        functions = getattr(command, "PASSES_ON", ())
-        if name == "run" and not {"-h", "--help"} & {*rest}:  # most of its words are Snakemake's
-            command.main(*rest)
+        if name in ("-h", "--help"):
+            print(
+                f"usage: {PROGRAM} COMMAND ...\n\ncommands; `COMMAND --help` shows its arguments:"
+            )
+            for command, file in COMMANDS.items():
+                text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8")))
+                sentence = re.split(r"\.\s", f"{text}\n")[0]
+                print(f"  {command:16}{' '.join(sentence.split())}")
+        elif name == "--version":
+            print(f"bezierplan {bezierplan.__version__}")
+        elif name not in COMMANDS:
+            _refuse(f"{PROGRAM}: {name}: unknown{closest(name, COMMANDS)}")
         else:
-            arguments.call(f"{PROGRAM} {name}", command.main, functions, rest)
+            command = importlib.import_module(f"bezierplan.commands.{COMMANDS[name].stem}")
+            functions = getattr(command, "PASSES_ON", ())
+            if name == "run" and {"-h", "--help"}.isdisjoint(rest):  # most words are Snakemake's
+                command.main(*rest)
+            else:
+                arguments.call(f"{PROGRAM} {name}", command.main, functions, rest)
         sys.stdout.flush()
     # The reader, such as `head`, has enough; Python flushes once more when it exits.
     except BrokenPipeError:

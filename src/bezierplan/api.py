@@ -25,7 +25,7 @@ from bezierplan.running import problems as problem_files
 from bezierplan.running.guard import interface
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.running.judge.answer import path_of
-from bezierplan.schema.checked import check_known, closest
+from bezierplan.schema.checked import check_all, check_known, closest
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.circles import Circles as Circles
 from bezierplan.workspaces.grid import Grid as Grid
@@ -399,19 +399,21 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    if not _are_numbers(seed) or seed < 0 or int(seed) != seed:
+    if not _are_numbers(seed) or seed < 0 or seed % 1:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
     if not _are_numbers(robot_radius):
         raise ValueError(f"robot_radius: {robot_radius!r}; expected a number of at least 0")
-    if not np.shape(via) == (0,) and not _are_numbers(via, len(np.atleast_1d(via)), 2):
+    if np.shape(via) != (0,) and not _are_numbers(via, len(np.atleast_1d(via)), 2):
         raise ValueError(f"via: {via!r}; expected places, each of x and y")
     places = tuple(map(tuple, np.array(via, dtype=float).tolist()))
     name, planner, module, preset = _planner(method, problem.workspace)
     if places and planner not in planning.CHAINED:
         raise ValueError(f"via: only for {' and '.join(planning.CHAINED)}; the planner is {name}")
-    plain = {k: v.item() if isinstance(v, np.generic) else v for k, v in settings.items()}
-    settings = preset | plain
+    settings = preset | {
+        name: each.item() if isinstance(each, np.generic) else each
+        for name, each in settings.items()
+    }
     grown = problem._replace(workspace=robot.grow(problem.workspace, float(robot_radius)))
     placed = problem_files.placed(grown, getattr(module, "workspaces", None))
     _check_settings(name, module, settings, placed)
@@ -419,7 +421,7 @@ def plan(
     shortest, label = planning.shortest(parts), f"method: {name}"
     try:
         answer, cpu_s = planning.planned(
-            label, module.plan, parts, settings, seed, planner if is_file(planner) else ""
+            label, module.plan, parts, settings, int(seed), planner if is_file(planner) else ""
         )
         judged = answers.verdict(placed, shortest, answer.path)
     except PlannerFailure as failure:
@@ -431,12 +433,11 @@ def plan(
             f"{label}: its path is {judged['length']:.12g} long and feasible, but no free path is "
             f"shorter than {shortest.length:.12g}: the checker or the bound is wrong"
         )
-    radius = answer.extra["least_radius"] if planner == planning.ROUNDED else math.nan
     return Answer(
         **judged,
         **{field: getattr(answer, field) for field in (*answers.OF_PLANNERS, "history")},
         via=places,
-        turning_radius=radius,
+        turning_radius=answer.extra["least_radius"] if planner == planning.ROUNDED else math.nan,
         method=name,
         settings=settings,
         cpu_s=cpu_s,
@@ -466,15 +467,20 @@ def plan_all(
     Raises
     ------
     ValueError
-        As `plan` does.
+        For a column that is missing; as `plan` does, with the row of the file, from 1.
     """
     import pandas as pd
 
-    rows = pd.read_csv(file)
-    ends = rows[["start_x", "start_y", "target_x", "target_y"]].to_numpy(float)
-    made = [plan(Problem("", workspace, (a, b), (c, d)), method, **options) for a, b, c, d in ends]
+    rows, made = pd.read_csv(file), []
+    ends = ["start_x", "start_y", "target_x", "target_y"]
+    check_all(ends, rows, f"{file}: column")
+    for number, (a, b, c, d) in enumerate(rows[ends].to_numpy().tolist(), 1):
+        try:
+            made.append(plan(Problem("", workspace, (a, b), (c, d)), method, **options))
+        except ValueError as fault:
+            raise ValueError(f"{file}: row {number}: {fault}") from None
     names = ["feasible", "length", "shortest", "clearance", "curvature", "cpu_s"]
-    return rows.join(pd.DataFrame(map(vars, made))[names])
+    return rows.join(pd.DataFrame(map(vars, made), columns=names))
 
 
 def _check_problem(problem: Problem) -> None:

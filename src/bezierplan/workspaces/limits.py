@@ -46,7 +46,7 @@ def check_bounds(bounds: tuple[float, float, float, float]) -> None:
     """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below
     high by `SMALLEST_FEATURE`.
     """
-    if not (bounds[0] < bounds[1] and bounds[2] < bounds[3]):
+    if not (len(bounds) == 4 and bounds[0] < bounds[1] and bounds[2] < bounds[3]):
         raise ValueError(
             f"bounds: {list(bounds)}; expected [x low, x high, y low, y high] with low below high"
         )
