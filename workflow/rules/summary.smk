@@ -104,23 +104,27 @@ SUMMARY = expand(
 )
 
 
+def judged(file):
+    """Files of the runs that the page shows, and of the baselines that the summary is about."""
+    makes = [of(page.verified, root=PREFIX), *([of(jobs.baseline_comparison)] if COMPARED else [])]
+    reads = [read(make, f"{RESULTS}/runs/{{experiment}}/{{method}}/{file}") for make in makes]
+    return lambda wildcards: [*dict.fromkeys(name for each in reads for name in each(wildcards))]
+
+
 # What was judged again of all that the page shows, and a digest of every file.
 rule verified:
     input:
-        runs=read(
-            of(page.verified, root=PREFIX),
-            f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
-        ),
-        judgements=read(
-            of(page.verified, root=PREFIX),
-            f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json",
-        ),
+        runs=judged("{chunk}.parquet"),
+        judgements=judged("judgement.json"),
         problems=read(of(page.verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(
             of(page.verified, root=PREFIX), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"
         ),
         shown=shown,
         summary=SUMMARY,
+        readings=lambda wildcards: of_readings(
+            wildcards.scale, READ, "scores.csv", "calibration.csv", "verdicts.csv"
+        ),
     output:
         "results/{scale}/verified.json",
     log:
