@@ -4,6 +4,7 @@ data, planted errors.
 
 import math
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -14,7 +15,7 @@ from scipy import stats
 from studies import FOLDER
 
 from bezierplan.analysis import audit, possible
-from bezierplan.analysis.table_kinds import Layout, Monotone
+from bezierplan.analysis.table_kinds import Monotone
 
 
 def table(*rows, n=10):
@@ -25,8 +26,14 @@ def table(*rows, n=10):
     return frame.assign(value=frame["printed"].astype(float))
 
 
-def audited(*rows, n=10, **layout):
-    return audit.of_any_paper({"table1": table(*rows, n=n)}, {"table1": Layout(**layout)})
+def spec(columns=(), picks=(), monotone=()):
+    """What the rules ask of a table's description."""
+    values = [SimpleNamespace(metric=metric, where={"feasible": True}) for metric in picks]
+    return SimpleNamespace(across=list(columns), values=values, monotone=monotone)
+
+
+def audited(*rows, n=10, **keys):
+    return audit.of_any_paper({"table1": table(*rows, n=n)}, {"table1": spec(**keys)})
 
 
 def marks(rows, word):
@@ -137,8 +144,8 @@ def test_ranks_are_added_within_the_columns_of_a_table():
     ]
     numbers = {"table1": table(*rows).assign(problem=["p", "p", "q", "q"])}
     for columns, sums in ((["problem"], [True, True]), ([], [False])):
-        layouts = {"table1": Layout(columns=columns)}
-        assert marks(audit.of_any_paper(numbers, layouts), "add to") == sums
+        specs = {"table1": spec(columns)}
+        assert marks(audit.of_any_paper(numbers, specs), "add to") == sums
 
 
 # Orders
@@ -186,11 +193,11 @@ def test_invented_decimals_are_found_and_others_are_not():
 
 def test_numbers_printed_twice_count_once():
     numbers = table(*((str(k), "cpu_s", "mean", f"{k / 7 + 1:.2f}") for k in range(20)))
-    both, layouts = (
+    both, specs = (
         dict.fromkeys(("table1", "table2"), numbers),
-        {name: Layout() for name in ("table1", "table2")},
+        {name: spec() for name in ("table1", "table2")},
     )
-    assert marks(audit.of_any_paper(both, layouts), "equally likely") == []
+    assert marks(audit.of_any_paper(both, specs), "equally likely") == []
 
 
 def test_decimals_of_ma2020_are_not_equally_likely():
@@ -218,7 +225,7 @@ def test_friedman_from_mean_ranks_is_that_of_the_runs():
 
 def test_mean_ranks_of_tharwat2018_tell_no_maps_apart():
     tables = {f"table{n}": read(f"tharwat2018/published/table{n}.csv") for n in (3, 4, 5)}
-    rows = audit.of_any_paper(tables, {name: Layout() for name in tables})
+    rows = audit.of_any_paper(tables, {name: spec() for name in tables})
     found = {row["item"]: row["arithmetic"] for row in rows if "Friedman" in row["rule"]}
     # The ranks of Table 5 do not add up.
     assert found == {
@@ -235,7 +242,7 @@ def read(name):
 
 def test_decimals_and_middles_of_ma2020():
     tables = {f"table{n}": read(f"ma2020/published/table{n}.csv") for n in (1, 2)}
-    rows = audit.of_any_paper(tables, {name: Layout() for name in tables})
+    rows = audit.of_any_paper(tables, {name: spec() for name in tables})
     digits = next(row for row in rows if "digit" in row["rule"])
     assert "0 to 9: 1 36 13 26 60 16 27 45 25 23" in digits["arithmetic"]
     assert digits["consistent"] is False

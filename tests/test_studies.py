@@ -361,10 +361,10 @@ def test_flow_chart_has_a_box_around_every_step():
 
 def test_audit_of_tharwat2018():
     study = shared("tharwat2018")
-    layouts = jobs.audit(study, "full").layouts
+    specs = jobs.audit(study, "full").tables
     tables = published("tharwat2018")
-    compared = {name: audit.read_published(study.published_file(name)) for name in layouts}
-    rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, layouts))
+    compared = {name: audit.read_published(study.published_file(name)) for name in specs}
+    rows = audit.table("tharwat2018", rules.audit(tables) + audit.of_any_paper(compared, specs))
     wrong = rows[rows["consistent"].map(str) == "False"]
     sums = rows[rows["rule"].str.contains("add to")].set_index("item")
     assert sums["printed"].round(1).to_dict() == {

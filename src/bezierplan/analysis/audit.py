@@ -23,8 +23,9 @@ from bezierplan.analysis import identified, possible
 from bezierplan.analysis.audit_rows import COLUMNS, NOT_KEYS, checked, place
 from bezierplan.analysis.metrics import AT_LEAST_A_LENGTH, METRICS, Metric
 from bezierplan.analysis.results import groups, published_table
-from bezierplan.analysis.table_kinds import Layout, Monotone
+from bezierplan.analysis.table_kinds import Monotone, Pivot
 from bezierplan.running import problems
+from bezierplan.running.inputs import Files
 from bezierplan.workspaces.seeds import generator
 
 # Statistics that need not be the value of any single path.
@@ -106,18 +107,19 @@ def _keys(table: pd.DataFrame) -> list[str]:
 # Rules that hold for any paper
 
 
-def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, Layout]) -> list[dict]:
+def of_any_paper(tables: dict[str, pd.DataFrame], specs: dict[str, Pivot]) -> list[dict]:
     """All rows of the rules that hold for any paper.
 
-    tables: published numbers, by table, as from `read_published`. layouts: of each table,
-    `columns`, the key columns within whose values its rows are ranked; `picks`, metrics of which
-    only some runs count; `monotone`, the orders that its rows must keep.
+    tables: published numbers, by table, as from `read_published`. specs: of each of them the table
+    that reproduces it: the columns within whose values its rows are ranked, metrics of which only
+    some runs count, the orders that its rows must keep.
     """
     rows = []
     for name, table in tables.items():
-        rows += of_cells(name, table, layouts[name].picks)
-        rows += of_ranks(name, table, layouts[name].columns)
-        for rule in layouts[name].monotone:
+        picks = [entry.metric for entry in specs[name].values if entry.where]
+        rows += of_cells(name, table, picks)
+        rows += of_ranks(name, table, specs[name].across)
+        for rule in specs[name].monotone:
             rows += of_orders(name, table, rule)
     return [*rows, *of_middles(tables), *of_digits(tables)]
 
@@ -344,32 +346,28 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
 def audited(
     job: Any,
     of_paper: Callable[[dict[str, pd.DataFrame]], list[dict]],
-    problem_files: Mapping[str, str],
-    bound_files: Mapping[str, str],
+    experiment_files: Mapping[str, Files],
     files: Mapping[str, str],
 ) -> pd.DataFrame:
     """The audit of a paper as a table with `COLUMNS`. job: the job (`jobs.Audit`).
 
-    problem_files and bound_files: by experiment, problems of those alone whose printed lengths are
-    identified. files: of published numbers, by table.
+    experiment_files: by experiment. files: of published numbers, by table.
     """
-    layouts = job.layouts
     published = {name: read_published(file) for name, file in files.items()}
     bounds = {
-        name: pd.read_parquet(file).set_index("problem") for name, file in bound_files.items()
+        name: pd.read_parquet(own.bounds).set_index("problem")
+        for name, own in experiment_files.items()
     }
-    of_tables = {table: bounds[experiment] for table, experiment in job.tables.items()}
+    of_tables = {name: bounds[spec.experiment] for name, spec in job.tables.items()}
     compared = {table: published[table] for table in of_tables}
     # Bounds of maps that a paper does not print say nothing of its numbers.
-    on_its_maps = {
-        name: table for name, table in compared.items() if not layouts[name].reconstructed
-    }
-    rows = below_bound(on_its_maps, of_tables, job.primary) + of_any_paper(compared, layouts)
-    made = {name: problems.read(file) for name, file in problem_files.items()}
-    for name, layout in layouts.items():
-        rows += identified.of_table(
-            name, published[name], layout.identify, made.get(job.tables[name], {})
-        )
+    on_its_maps = {name: table for name, table in compared.items() if name not in job.reconstructed}
+    primary = {name: spec.primary for name, spec in job.tables.items()}
+    rows = below_bound(on_its_maps, of_tables, primary) + of_any_paper(compared, job.tables)
+    for name, spec in job.tables.items():
+        if spec.identify:
+            made = problems.read(experiment_files[spec.experiment].problems)
+            rows += identified.of_table(name, published[name], spec.identify, made)
     return table(job.study, rows + of_paper(published))
 
 

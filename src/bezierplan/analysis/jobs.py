@@ -17,7 +17,7 @@ from typing import Any
 from bezierplan.analysis.choices import Choice, Experiment
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Display
-from bezierplan.analysis.table_kinds import Layout, Pivot, Table
+from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.machine.digest import content_digest, function_digest, module_of
 from bezierplan.running.chunk import Chunk
 from bezierplan.running.descriptions import Descriptions
@@ -333,14 +333,10 @@ class Audit(Job):
     """A paper's own numbers, checked against each other and against exact bounds."""
 
     study: str
-    tables: dict[str, str]
-    """Table of published numbers -> the experiment that reproduces it."""
-    primary: dict[str, dict]
-    """By table, the rows that count as the paper's interpretation: column -> value."""
-    layouts: dict[str, Layout]
-    """By table."""
-    identify: list[str]
-    """Experiments among whose paths printed lengths are sought."""
+    tables: dict[str, Pivot]
+    """By the name of their published numbers, without what is only printed."""
+    reconstructed: list[str]
+    """Those whose maps are."""
 
     def run(self, input_files, output_files, threads):
         """Check the numbers."""
@@ -348,12 +344,10 @@ class Audit(Job):
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
-        files = inputs.experiments(self.shows, input_files)
         table = audit.audited(
             self,
             study_code.audit(self.code),
-            {name: files[name].problems for name in self.identify},
-            {name: each.bounds for name, each in files.items()},
+            inputs.experiments(self.shows, input_files),
             inputs.by_table(input_files.sources),
         )
         self.write(table, output_files[0])

@@ -4,7 +4,7 @@ A study's tables are checked against them at every start of the workflow, and th
 (`table_of`), so this file imports nothing but what models need.
 """
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -252,27 +252,3 @@ TABLES = {
 def table_of(values: dict[str, Any]) -> Table:
     """The table of a job, from its plain values."""
     return TABLES[values["kind"]].model_validate(values)
-
-
-class Layout(Model):
-    """What the audit needs to know of a table: columns within whose values rows are ranked, metrics
-    of only some runs, required orders, whether its maps are reconstructed, and where paths are
-    sought whose lengths it prints.
-    """
-
-    columns: list[Column] = Field([])
-    picks: list[Metric] = Field([])
-    monotone: list[Monotone] = Field([])
-    reconstructed: Flag = False
-    identify: list[Identify] = Field([])
-
-    @classmethod
-    def of(cls, table: Pivot, reconstructed: bool) -> Self:
-        """That of a table of runs."""
-        return cls(
-            columns=table.across,
-            picks=sorted({entry.metric for entry in table.values if entry.where}),
-            monotone=table.monotone,
-            reconstructed=reconstructed,
-            identify=table.identify,
-        )

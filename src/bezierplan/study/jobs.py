@@ -22,7 +22,7 @@ from bezierplan.analysis.jobs import (
     Verdict,
     VerdictsOfReadings,
 )
-from bezierplan.analysis.table_kinds import FunctionTable, Layout, Pivot, Table
+from bezierplan.analysis.table_kinds import FunctionTable, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure as FigureOfStudy
 from bezierplan.figures.jobs import Figure, Latex
@@ -371,13 +371,14 @@ def verdicts_of_readings(study: Study, scale: str) -> VerdictsOfReadings:
 
 def audit(study: Study, scale: str) -> Audit:
     """The audit of a study."""
-    tables = {Path(each.published).stem: each for each in study.with_published().values()}
+    tables = {
+        Path(each.published).stem: each.but(title=name, note=None, labels={})
+        for name, each in study.with_published().items()
+    }
     return Audit(
         study.key,
-        {name: table.experiment for name, table in tables.items()},
-        {name: table.primary for name, table in tables.items()},
-        {name: Layout.of(table, study.reconstructed(table)) for name, table in tables.items()},
-        sorted({table.experiment for table in tables.values() if table.identify}),
+        tables,
+        [name for name, table in tables.items() if study.reconstructed(table)],
         sources=study.published_files(),
         code=study.code_for("metrics", "audit"),
         shows={name: {} for name in sorted({each.experiment for each in tables.values()})},
