@@ -27,7 +27,6 @@ the paper's); truth; score (of the truth); place (of the truth among all that we
 import logging
 import math
 from collections.abc import Callable, Iterable
-from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -345,18 +344,15 @@ def of_study(
     """The scores of the readings of a study, and the calibration."""
     choices = runner.choices
     excluding = {each.id: each.excluded_by for each in choices if each.excluded_by}
-    by_name: dict[str, Reading] = {}
-
-    @cache
-    def ours(name: str) -> np.ndarray | None:
-        results = runner.results(by_name[name])
-        logger.info("%s", name)
-        return None if results is None else measured(voting, results)
+    by_name: dict[str, np.ndarray | None] = {}
 
     def of(reading: Reading, printed: np.ndarray) -> tuple[float, float]:
-        by_name[name_of(reading)] = reading
-        found = ours(name_of(reading))
-        return (-math.inf, math.nan) if found is None else scored(voting, printed, found)
+        if (name := name_of(reading)) not in by_name:
+            results = runner.results(reading)
+            by_name[name] = None if results is None else measured(voting, results)
+            logger.info("%s", name)
+        ours = by_name[name]
+        return (-math.inf, math.nan) if ours is None else scored(voting, printed, ours)
 
     def allowed(reading: Reading) -> bool:
         return not reading.keys() & excluding.keys()

@@ -40,7 +40,7 @@ claim_checks.csv, one row per comparison.
 """
 
 import math
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -116,7 +116,7 @@ def judge(
 # Under another reading.
 
 
-def covered(claims: Sequence[Claim], experiments: Container[str]) -> list[Claim]:
+def covered(claims: Sequence[Claim], experiments: Iterable[str]) -> list[Claim]:
     """The claims that rest on the runs of some experiments alone, and on no times, each in its
     primary variant.
     """
@@ -124,9 +124,7 @@ def covered(claims: Sequence[Claim], experiments: Container[str]) -> list[Claim]
         claim.in_primary_variant()
         for claim in claims
         if all(
-            check.experiments
-            and all(name in experiments for name in check.experiments)
-            and not _is_timed(check)
+            check.experiments and {*check.experiments} <= {*experiments} and not _is_timed(check)
             for check in claim.checks
         )
     ]
@@ -228,7 +226,6 @@ def _judge_variant(
     reasons = [
         _by_own_criterion(claim, verdict),
         _less_than(deciding, verdict, material),
-        _one_by_one(judgements, verdict),
         _reason(decisive),
         _disagreement(judgements),
         claim.note or "",
@@ -275,14 +272,6 @@ def _less_than(deciding: list[_Judgement], verdict: str, material: Material) -> 
         "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
     )
     return f"{where}differs by less than {size}"
-
-
-def _one_by_one(findings: list[_Judgement], verdict: str) -> str:
-    """Of a sentence without effect that takes comparisons together: how many of these hold."""
-    single = [each.mark for each in findings if not each.primary and each.comparison]
-    if verdict != "no effect" or "+" not in single:
-        return ""
-    return f"one by one {single.count('+')} of {len(single)} hold"
 
 
 def _findings(
@@ -390,31 +379,19 @@ def _group_in_words(check: Check, group: Any) -> Any:
 
 
 def _disagreement(findings: list[_Judgement]) -> str:
-    """A note where seconds and counted work disagree, one of which is primary and the other
-    secondary.
-    """
-    others = {
-        (each.condition, each.name, _is_timed(each.check)): each.mark
+    """A note where seconds disagree with the counted work that is judged in their place."""
+    seconds = {(each.condition, each.name): each.mark for each in findings if _is_timed(each.check)}
+    pairs = [
+        (each.mark, seconds[each.condition, each.name])
         for each in findings
-        if not each.primary
-    }
-    deciding = [each for each in findings if each.primary]
-    pairs = [
-        (each, others.get((each.condition, each.name, not _is_timed(each.check))))
-        for each in deciding
+        if each.primary and (each.condition, each.name) in seconds and each.check._printed_metric
     ]
-    pairs = [
-        (each, other)
-        for each, other in pairs
-        if other is not None and (_is_timed(each.check) or each.check._printed_metric)
-    ]
-    differing = sum(each.mark != other for each, other in pairs)
-    if not differing:
-        return ""
-    judged_on, other = (
-        ("seconds", "evaluations") if _is_timed(pairs[0][0].check) else ("counted work", "seconds")
+    differing = sum(mark != other for mark, other in pairs)
+    return (
+        f"judged on counted work; seconds disagree in {differing} of {len(pairs)}"
+        if differing
+        else ""
     )
-    return f"judged on {judged_on}; {other} disagree in {differing} of {len(pairs)}"
 
 
 def _shown(deciding: list[_Judgement], holds: str) -> _Judgement:
