@@ -7,13 +7,14 @@ rules that hold for any paper: how the number was checked).
 
 The rules that hold for any paper follow from how a table is laid out and from what a metric is
 (`metrics.Metric`): `of_cells` checks the statistics of one cell, `of_ranks` mean ranks, `of_orders`
-the order of rows, `of_digits` the decimals of all numbers. `analysis.possible` has the closed
-forms.
+the order of rows and their straight lines, `of_middles` means within their ranges, `of_digits` the
+decimals of all numbers. `analysis.possible` has the closed forms.
 """
 
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -34,13 +35,19 @@ _SPREADS = ("std", "iqr", "range")
 # From the lowest to the highest.
 _IN_ORDER = ("min", "quartile1", "median", "quartile3", "max")
 
-LEAST_DIGITS = 50
-"""Decimals that a paper must print for the test of their distribution: five of each digit."""
+LEAST_DIGITS = 30
+"""Decimals that a paper must print for the test of their distribution: three of each digit."""
 
 _LEAST_SPREAD = 10
 """A decimal counts if the numbers of its metric have a standard deviation of so many of its units:
 then each digit is about equally likely, whatever is measured.
 """
+
+_ROUNDING = 1e-9
+"""Scatter that is none."""
+
+LEAST_FREEDOM = 5
+"""Degrees of freedom about straight lines."""
 
 LEVEL = 0.05
 """Of Friedman's test."""
@@ -131,7 +138,7 @@ def of_cells(item: str, table: pd.DataFrame, picks: list[str]) -> Iterator[dict]
         where, metric = place(rows.iloc[0], [*keys, "metric"]), METRICS[rows["metric"].iloc[0]]
         texts = dict(zip(rows["statistic"], rows["printed"]))
         sizes = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
-        n = int(sizes.min()) if len(sizes) else 0
+        n = int(sizes.max()) if len(sizes) else 0
         # Otherwise only some of these runs count, and how many is not printed.
         whole = (
             not metric.feasible_only
@@ -158,18 +165,21 @@ def _of_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iter
     for low, high in itertools.pairwise(name for name in _IN_ORDER if name in numbers):
         fits = possible.in_order(numbers[low], numbers[high])
         yield low, f"{low} <= {high}", numbers[high].value, fits, f"{texts[low]} <= {texts[high]}"
-    if n < 2:
-        return
     ends = {"min", "max"} <= set(numbers)
     if ends and "mean" in numbers:
         low, high = possible.mean_limits(numbers["min"], numbers["max"], n)
         fits = low <= numbers["mean"].high and numbers["mean"].low <= high
-        rule = (
-            f"a mean of {n} values lies between (max + {n - 1} min) / {n} and (min "
-            f"+ {n - 1} max) / {n}"
-        )
+        rule = "a mean lies between (max + (n - 1) min) / n and (min + (n - 1) max) / n"
         limit = low if numbers["mean"].high < low else high
-        yield "mean", rule, limit, fits, f"{float(low):.6g} <= {texts['mean']} <= {float(high):.6g}"
+        told = f"n = {n or '?'}: {float(low):.6g} <= {texts['mean']} <= {float(high):.6g}"
+        yield "mean", rule, limit, fits, told
+    for name in ("mean", "share") if whole and metric.step else ():
+        mean, apart = numbers.get(name), Fraction(metric.step) / n
+        if mean and apart > 2 * mean.half:  # otherwise every printed number is possible
+            nearest = round(mean.value / apart) * apart
+            rule = f"a {name} of {n} multiples of {metric.step:g} is one of {float(apart):.4g}"
+            told = f"GRIM: nearest to {texts[name]} is {float(nearest):.6g}"
+            yield name, rule, nearest, mean.low <= nearest <= mean.high, told
     if "std" not in numbers:
         return
     std, text = numbers["std"], texts["std"]
@@ -182,10 +192,10 @@ def _of_cell(texts: dict[str, str], n: int, metric: Metric, whole: bool) -> Iter
             "2 x sqrt(n / (n - 1))"
         )
         limit, fits = low if std.high < low else high, low <= std.high and std.low <= high
-        yield "std", rule, limit, fits, f"n = {n}: {low:.6g} <= {text} <= {high:.6g}"
+        yield "std", rule, limit, fits, f"n = {n or '?'}: {low:.6g} <= {text} <= {high:.6g}"
     least = numbers["min"].low if "min" in numbers else possible.finite(metric.least)
     most = numbers["max"].high if "max" in numbers else possible.finite(metric.most)
-    if "mean" in numbers and least is not None:
+    if "mean" in numbers and least is not None and n > 1:
         most = most if whole else None
         limit = possible.std_of_mean(numbers["mean"], n, least, most)
         above = "" if most is None else f" or above {float(most):.10g}"
@@ -249,13 +259,14 @@ def friedman(ranks: np.ndarray, n: int) -> tuple[float, float, float, float]:
 
 
 def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
-    """Numbers that must rise or fall along a column: each beside the one before it."""
+    """Numbers that must rise or fall along a column: each beside the one before it, and all about
+    straight lines.
+    """
     numbers = table[(table["metric"] == rule.metric) & (table["statistic"] == rule.statistic)]
     keys = _keys(table)
     others = [key for key in keys if key != rule.along]
     words = f"{rule.metric} goes {rule.direction} along {rule.along}: {rule.because}"
     sign = "<=" if rule.direction == "up" else ">="
-    kept, chances = 0, []
     for group in groups(numbers, others):
         ordered = [row for _, row in group.sort_values(rule.along, kind="stable").iterrows()]
         for before, row in itertools.pairwise(ordered):
@@ -264,17 +275,42 @@ def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
             where = place(row, [*keys, "metric", "statistic"])
             told = f"{before['printed']} {sign} {row['printed']}"
             yield checked(item, where, words, row["value"], before["value"], fits, told)
-        values = np.array([float(row["value"]) for row in ordered])
-        steps = np.diff(values if rule.direction == "up" else -values)
-        kept += bool((steps > 0).all())
-        chances.append(1 / math.factorial(len(ordered)))
-    if len(chances) > 1:
-        chance = identified.at_least(kept, chances)
-        told = f"{kept} of {len(chances)} rows without an exception; the chance of as many, if all "
-        told += f"orders were equally likely: {chance:.2g}"
-        where = f"metric={rule.metric}, statistic={rule.statistic}, all rows"
-        fits = True if kept == len(chances) else None
-        yield checked(item, where, words, kept, len(chances), fits, told)
+    wide = numbers.pivot_table("value", others or ["metric"], rule.along).dropna()
+    where = f"metric={rule.metric}, statistic={rule.statistic}, all rows"
+    yield from _of_trend(item, where, wide, rule)
+    if (count := len(wide)) > 1:
+        steps = np.diff(wide if rule.direction == "up" else -wide)
+        kept = int((steps > 0).all(axis=1).sum())
+        chance = identified.at_least(kept, [1 / math.factorial(wide.shape[1])] * count)
+        told = f"{kept} of {count} rows without an exception; the chance of as many, if all orders "
+        told += f"were equally likely: {chance:.2g}"
+        yield checked(item, where, words, kept, count, True if kept == count else None, told)
+
+
+def _of_trend(item: str, where: str, wide: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
+    """How far the farthest number lies from the straight line of its row, in standard deviations of
+    all about their lines, beside that of sets of normal numbers.
+
+    wide: numbers of a column that orders them, a row each; they are taken as shares of the mean of
+    their row.
+    """
+    count, size = wide.shape
+    if (freedom := count * (size - 2)) < LEAST_FREEDOM:
+        return
+    line = np.vander(wide.columns.to_numpy(dtype=float), 2)
+    printed = wide.div(wide.mean(axis=1), axis=0).to_numpy()
+    drawn = generator(f"audit/trends/{count}/{size}").normal(size=(DRAWN, count, size))
+    off = np.concatenate([printed[None], drawn]) @ (np.eye(size) - line @ np.linalg.pinv(line))
+    scatter = np.sqrt(np.sum(off**2, axis=(1, 2)) / freedom)
+    farthest, *sets = np.abs(off).max(axis=(1, 2)) / np.maximum(scatter, _ROUNDING)
+    p = float(np.mean(np.array(sets) >= farthest))
+    words = f"{rule.metric} lies about straight lines along {rule.along} as normal numbers do"
+    told = (
+        f"standard deviation {100 * scatter[0]:.2g} % of the mean, {freedom} degrees of freedom; "
+        f"the farthest number {farthest:.3g} of these away; p = {p:.2g}"
+    )
+    limit = np.quantile(sets, 1 - DIGITS_LEVEL)
+    yield checked(item, where, words, farthest, limit, p >= DIGITS_LEVEL, told)
 
 
 def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
@@ -284,15 +320,14 @@ def of_middles(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     Numbers with a tail lie farther from the middle than normal ones.
     """
     for item, table in tables.items():
-        keys = [*_keys(table), "metric"]
-        ends = table[table["statistic"].isin(["min", "mean", "max"])]
-        if "n" not in ends or ends.empty or ends["n"].nunique() != 1 or ends["n"].iloc[0] < 2:
+        keys = [*_keys(table), "metric", "n"]
+        wide = table.reindex(columns=[*keys, "statistic", "value"])
+        wide = wide.pivot_table("value", keys, "statistic").reindex(columns=["min", "mean", "max"])
+        sizes = (wide := wide.dropna()).index.unique("n")
+        if len(wide) < LEAST_MEANS or len(sizes) > 1 or sizes[0] < 2:
             continue
-        wide = ends.pivot_table(index=keys, columns="statistic", values="value")
-        if not {"min", "mean", "max"} <= set(wide) or len(wide := wide.dropna()) < LEAST_MEANS:
-            continue
-        n, count = int(ends["n"].iloc[0]), len(wide)
-        apart = float(_from_middle(*wide[["min", "mean", "max"]].to_numpy().T))
+        n, count = int(sizes[0]), len(wide)
+        apart = float(_from_middle(*wide.to_numpy().T))
         drawn = generator(f"audit/middles/{n}").normal(size=(DRAWN, count, n))
         sets = _from_middle(drawn.min(axis=-1), drawn.mean(axis=-1), drawn.max(axis=-1))
         p = float(np.mean(sets <= apart))
@@ -311,15 +346,16 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> Iterator[dict]:
     """All decimals of a paper's numbers: Pearson's test of equal chances, where there are enough
     that lie far below the spread of their metric.
 
-    A number that several tables repeat counts once, and numbers of 1 to n runs, such as counts, are
-    left out.
+    A number that several tables repeat counts once; numbers of 1 to n runs, such as counts, are
+    left out, and so are whole numbers, whose means do not have all decimals.
     """
     from scipy import stats
 
     if not tables:
         return
     every = pd.concat([table.assign(item=name) for name, table in tables.items()])
-    every = every[~every["statistic"].isin(["count", "share"])]
+    whole = [METRICS[metric].step is not None for metric in every["metric"]]
+    every = every[~every["statistic"].isin(["count", "share"]) & ~np.array(whole)]
     every = every.drop_duplicates([column for column in every if column not in ("item", "n")])
     digits = "".join(
         digit

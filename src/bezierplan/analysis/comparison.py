@@ -18,7 +18,6 @@ number. Columns:
 - value_ours: the statistic of these runs
 - value_ours_scaled: the same for n_published runs (`statistics.scaled`): counts and extremes depend
   on their number
-- best, mean, median, quartile1, quartile3: of the same runs; best is the lowest
 - low95_ours, high95_ours: 95 % bootstrap interval of value_ours; empty below two runs, and for min,
   max and range
 - low95_predicted, high95_predicted: 95 % prediction interval for the number printed by an
@@ -27,8 +26,6 @@ number. Columns:
   runs if n_published is empty
 - in_range: whether it lies in the central 95 %. Ours are rounded like the printed one, ties count;
   empty for times, and below six runs
-- can_fail: whether a number on the published one's side of ours could have been rejected
-  (`statistics.can_fail`)
 - power: share of the numbers that matter (`_rivals`), without those that no run can have, that
   would have been rejected instead of the published one
 - identified: cells or moves of the paths whose length the published number is (`identified`), and
@@ -38,7 +35,6 @@ number. Columns:
   interval has no end there, or contains most of the numbers that matter
 - possible: whether the metric can have the published value, and ranks add up. A length below the
   bound of our map is judged all the same
-- share_claimed: share of all runs whose path passed the planner's own test
 - share_feasible: share of all runs whose path the certified checker accepts
 - bound: least length of the problem, of the metric's kind (`metrics.Metric`); for several problems,
   the median over the runs
@@ -48,14 +44,13 @@ number. Columns:
 """
 
 import math
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import identified, metrics, possible, statistics, tables
-from bezierplan.analysis.results import Results, groups, published_table
+from bezierplan.analysis.results import Results, groups, published_table, select
 from bezierplan.analysis.table_kinds import Identify, Pivot
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Problem
@@ -96,10 +91,9 @@ NO_MAP, ONE_DRAW = "map that the paper does not print", "one draw of a random ma
 COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published"),
     *("n_ours", "n_asked", "value_ours", "value_ours_scaled"),
-    *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *("low95_predicted", "high95_predicted", "quantile_published"),
-    *("in_range", "can_fail", "power", "verdict", "why"),
-    *("identified", "possible", "share_claimed", "share_feasible", "bound", "gap", "primary"),
+    *("low95_ours", "high95_ours", "low95_predicted", "high95_predicted", "quantile_published"),
+    *("in_range", "power", "verdict", "why"),
+    *("identified", "possible", "share_feasible", "bound", "gap", "primary"),
 ]
 
 
@@ -181,7 +175,7 @@ def compare(
         table["verdict"] = table["verdict"].mask(whose, "inconclusive")
         table["why"] = table["why"].astype(object).mask(whose, reason)
     table["primary"] = _is_primary(table, spec.primary, variant_of)
-    whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "can_fail", "possible")
+    whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
 
@@ -191,9 +185,8 @@ def _is_primary(
     """Which rows (n,) are the paper's interpretation. primary: column -> the value that it has
     there.
     """
-    read = [table[column].to_numpy() == value for column, value in primary.items()]
-    named = [~table["method"].isin(variant_of).to_numpy()] if "method" in table else []
-    return np.logical_and.reduce([np.ones(len(table), dtype=bool), *read, *named])
+    chosen = table.index.isin(select(table, primary).index)
+    return chosen & ~table["method"].isin(variant_of) if "method" in table else chosen
 
 
 def _identified(
@@ -221,13 +214,9 @@ def impossible_ranks(published: pd.DataFrame, spec: Pivot) -> np.ndarray:
     published: as from `read_published`.
     """
     impossible = np.zeros(len(published), dtype=bool)
-    entry = next((e for e in spec.values if e.metric == "rank" and "mean" in e.statistics), None)
-    if entry is None:
-        return impossible
-    half = Fraction(10) ** -entry.decimals / 2
     ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
     for own in groups(ranks, [column for column in spec.across if column in published]):
-        printed = [possible.Printed(Fraction(str(value)), half) for value in own["value"]]
+        printed = own["value"].astype(str).map(possible.printed)
         if len(own) > 1 and not possible.are_ranks(printed):
             impossible |= published.index.isin(own.index)
     return impossible
@@ -298,7 +287,7 @@ def _described(
     without runs of ours.
     """
     if pd.isna(row["runs"]):
-        return {"n_ours": 0, "n_asked": 0, "in_range": None, "can_fail": None, "possible": None}
+        return {"n_ours": 0, "n_asked": 0, "in_range": None, "possible": None}
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
@@ -323,11 +312,6 @@ def _described(
         "n_asked": int(row["asked"]),
         "value_ours": ours,
         "value_ours_scaled": statistics.scaled(statistic, numbers, int(row["asked"]), size),
-        "best": statistics.statistic("min", numbers),
-        **{
-            each: statistics.statistic(each, numbers)
-            for each in ("mean", "median", "quartile1", "quartile3")
-        },
         "low95_ours": low,
         "high95_ours": high,
         "low95_predicted": placed.low,
@@ -351,12 +335,12 @@ def _judged(
     """
     published = row["value_published"]
     if pd.isna(published):
-        return {"can_fail": None, "possible": None}
+        return {"possible": None}
     limits = _limits(row["statistic"], (row["least"], row["most"]), size)
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
-    judged = {"possible": not (published < limits[0] - half or published > limits[1] + half)}
+    cell = {"possible": not (published < limits[0] - half or published > limits[1] + half)}
     if in_range is None:
-        return judged | {"can_fail": None}
+        return cell
     ends = (prediction[0] - half, prediction[1] + half)
     can_fail = not in_range or statistics.can_fail(published, ours, prediction, limits)
     # To exclude a number that no run can have, or one on the other side of ours, says nothing.
@@ -368,13 +352,14 @@ def _judged(
     )
     enough = len(rivals) >= LEAST_RIVALS
     others = rivals if enough else near
-    power = statistics.power(others, ends) if len(others) else 0.0
+    beyond = (others < ends[0]) | (others > ends[1])
+    power = float(beyond.mean()) if len(others) else 0.0
     if not in_range or (can_fail and power >= LEAST_POWER):
         why = ""
     else:
         why = NO_END if not can_fail else TOO_WIDE if enough else OFF_OURS
     verdict = "disagrees" if not in_range else "inconclusive" if why else "agrees"
-    return judged | {"can_fail": can_fail, "power": power, "verdict": verdict, "why": why}
+    return cell | {"power": power, "verdict": verdict, "why": why}
 
 
 def _limits(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:

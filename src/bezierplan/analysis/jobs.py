@@ -198,8 +198,8 @@ class TableOfRuns(Job):
             for rows, laid in ((numbers, output_files.published), (verdicts, output_files.marks)):
                 laid_out = tables.alike(rows, self.spec, self.labels, like=table)
                 laid_out.to_csv(laid, lineterminator="\n")
-            whole = wholes.of_table(runs, self.spec, compared, self.name, self.paired)
-            self.write(whole, output_files.wholes)
+            columns = wholes.of_table(runs, self.spec, compared, self.name, self.paired)
+            self.write(columns, output_files.wholes)
         self.write(compared, output_files.comparison)
 
 

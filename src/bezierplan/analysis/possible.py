@@ -60,19 +60,23 @@ def in_order(first: Printed, second: Printed) -> bool:
 
 def mean_limits(least: Printed, most: Printed, n: int) -> tuple[Fraction, Fraction]:
     """Between which numbers the mean of n values lies, one of which is the least and one the
-    largest; n is at least 2.
+    largest; that of any number of values if n is below 2.
     """
+    if n < 2:
+        return least.low, most.high
     return ((n - 1) * least.low + most.low) / n, (least.high + (n - 1) * most.high) / n
 
 
 def std_of_range(least: Printed, most: Printed, n: int) -> tuple[float, float]:
-    """Between which numbers the sample standard deviation of n values with this range lies; n is at
-    least 2.
+    """Between which numbers the sample standard deviation of n values with this range lies; that of
+    any number of values if n is below 2.
 
     The lowest if all but the two ends lie midway, the highest if half of them lie at either end:
     range / 2 x sqrt(n / (n - 1)).
     """
     narrow, wide = max(most.low - least.high, Fraction(0)), most.high - least.low
+    if n < 2:
+        return 0.0, float(wide) / math.sqrt(2)
     return float(narrow) / math.sqrt(2 * (n - 1)), float(wide) / 2 * math.sqrt(n / (n - 1))
 
 

@@ -55,33 +55,24 @@ def _quantiles(values: np.ndarray, *shares: float) -> list[np.ndarray]:
     return quantiles
 
 
-def _median(values: np.ndarray) -> np.ndarray:
-    return _quantiles(values, 0.5)[0]
-
-
-def _iqr(values: np.ndarray) -> np.ndarray:
-    """Interquartile range."""
-    low, high = _quantiles(values, 0.25, 0.75)
-    return high - low
-
+_SHARES = {"median": 0.5, "unstated": 0.5, "quartile1": 0.25, "quartile3": 0.75}
+"""Those that are quantiles. `unstated`: the paper does not say; the median of ours is printed."""
 
 STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "mean": _mean,
-    "median": _median,
     "std": _std,
-    "iqr": _iqr,
+    "iqr": lambda values: np.subtract(*_quantiles(values, 0.75, 0.25)),  # interquartile range
     "range": lambda values: np.ptp(values, axis=-1),
     "min": lambda values: np.min(values, axis=-1),
     "max": lambda values: np.max(values, axis=-1),
-    "quartile1": lambda values: _quantiles(values, 0.25)[0],
-    "quartile3": lambda values: _quantiles(values, 0.75)[0],
     # Of a boolean metric (1 or 0): the number of runs that have it.
     "count": lambda values: np.sum(values, axis=-1),
     "share": _mean,  # likewise: the share of runs that have it
-    "unstated": _median,  # the paper does not say; the median of ours is printed
+    **{
+        name: lambda values, share=share: _quantiles(values, share)[0]
+        for name, share in _SHARES.items()
+    },
 }
-# Those that are quantiles.
-_SHARES = {"median": 0.5, "unstated": 0.5, "quartile1": 0.25, "quartile3": 0.75}
 # These grow with the number of runs, so resampling the same number does not show how far they are
 # from the truth.
 WITHOUT_INTERVAL = ("min", "max", "range")
@@ -261,10 +252,8 @@ def predicted_within(
     size = min(size, MOST_PREDICTED)  # more values differ less within a group than groups do
     for number, values in enumerate(groups):
         experiments = np.flatnonzero(chosen == number)
-        for block in np.split(experiments, range(BLOCK // size, len(experiments), BLOCK // size)):
-            drawn[block] = STATISTICS[name](
-                values[rng.integers(len(values), size=(len(block), size))]
-            )
+        places = rng.integers(len(values), size=(len(experiments), size))
+        drawn[experiments] = STATISTICS[name](values[places])
     return drawn
 
 
@@ -428,13 +417,6 @@ def _trimmed_mean(values: np.ndarray) -> float:
     cut = int(n / (2 * math.sqrt(n - 4))) if n > 4 else 0
     cut = min(cut, (n - 1) // 2)
     return float(np.sort(values)[cut : n - cut].mean())
-
-
-def power(others: np.ndarray, ends: tuple[float, float]) -> float:
-    """The share of other numbers (n,), n at least 1, that lie beyond the ends of an interval: the
-    power of a test against them.
-    """
-    return float(np.mean((others < ends[0]) | (others > ends[1])))
 
 
 def can_fail(

@@ -54,7 +54,7 @@ def cells(
     condition, in both; by_run: those of all, NaN without one, by problem and repeat; groups: the
     numbers as one array for each value of the column `within`, None without that key; least, most:
     the range of the metric for one run (`least` of an entry is stronger than that of its metric);
-    and over all runs of the group: runs (how many), share_claimed, share_feasible, bound (median)
+    and over all runs of the group: runs (how many), share_feasible, bound (median)
     and gap (median of the feasible ones) of the metric's kind of length; draws (of random maps; 0
     on others).
     """
@@ -83,7 +83,7 @@ def cells(
         if isinstance(name, str)
     }
     bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
-    feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
+    feasible = runs["feasible"].to_numpy()
     asked = [runs.index.isin(select(runs, entry.where).index) for entry in entries]
     copies = repeated(runs)
     units = runs[spec.within].to_numpy() if spec.within else None
@@ -95,7 +95,6 @@ def cells(
             **dict(zip(keys, key)),
             "runs": len(positions),
             "draws": runs["layout"].iloc[positions].nunique() if "layout" in runs else 0,
-            "share_claimed": claimed[positions].mean(),
             "share_feasible": feasible[positions].mean(),
         }
         for value, (entry, metric) in enumerate(zip(entries, specs)):
@@ -126,7 +125,7 @@ def cells(
                 "groups": groups,
             }
             rows += [cell | {"statistic": statistic} for statistic in entry.statistics]
-    of_runs = ["runs", "draws", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
+    of_runs = ["runs", "draws", "share_feasible", "bound", "gap", "least", "most"]
     of_cell = ["value", "metric", "statistic", "decimals", "asked", "numbers", "by_run", "groups"]
     columns = [*keys, *of_runs, *of_cell]
     # Of type object, so that integers stay integers next to published numbers without runs.

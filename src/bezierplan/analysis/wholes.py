@@ -66,7 +66,7 @@ def of_table(
     means = numbers[numbers["primary"] & (numbers["statistic"] == "mean")]
     means = means.dropna(subset=["in_range", "value_ours"]).astype(dict.fromkeys(keys, object))
     rows = []
-    if "method" in keys and len(means) >= LEAST:
+    if "method" in keys and len(means):
         cell = [*keys, "metric", "statistic"]
         ours = tables.cells(results, spec, keys)[[*cell, "decimals", "draws", "by_run"]]
         column = [key for key in cell if key not in ("method", "statistic")]
@@ -109,23 +109,29 @@ def _of(group: pd.DataFrame, together: bool, rng: np.random.Generator) -> Iterat
     yield _placed("level", every.mean(axis=1), tail)
     yield _placed("spread", every.std(axis=1, ddof=1), tail)
     orders = rng.permuted(np.tile(every[0], (statistics.DRAWS, 1)), axis=1)
-    correlations, by_chance = (
-        rank_correlations(rows, group["value_ours"]) for rows in (every, orders)
-    )
-    any_order = _share(np.abs(by_chance) >= abs(correlations[0]) - _EXACT)
-    yield _placed("order", correlations, tail) | {"chance_any_order": any_order}
-    methods = group["method"].to_numpy()
+    correlations = rank_correlations(np.vstack([every, orders]), group["value_ours"])
+    order, by_chance = np.split(correlations, [len(every)])
+    any_order = _share(np.abs(by_chance) >= abs(order[0]) - _EXACT)
+    yield _placed("order", order, tail) | {"chance_any_order": any_order}
+    yield from _deviations(every, group["method"].to_numpy(), tail)
+
+
+def _deviations(means: np.ndarray, methods: np.ndarray, tail: float) -> Iterator[dict]:
+    """The rows of the first of some rows of means (n, k), less the mean of all, among the other
+    rows, experiments; then without the mean that lies farthest out.
+    """
     for quantity in ("deviations", "deviations of the others"):
-        outside, chance, farthest = deviations(every, tail)
-        yield {
-            "quantity": quantity,
-            "methods": len(methods),
-            "printed": outside.sum(),
-            "in_range": chance >= 2 * tail,
-            "chance": chance,
-            "outside": ", ".join(methods[outside]),
-        }
-        every, methods = (np.delete(each, farthest, axis=-1) for each in (every, methods))
+        off = means - means.mean(axis=1, keepdims=True)
+        low, high = np.quantile(off[1:], [tail, 1 - tail], axis=0)
+        outside = (off[0] < low - _EXACT) | (off[0] > high + _EXACT)
+        scale = np.maximum(off[1:].std(axis=0), _EXACT)
+        squares = ((off - off[1:].mean(axis=0)) / scale) ** 2
+        sums = squares.sum(axis=1)
+        row = {"quantity": quantity, "methods": len(methods), "printed": outside.sum()}
+        row |= {"chance": _share(sums[1:] >= sums[0]), "outside": ", ".join(methods[outside])}
+        yield row | {"in_range": row["chance"] >= 2 * tail}
+        farthest = squares[0].argmax()
+        means, methods = (np.delete(each, farthest, axis=-1) for each in (means, methods))
 
 
 def _placed(quantity: str, values: np.ndarray, tail: float) -> dict:
@@ -147,20 +153,6 @@ def rank_correlations(rows: np.ndarray, column: np.ndarray) -> np.ndarray:
     sizes = np.linalg.norm(ranks, axis=1)
     with np.errstate(invalid="ignore"):
         return (ranks @ ranks[0] / (sizes * sizes[0]))[1:]
-
-
-def deviations(means: np.ndarray, tail: float) -> tuple[np.ndarray, float, int]:
-    """Which of the first row of means (n, k), less the mean of all, lie outside the central
-    interval of those of the other rows, experiments; the chance of as large a sum of squared
-    standardized deviations; and which one is the largest.
-    """
-    first, *others = means - means.mean(axis=1, keepdims=True)
-    low, high = np.quantile(others, [tail, 1 - tail], axis=0)
-    outside = (first < low - _EXACT) | (first > high + _EXACT)
-    scale = np.maximum(np.std(others, axis=0), _EXACT)
-    squares = ((np.array([first, *others]) - np.mean(others, axis=0)) / scale) ** 2
-    sums = squares.sum(axis=1)
-    return outside, _share(sums[1:] >= sums[0]), int(np.argmax(squares[0]))
 
 
 def _share(as_far: np.ndarray) -> float:
