@@ -115,6 +115,26 @@ def test_a_number_that_is_not_named_has_no_vote():
     assert [*voting.printed["method"]] == ["cpso1_tent"]
 
 
+def test_a_mean_over_free_paths_counts_them_and_an_unstated_number_is_of_one_run():
+    made, voting = job("ma2020")
+    counts = [each.printed["value"] for each in voting if each.metric == "feasible"]
+    assert {*pd.concat(counts)} == {30}
+    assert {*made.experiments["environments"].scoring} == {"bca", "bca_q"}
+    assert {*pd.concat([each.printed["n"] for each in job("song2016")[1]])} == {1}
+
+
+def test_hidden_numbers_are_of_as_many_layouts_as_printed_ones():
+    def layouts(key, experiment, number):
+        found = jobs.readings(STUDIES[key], "extended").experiments[experiment]
+        chunk = next(iter(found.printing.values()))
+        own = readings._in_layouts(chunk, number, 1 if found.in_one_layout else 10)
+        return {place["layout"] for place in own.problems.values()}
+
+    first, second = (layouts("elhoseny2017", "fields100", number) for number in (0, 1))
+    assert (len(first), len(second), first & second) == (10, 10, set())
+    assert len(layouts("tharwat2018", "obstacles", 3)) == 1
+
+
 def test_claims_are_judged_under_the_best_reading_that_no_sentence_excludes(monkeypatch):
     choices = [Choice(name, [1, 2.0], "tries", {"mine": {}}, [], {}, "") for name in ("O1", "O2")]
     scores = {
