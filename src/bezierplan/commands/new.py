@@ -32,7 +32,8 @@ def main(
     folder : Path
         where the study will lie; its name is the study's
     from_ : Path, optional
-        a map file of your own; needs --start and --target
+        a map file of your own, no image without the YAML file of a map_server beside it; needs
+        --start and --target
     start : tuple of float, optional
         where paths begin on that map, in its unit
     target : tuple of float, optional

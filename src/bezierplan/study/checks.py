@@ -3,6 +3,7 @@ free places, matching published numbers. Every fault is one line, and all are fo
 """
 
 import inspect
+import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -22,7 +23,7 @@ from bezierplan.running import columns, worlds
 from bezierplan.running.chunk import conditions
 from bezierplan.running.execution import settings_in
 from bezierplan.running.guard import interface
-from bezierplan.schema.checked import Fault, check_all, check_known
+from bezierplan.schema.checked import Fault, check_all, check_known, text_of
 from bezierplan.schema.model import Model, fault_of, named, one_or_list
 from bezierplan.schema.words import told
 from bezierplan.study import published
@@ -360,14 +361,15 @@ class Checks:
             runs.check_where(table.primary, "primary")
 
     def prints(self) -> None:
-        """Looks are of methods; labels of names in results: columns and their values, metrics,
-        statistics, and words of the tables that functions make.
+        """Looks are of methods; labels of what experiments.yaml names, of columns, metrics and
+        statistics, or of words of a function's table.
         """
-        check_all(self.study.looks.keys() - self.invalid, self.study.methods, "looks")
-        runs = self.runs(tuple(self.known["experiment"]), False)
-        values = (str(value) for column in runs.rows for value in runs.values(column))
-        names = [*metrics.METRICS, *statistics.STATISTICS, *runs.types, *self.words, *values]
-        check_all(self.study.labels, names, "labels")
+        study = self.study
+        check_all(study.looks.keys() - self.invalid, study.methods, "looks")
+        named = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
+        words = [*metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words, *named]
+        for each in (study, *study.tables.values()):
+            check_all(getattr(each, "labels", {}), words, "labels")
 
     def figure(self, name: str, figure: Figure) -> None:
         """Its panels' names exist."""
