@@ -165,6 +165,7 @@ def compare(
     )
     found = table["identified"].notna()
     table["verdict"] = table["verdict"].astype(object).mask(found, "identified")
+    table["why"] = table["why"].astype(object).mask(found, "")
     vague = {entry.metric for entry in spec.values if not entry.defined}
     for reason, whose in (
         (ONE_DRAW, both["draws"].eq(1) & ~found),
@@ -173,7 +174,7 @@ def compare(
     ):
         whose &= table["in_range"].notna()
         table["verdict"] = table["verdict"].mask(whose, "inconclusive")
-        table["why"] = table["why"].astype(object).mask(whose, reason)
+        table["why"] = table["why"].mask(whose, reason)
     table["primary"] = _is_primary(table, spec.primary, variant_of)
     whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
