@@ -135,6 +135,13 @@ def test_hidden_numbers_are_of_as_many_layouts_as_printed_ones():
     assert len(layouts("tharwat2018", "obstacles", 3)) == 1
 
 
+def test_what_was_fitted_to_has_runs_for_claims_and_no_vote():
+    own = STUDIES["elhoseny2017"]
+    scored, judged = jobs.readings(own, "full"), jobs.verdicts_of_readings(own, "full")
+    assert "mga" not in scored.experiments["fields100"].scoring
+    assert "mga" in judged.experiments["fields100"].scoring
+
+
 def test_claims_are_judged_under_the_best_reading_that_no_sentence_excludes(monkeypatch):
     choices = [Choice(name, [1, 2.0], "tries", {"mine": {}}, [], {}, "") for name in ("O1", "O2")]
     scores = {

@@ -338,7 +338,9 @@ def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
 
 def readings(study: Study, scale: str, of: type[Readings] = Readings, **more: object) -> Readings:
     """The readings of a study, or another job on them."""
-    tables = choices.voting(study.compared(), study.votes)
+    tables = {name: study.compared()[name] for name in study.votes}
+    if of is not VerdictsOfReadings:  # which need all methods
+        tables = choices.voting(tables, study.votes)
     experiments = {}
     for name in dict.fromkeys(each.experiment for each in tables.values()):
         content = study.experiments[name]
