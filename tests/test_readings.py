@@ -124,15 +124,14 @@ def test_a_mean_over_free_paths_counts_them_and_an_unstated_number_is_of_one_run
 
 
 def test_hidden_numbers_are_of_as_many_layouts_as_printed_ones():
-    def layouts(key, experiment, number):
-        found = jobs.readings(STUDIES[key], "extended").experiments[experiment]
-        chunk = next(iter(found.printing.values()))
-        own = readings._in_layouts(chunk, number, 1 if found.in_one_layout else 10)
-        return {place["layout"] for place in own.problems.values()}
-
-    first, second = (layouts("elhoseny2017", "fields100", number) for number in (0, 1))
+    chunk = (
+        jobs.readings(STUDIES["elhoseny2017"], "extended").experiments["fields100"].printing["ga"]
+    )
+    first, second = (
+        {place["layout"] for place in readings._in_layouts(chunk, number, 10).problems.values()}
+        for number in (0, 1)
+    )
     assert (len(first), len(second), first & second) == (10, 10, set())
-    assert len(layouts("tharwat2018", "obstacles", 3)) == 1
 
 
 def test_what_was_fitted_to_has_runs_for_claims_and_no_vote():
