@@ -2,13 +2,18 @@
 field.
 """
 
+import json
 from pathlib import Path as File
+
+import numpy as np
 
 from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -16,6 +21,21 @@ from bezierplan.workspaces.problem import Problem
 BENCHMARK_MAPS = (
     File(__file__).resolve().parents[1] / "config" / "studies" / "elhoseny2017" / "workspaces"
 )
+
+
+def benchmark(name: str) -> Problem:
+    """One of these maps, with its own ends."""
+    text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
+    properties = json.loads(text)["properties"]
+    ends = [tuple(properties[end]) for end in ("start", "target")]
+    return Problem(name, polygons_from_geojson(text, "m"), *ends)
+
+
+def among_circles(circles, start=(0.0, 0.0), target=(4.0, 6.0)) -> Problem:
+    """Circles (x, y, radius) in the field of tharwat2018's maps."""
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    field = Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit")
+    return Problem("test", field, start, target)
 
 
 def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 100) -> Problem:

@@ -4,7 +4,6 @@ themselves are free.
 
 import csv
 import itertools
-import json
 import math
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import numpy as np
 import pytest
 import scipy
 import shapely
-from fields import BENCHMARK_MAPS
+from fields import benchmark
 
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
@@ -24,7 +23,6 @@ from bezierplan.geometry.shortest_paths import (
     shortest_path,
 )
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import STEPS, neighbours
 from bezierplan.workspaces.polygons import Polygons
@@ -41,17 +39,6 @@ PUBLIC = ((1.5, 4.5, 1.5), (4.0, 3.0, 1.0), (1.2, 1.5, 0.8))
 def reference(quantity):
     with (DATA / "reference_lengths.csv").open(newline="") as file:
         return [row for row in csv.DictReader(file) if row["quantity"] == quantity]
-
-
-def imr_problem(name):
-    text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
-    properties = json.loads(text)["properties"]
-    return Problem(
-        name,
-        polygons_from_geojson(text, "m"),
-        tuple(properties["start"]),
-        tuple(properties["target"]),
-    )
 
 
 def grid_map(file, cell=1.0):
@@ -93,7 +80,7 @@ def assert_is_path(bound, problem):
 
 @pytest.mark.parametrize("row", reference("shortest_path"), ids=lambda row: row["map"])
 def test_shortest_paths_of_the_benchmark_maps(row):
-    problem = imr_problem(row["map"])
+    problem = benchmark(row["map"])
     bound = shortest_path(problem)
     assert bound.length == pytest.approx(float(row["value"]), abs=1e-5)
     assert_is_path(bound, problem)
@@ -434,7 +421,7 @@ def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch
 def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkeypatch):
     monkeypatch.setattr("bezierplan.geometry.shortest_paths.polygons.MOST_POLYGON_NODES", 0)
     for row in reference("shortest_path"):
-        assert shortest_path(imr_problem(row["map"])).length == pytest.approx(
+        assert shortest_path(benchmark(row["map"])).length == pytest.approx(
             float(row["value"]), abs=1e-5
         )
 

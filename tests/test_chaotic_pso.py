@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fields import among_circles as problem
 from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
@@ -15,7 +16,6 @@ from bezierplan.geometry import curves
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.planners.parts.settings import filled
-from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
@@ -23,16 +23,6 @@ SETTINGS = study("tharwat2018").resolved("pso") | {
     "bound_rule": "mirror",
     "random_numbers": "dimension",
 }
-
-
-def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
-    table = np.array(circles, dtype=float).reshape(-1, 3)
-    return Problem(
-        "test",
-        Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"),
-        start,
-        target,
-    )
 
 
 EQUAL = problem([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]])

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from fields import among_circles as problem
 from fields import assert_path_fits, drawn
 from studies import planned
 
@@ -14,19 +15,6 @@ from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.planners import prm
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.problem import Problem
-
-
-def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
-    table = np.array(circles, dtype=float).reshape(-1, 3)
-    return Problem(
-        "test",
-        Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"),
-        start,
-        target,
-    )
-
 
 PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
 

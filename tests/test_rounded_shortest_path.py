@@ -2,12 +2,11 @@
 asked, nearly as short as possible.
 """
 
-import json
 import math
 
 import numpy as np
 import pytest
-from fields import BENCHMARK_MAPS, drawn
+from fields import benchmark, drawn
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,7 +17,6 @@ from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import rounded_shortest_path
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
@@ -26,17 +24,6 @@ from bezierplan.workspaces.problem import Problem
 MAPS = ["back_and_forth", "bugtrap1", "complex2", "gaps", "hidden_U", "square_spiral"]
 # An arc of 45 degrees is curved by up to this much more than its circle, relatively.
 ARC = 1e-3
-
-
-def benchmark(name):
-    text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
-    properties = json.loads(text)["properties"]
-    return Problem(
-        name,
-        polygons_from_geojson(text, "m"),
-        tuple(properties["start"]),
-        tuple(properties["target"]),
-    )
 
 
 def rounded(problem, turning_radius, offset=0.0):
