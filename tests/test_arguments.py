@@ -196,12 +196,6 @@ def test_a_fault_of_a_list_of_problems_names_file_and_row(rows, told, tmp_path):
         bp.plan_all(bp.read_map(bp.example_map("gaps")), file)
 
 
-def test_a_list_of_no_problems_has_no_rows(tmp_path):
-    file = tmp_path / "problems.csv"
-    file.write_text("start_x,start_y,target_x,target_y\n")
-    assert "feasible" in bp.plan_all(PROBLEM.workspace, file)
-
-
 @pytest.mark.parametrize("seed", [-1, 1.5, float("nan"), "1"])
 def test_a_seed_is_a_whole_number(seed):
     with pytest.raises(ValueError, match=r"^seed: .*expected a whole number"):

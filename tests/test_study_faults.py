@@ -114,7 +114,6 @@ def test_a_fault_of_a_further_file_is_told_in_one_line(name, text, expected, tmp
         ("experiments.yaml", "mine: {planner: walk.py", "mine: {planer: walk.py"),
         ("experiments.yaml", "mine: {planner: walk.py", "mine: {planner: wlak.py"),
         ("experiments.yaml", "settings: {tries: 20}", "settings: {tries: many}"),
-        ("experiments.yaml", "cell: 1, unit", "cel: 1, unit"),
         ("experiments.yaml", "vary: {tries:", "vary: {trees:"),
         ("artefacts.yaml", "tables:", "table:"),
         ("artefacts.yaml", "decimals: 2},", "decimals: -2},"),

@@ -102,6 +102,10 @@ def check(study: Study, design: Design, table: Pivot) -> None:
                 f"{where}: the same keys, metric and statistic as line {places[place]}; "
                 "expected each once"
             )
+    apart = {*table.key_columns, *table.where, *table.primary}
+    for key in keys:
+        if key not in apart and len({row[key] for row in lines.values()}) > 1:
+            raise Fault(f"index: {key} tells rows of {here} apart; expected it in index or columns")
     printed = {row["metric"] for row in lines.values()}
     check_all(table.reads, printed, "reads")
     check_all([rule.metric for rule in table.monotone], printed, "monotone")

@@ -73,13 +73,10 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     studies: dict[str, Study] = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
-        try:
-            study, faults, lost = _read(folder, changed)
-            if faults := [*faults, *Checks(study, lost).check()]:
-                raise Fault(*faults)
-        except Fault as fault:
+        study, faults, lost = _read(folder, changed)
+        if faults := [*faults, *Checks(study, lost).check()]:
             more = f" (with the configuration's settings: {changed})" if changed else ""
-            raise Fault(*(f"{line}{more}" for line in fault.lines)) from None
+            raise Fault(*(f"{line}{more}" for line in faults))
         if study.key in studies:
             raise Fault(
                 f"{relative(folder)}: a study of the name {study.key} is there already; rename the "
