@@ -119,7 +119,7 @@ FAULTS_OF_RUNS = {
 ENDS = {
     "an exception": (
         'raise RuntimeError("no\\nway")',
-        "circles: open: RuntimeError: no way",
+        "circles: open: line 24 of walk.py: RuntimeError: no way",
     ),
     "another type": (
         "history = history.tolist()",

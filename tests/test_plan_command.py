@@ -296,13 +296,17 @@ ANSWERS = {
         "its answer: path: target: (1.5, 0.5); expected exactly (3.5, 0.5)",
     ),
     "nothing": ("", "None", "its answer: is a NoneType; expected a Plan"),
-    "an error": ("{}[1]", "answer", "KeyError: 1"),
-    "an error of two lines": ('raise ValueError("a\\nb")', "answer", "ValueError: a b"),
-    "an exit": ("raise SystemExit(0)", "answer", "sys.exit: 0"),
+    "an error": ("{}[1]", "answer", "line 7 of own.py: KeyError: 1"),
+    "an error of two lines": (
+        'raise ValueError("a\\nb")',
+        "answer",
+        "line 7 of own.py: ValueError: a b",
+    ),
+    "an exit": ("raise SystemExit(0)", "answer", "line 7 of own.py: sys.exit: 0"),
     "an empty map": (
         "problem.workspace.occupied[:] = False",
         "answer",
-        "ValueError: assignment destination is read-only",
+        "line 7 of own.py: ValueError: assignment destination is read-only",
     ),
 }
 
