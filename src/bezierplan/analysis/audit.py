@@ -276,15 +276,16 @@ def of_orders(item: str, table: pd.DataFrame, rule: Monotone) -> Iterator[dict]:
             told = f"{before['printed']} {sign} {row['printed']}"
             yield checked(item, where, words, row["value"], before["value"], fits, told)
     wide = numbers.pivot_table("value", others or ["metric"], rule.along).dropna()
-    where = f"metric={rule.metric}, statistic={rule.statistic}, all rows"
-    yield from _of_trend(item, where, wide, rule)
+    where = f"metric={rule.metric}, statistic={rule.statistic}, all "
+    yield from _of_trend(item, f"{where}numbers", wide, rule)
     if (count := len(wide)) > 1:
         steps = np.diff(wide if rule.direction == "up" else -wide)
         kept = int((steps > 0).all(axis=1).sum())
         chance = identified.at_least(kept, [1 / math.factorial(wide.shape[1])] * count)
         told = f"{kept} of {count} rows without an exception; the chance of as many, if all orders "
         told += f"were equally likely: {chance:.2g}"
-        yield checked(item, where, words, kept, count, True if kept == count else None, told)
+        fits = True if kept == count else None
+        yield checked(item, f"{where}rows", words, kept, count, fits, told)
 
 
 def _of_trend(item: str, where: str, wide: pd.DataFrame, rule: Monotone) -> Iterator[dict]:

@@ -163,13 +163,13 @@ def compare(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
     )
-    found = table["identified"].notna()
-    table["verdict"] = table["verdict"].astype(object).mask(found, "identified")
-    table["why"] = table["why"].astype(object).mask(found, "")
+    named = table["identified"].notna()
+    table["verdict"] = table["verdict"].astype(object).mask(named, "identified")
+    table["why"] = table["why"].astype(object).mask(named, "")
     vague = {entry.metric for entry in spec.values if not entry.defined}
     for reason, whose in (
-        (ONE_DRAW, both["draws"].eq(1) & ~found),
-        (NO_MAP, ~found & reconstructed),
+        (ONE_DRAW, both["draws"].eq(1) & ~named),
+        (NO_MAP, ~named & reconstructed),
         (UNDEFINED, both["metric"].isin(vague)),
     ):
         whose &= table["in_range"].notna()
