@@ -366,8 +366,8 @@ class Checks:
         """
         study = self.study
         check_all(study.looks.keys() - self.invalid, study.methods, "looks")
-        named = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
-        words = [*metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words, *named]
+        words = re.findall(r"[\w.+-]+", text_of(study.folder / "experiments.yaml", ""))
+        words += [*metrics.METRICS, *statistics.STATISTICS, *RESERVED, *self.words]
         for each in (study, *study.tables.values()):
             check_all(getattr(each, "labels", {}), words, "labels")
 

@@ -66,8 +66,15 @@ def check(study: Study, design: Design, table: Pivot) -> None:
     keys = [column for column in header if column not in COLUMNS]
     for column in keys:
         design.check_column(column, "column", f"{here}: line 1: column")
-    repeats = {"repeat": range(design.repeats)}
-    known = {column: repeats.get(column, design.values(column)) for column in keys}
+        if column not in [*table.key_columns, *table.where, *table.primary] and (
+            len({row[column] for row in lines.values()}) > 1
+        ):
+            raise Fault(
+                f"index: {column} tells rows of {here} apart; expected it in index or columns"
+            )
+    known = {column: design.values(column) for column in keys}
+    if "repeat" in known:
+        known["repeat"] = range(design.repeats)
     shown = {
         f"{value.metric} {statistic}"
         for each in study.with_published().values()
@@ -102,10 +109,6 @@ def check(study: Study, design: Design, table: Pivot) -> None:
                 f"{where}: the same keys, metric and statistic as line {places[place]}; "
                 "expected each once"
             )
-    apart = {*table.key_columns, *table.where, *table.primary}
-    for key in keys:
-        if key not in apart and len({row[key] for row in lines.values()}) > 1:
-            raise Fault(f"index: {key} tells rows of {here} apart; expected it in index or columns")
     printed = {row["metric"] for row in lines.values()}
     check_all(table.reads, printed, "reads")
     check_all([rule.metric for rule in table.monotone], printed, "monotone")
