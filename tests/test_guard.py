@@ -145,7 +145,7 @@ SOUND = "def plan(problem, rng, *, tries: int):\n    return None\n"
 ENDS = {
     "import os; os._exit(0)": "when it is imported: its process ended itself with exit status 0, "
     "before it was done",
-    "raise type('Own', (BaseException,), {})('no')": "line 1: Own: no",
+    "raise type('Own', (BaseException,), {})('no')": "line 1 of ends.py: Own: no",
     "while True: pass": "when it is imported: not done within the time limit of 3 s; it is ended",
 }
 
