@@ -196,7 +196,7 @@ def _listed(claims: pd.DataFrame) -> str:
     filled = [name for name in columns if name in claims and claims[name].notna().any()]
     shown = claims[filled].astype(object).fillna("")
     depends = shown["verdict"] == "depends"
-    shown.loc[depends, "verdict"] = "depends: " + claims["reason"]
+    shown.loc[depends, "verdict"] = "depends: " + claims["reason"].astype(str)
     # Read from a file with gaps, whole numbers are floats.
     digits = {"n": ".0f", "effect": ".3g"}
     for column in shown.columns.intersection(list(digits)):
