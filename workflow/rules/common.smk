@@ -99,7 +99,8 @@ def files_of(scale, study, name):
     """The files of a table or figure."""
     endings = ["svg", "png", "pdf", "csv", "txt"] if name in study.figures else ["csv", "tex"]
     endings += ["comparison.csv"] if name in study.compared() else []
-    endings += ["published.csv", "marks.csv", "wholes.csv"] if name in study.with_published() else []
+    if name in study.with_published():
+        endings += ["published.csv", "marks.csv", "wholes.csv"]
     return [f"results/{scale}/{study.key}/{tree(name)}/{name}.{ending}" for ending in endings]
 
 
@@ -228,3 +229,10 @@ def shown(wildcards):
             for key in keys
         ),
     ]
+
+
+def judged(file):
+    """Files of the runs that the page shows, and of the baselines that the summary is about."""
+    makes = [of(page.verified, root=PREFIX), *([of(jobs.baseline_comparison)] if COMPARED else [])]
+    reads = [read(make, f"{RESULTS}/runs/{{experiment}}/{{method}}/{file}") for make in makes]
+    return lambda wildcards: [*dict.fromkeys(name for each in reads for name in each(wildcards))]

@@ -104,13 +104,6 @@ SUMMARY = expand(
 )
 
 
-def judged(file):
-    """Files of the runs that the page shows, and of the baselines that the summary is about."""
-    makes = [of(page.verified, root=PREFIX), *([of(jobs.baseline_comparison)] if COMPARED else [])]
-    reads = [read(make, f"{RESULTS}/runs/{{experiment}}/{{method}}/{file}") for make in makes]
-    return lambda wildcards: [*dict.fromkeys(name for each in reads for name in each(wildcards))]
-
-
 # What was judged again of all that the page shows, and a digest of every file.
 rule verified:
     input:
