@@ -17,7 +17,7 @@ from bezierplan.analysis.claims.effects import Comparison
 from bezierplan.analysis.claims.kinds import kind_of
 from bezierplan.analysis.claims.material import Display, Material, Untestable
 from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
-from bezierplan.analysis.results import pick, select
+from bezierplan.analysis.results import pick, repeated, select
 from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import one_or_list
 
@@ -185,7 +185,9 @@ def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFr
         values = values.reindex(runs.index)
         if check.failures == "last":
             values = values.fillna(np.inf)
-        frames.append(select(runs.assign(value=values), conditions))
+        runs = select(runs.assign(value=values), conditions)
+        # Shares of the runs of a deterministic method count one under each condition.
+        frames.append(runs if check.cells else runs[~repeated(runs)])
     return pd.concat(frames, ignore_index=True)
 
 
