@@ -157,7 +157,7 @@ def test_without_scripts_tables_verdicts_charts_and_figures_are_there(visit, sma
     tab = visit(small, java_script_enabled=False)
     expect(tab.locator("h1")).to_be_visible()
     tab.locator("[id='one/table1'] > summary").click()
-    expect(tab.locator("[id='one/table1'] table")).to_be_visible()
+    expect(tab.locator("[id='one/table1'] table.sortable")).to_be_visible()
     expect(tab.locator("figure noscript img")).to_have_attribute("src", "one/paper/figure1.svg")
     for name in ("verdicts", "ratios", "methods"):
         expect(tab.locator(f"[id='page-chart/{name}'] .scroll > *")).to_be_visible()
