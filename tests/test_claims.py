@@ -1145,6 +1145,7 @@ def test_few_runs_without_an_effect_are_seldom_taken_for_one():
 
 def test_claims_depend_on_the_best_reading_if_its_score_tells_it_apart():
     """C1 is open, and C3 rests on fewer comparisons there."""
+    assert judge({"checks": [LOWER]}, table(TIERS))[0]["verdict_best_reading"].dtype == object
     claims = pd.DataFrame({"id": ["C1", "C2", "C2", "C3"], "primary": [True, True, False, True]})
     claims = claims.assign(verdict="supported", verdict_best_reading=None, reason="why")
     claims["holds"] = ["4 of 4", "4 of 4", None, "4 of 14"]

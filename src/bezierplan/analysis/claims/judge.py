@@ -108,7 +108,8 @@ def judge(
             rows.append(row | {"primary": assignment is first})
             check_rows += details
         claim_rows += [rows[0] | _by_reading(claim, rows), *rows[1:]]
-    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"}), pd.DataFrame(
+    types = {"n": "Int64", "verdict_best_reading": object}
+    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype(types), pd.DataFrame(
         check_rows, columns=CHECK_COLUMNS
     )
 
