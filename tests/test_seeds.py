@@ -4,29 +4,24 @@ import ast
 import hashlib
 from pathlib import Path
 
+import chunks
 import numpy as np
 import pytest
 
 from bezierplan.running import execution
-from bezierplan.running.chunk import Chunk, Condition
+from bezierplan.running.chunk import Condition
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
 ROOT = Path(__file__).resolve().parent.parent
 
-CHUNK = Chunk(
-    study="paper",
-    experiment="first",
-    method="mine",
-    planner="straight_line",
-    settings={},
-    # The first two have one layout in common.
+# The first two have one layout in common.
+CHUNK = chunks.CHUNK._replace(
     problems={
         name: {"workspace": "w", "layout": layout}
         for name, layout in (("p", 3), ("q", 3), ("r", 4))
     },
     vary={"x": [1, 2]},
-    presets={},
     seeds="common",
     repeats=[0, 3],
 )
@@ -64,7 +59,7 @@ def test_a_seed_depends_on_what_its_rule_names_and_on_nothing_else(seeds, withou
 
 @pytest.mark.parametrize("repeat", [7, 999, 1000, 12345])
 def test_a_seed_is_the_sha256_of_the_name_of_its_run(repeat):
-    name = f"paper/first/p,x=1/mine/{repeat}"
+    name = f"s/e/p,x=1/line/{repeat}"
     assert execution.run_id(CHUNK, Condition("p", {"x": 1}), repeat) == name
     seed = int(hashlib.sha256(name.encode()).hexdigest(), 16)
     assert first_number("own", repeat=repeat) == np.random.default_rng(seed).random()
@@ -101,7 +96,7 @@ PROBLEMS = {
 def test_a_chunk_is_every_condition_with_all_its_repeats(job):
     runs, times = (table.to_pandas() for table in execution.run_chunk(PROBLEMS, job))
     expected = [
-        f"paper/first/{problem},x={x}/mine/{repeat}"
+        f"s/e/{problem},x={x}/line/{repeat}"
         for problem in "pqr"
         for x in (1, 2)
         for repeat in (4, 5, 6)

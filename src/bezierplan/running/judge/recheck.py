@@ -180,7 +180,7 @@ def judged(task: Task) -> Verdict:
     for file, stored in files.items():
         for row in stored:
             faults += _row_faults(file, row, by_name[row["problem"]], moving, known)
-    _refuse_alike(files, chunk)
+    _refuse_alike(files, chunk)  # the task's chunks differ in their repeats alone
     return Verdict(
         tuple(faults), len(task.runs), sum(map(len, files.values())), len(known), tuple(lines)
     )
