@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+import bezierplan
 from bezierplan.places import EXTRA
 
 ROOT = Path(__file__).parents[1]
@@ -21,6 +22,24 @@ PAGES += [f"docs/tutorials/{name}.md" for name in ("map", "planner", "paper", "m
 IN_A_CLONE = re.compile(r"bezierplan (verify|digest) ")
 MAP = "image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n"
 MAP += "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+
+EVERY_METHOD = """
+import bezierplan as bp
+from bezierplan.api import _study
+for name in [*bp.methods(), "prm"]:
+    study = _study(name.partition("/")[0] if "/" in name else "song2016")
+    still = [each for each in study.experiments if not study.moves(each)]
+    for problem in (p for each in still for p in bp.problems(f"{study.key}/{each}").values()):
+        try:
+            print(bp.plan(problem, name).method, "planned")
+            break
+        except ValueError as fault:
+            assert "serve" in str(fault), fault
+try:
+    bp.plan(problem, "song2016/smoth")
+except ValueError as fault:
+    print(fault)
+"""
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +125,13 @@ def test_the_core_plans_by_a_paper_s_method_and_says_what_it_lacks(away):
         "digest: needs pyarrow, which is not installed; install it with: pip install "
         "'bezierplan[workflow]'\n"
     )
+
+
+def test_the_core_plans_once_by_every_method(away):
+    said = shell(away, f"python -c {shlex.quote(EVERY_METHOD)}", away / "every", core=True)
+    planned = re.findall("^(.*) planned$", said, flags=re.M)
+    assert planned == [*bezierplan.methods(), "prm"]
+    assert "song2016/smoth: unknown; did you mean song2016/smooth?" in said
 
 
 def test_the_papers_can_be_run_by_name_in_any_folder(away):

@@ -544,10 +544,10 @@ def _folder(key: str) -> File:
 
 @cache
 def _study(key: str) -> Any:
-    """A study of this project, which its tests have checked, or that of a folder."""
-    from bezierplan.study import reading
+    """The experiments of a study of this project, or of a folder."""
+    from bezierplan.study import experiments
 
-    return reading.read_study(_folder(key))
+    return experiments.read(_folder(key))
 
 
 def _keys() -> list[str]:
@@ -602,7 +602,7 @@ def problems(experiment: str) -> dict[str, Problem]:
     ValueError
         For an unknown one.
     """
-    from bezierplan.study.jobs import problems_job
+    from bezierplan.study.experiments import problems_job
 
     key, _, name = experiment.partition("/")
     check_known(key, _keys(), "experiment: study")

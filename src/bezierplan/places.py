@@ -26,3 +26,11 @@ def cache_folder() -> Path:
     if CHECKOUT and os.access(TREE, os.W_OK):
         return TREE / ".cache"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "bezierplan"
+
+
+def relative(path: Path) -> str:
+    """A path relative to the working folder if it lies inside, so that a moved tree still finds its
+    results; otherwise unchanged.
+    """
+    here = os.path.relpath(path)
+    return str(path) if here.startswith("..") else here

@@ -18,6 +18,7 @@ from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.table_kinds import Pivot, Table
 from bezierplan.figures.figure import Figure
 from bezierplan.figures.panels import Panel
+from bezierplan.places import relative
 from bezierplan.planners import is_file, known_planners, planner_module, planner_settings
 from bezierplan.running import columns, worlds
 from bezierplan.running.chunk import conditions
@@ -29,11 +30,11 @@ from bezierplan.schema.words import told
 from bezierplan.study import published
 from bezierplan.study.alternatives import concerned, with_alternative
 from bezierplan.study.claims import Assumption
-from bezierplan.study.definition import Study, relative
+from bezierplan.study.definition import Study
 from bezierplan.study.design import Design, design, together
-from bezierplan.study.experiments import Experiment, Method
+from bezierplan.study.experiments import Experiment, Method, descriptions
 from bezierplan.study.experiments import Problem as ProblemOfStudy
-from bezierplan.study.jobs import descriptions, job
+from bezierplan.study.jobs import job
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace
 from bezierplan.workspaces.problem import Problem

@@ -1,11 +1,19 @@
 """Models of `experiments.yaml`: methods, workspaces, problems, experiments."""
 
+import itertools
 import re
-from typing import Annotated, Any, Literal
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from bezierplan.machine.modules import code_of
+from bezierplan.places import relative
+from bezierplan.planners import is_file, planner_module, planner_settings
+from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.simulation.policy import Policy
+from bezierplan.schema import checked
+from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
     Count,
     Line,
@@ -21,6 +29,7 @@ from bezierplan.schema.model import (
     matching,
     number,
     one_of,
+    parsed,
     whole,
     wrong,
 )
@@ -261,4 +270,141 @@ class ExperimentsFile(Model):
         None,
         description="the baseline with which the summary compares the study's methods: a row of "
         "`baseline_comparison.csv` for each method",
+    )
+
+
+class Experiments(ExperimentsFile):
+    """A study as far as this file defines it, which is all that a plan by one of its methods needs.
+
+    key: its name; folder: its location; methods: with baselines.
+    """
+
+    key: str
+    folder: Path
+
+    @classmethod
+    def of(cls, folder: Path, content: dict[str, Any]) -> Self:
+        """A study in a folder, from what its files hold, checked. Raises Fault for a baseline with
+        the name of a method.
+        """
+        for name in content["baselines"].keys() & content["methods"]:
+            raise Fault(
+                f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this "
+                "name already"
+            )
+        content = content | {"methods": content["methods"] | content["baselines"]}
+        return cls.model_construct(key=folder.resolve().name, folder=folder, **content)
+
+    def accepted(self, method: str) -> dict[str, Any]:
+        """Settings accepted by a method's planner, with their annotations."""
+        return planner_settings(planner_module(self.planner(method)))
+
+    @property
+    def of_planners(self) -> dict[str, dict[str, Any]]:
+        """Planner -> settings of its methods alone."""
+        return {name: each for name, each in self.settings.items() if isinstance(each, dict)}
+
+    def resolved(self, method: str) -> dict[str, Any]:
+        """All settings of a method, by name: the study's that its planner accepts, those of its
+        planner, and its own.
+        """
+        accepted = self.accepted(method)
+        common = {name: value for name, value in self.settings.items() if name in accepted}
+        return (
+            common
+            | self.of_planners.get(self.methods[method].planner, {})
+            | self.methods[method].settings
+        )
+
+    def planner(self, method: str) -> str:
+        """The planner of a method: a name, or the path of a file relative to the working folder."""
+        planner = self.methods[method].planner
+        return relative(self.folder / planner) if is_file(planner) else planner
+
+    def methods_of(self, experiment: str) -> list[str]:
+        """Methods of an experiment, followed by the baselines that join: whose planner supports all
+        its workspaces and has no setting that it varies.
+        """
+        content, moves = self.experiments[experiment], self.moves(experiment)
+        kinds, methods = {self.kind_of(problem) for problem in content.problems}, [*content.methods]
+        for name, baseline in self.baselines.items():
+            module = planner_module(self.planner(name))
+            varied = content.vary.keys() & self.accepted(name).keys()
+            served = kinds <= set(getattr(module, "workspaces", kinds))
+            if served and not varied and moves == bool(baseline.policy):
+                methods.append(name)
+        return methods
+
+    def workspace_of(self, problem: str) -> Workspace:
+        """The workspace of a problem."""
+        return self.workspaces[self.problems[problem].workspace]
+
+    def moves(self, experiment: str) -> bool:
+        """Whether the runs of an experiment are simulated drives."""
+        return any(
+            self.workspace_of(problem).moves for problem in self.experiments[experiment].problems
+        )
+
+    def kind_of(self, problem: str) -> str:
+        """The kind of workspace that planners see in a problem."""
+        workspace = self.workspace_of(problem)
+        return workspace.draws or workspace.gives or workspace.kind
+
+    def problems_of(self, experiment: str, scale: str, repeat: int = 0) -> dict[str, dict]:
+        """Descriptions of an experiment's problems that have a repeat, by name, as plain values.
+        One with layouts expands to a problem for each layout and number of obstacles.
+        """
+        content, described = self.experiments[experiment], {}
+        for name in content.problems:
+            if content.runs_of(scale, "problem", name) <= repeat:
+                continue
+            problem = self.problems[name]
+            if problem.layouts is None:
+                described[name] = problem.plain()
+                continue
+            same = problem.plain("layouts", "obstacles")
+            for layout, obstacles in itertools.product(
+                range(problem.layouts[scale]), problem.obstacles
+            ):
+                described[f"{name}_{layout}_{obstacles}"] = same | {
+                    "layout": layout,
+                    "obstacles": obstacles,
+                }
+        return described
+
+    def described(self, workspace: str) -> dict[str, Any]:
+        """The description of a workspace as plain values, with the file of a function that draws
+        it.
+        """
+        plain = self.workspaces[workspace].plain()
+        return plain | {"file": self.code_for("worlds")[0]} if "function" in plain else plain
+
+    def code_for(self, *parts: str) -> list[str]:
+        """The modules of some parts of its code (`machine.modules`) that it has."""
+        code = code_of(self.key, relative(self.folder))
+        return [code[part] for part in parts if part in code]
+
+
+def read(folder: Path) -> Experiments:
+    """What the file of a study defines. Raises Fault."""
+    file = folder / "experiments.yaml"
+    content = parsed(ExperimentsFile, checked.read(file, relative(file)), relative(file))
+    return Experiments.of(folder, dict(content))
+
+
+def problems_job(study: Experiments, experiment: str, scale: str) -> Descriptions:
+    """What the problems of an experiment depend on, except the content of map files."""
+    return descriptions(study, study.problems_of(experiment, scale))
+
+
+def descriptions(study: Experiments, problems: dict[str, dict]) -> Descriptions:
+    """What some problems depend on, except the content of map files, from their plain values."""
+    homes = sorted({problem["workspace"] for problem in problems.values()})
+    return Descriptions(
+        study.key,
+        {
+            name: {key: value for key, value in problem.items() if key != "settings"}
+            for name, problem in problems.items()
+        },
+        {name: study.described(name) for name in homes},
     )

@@ -26,37 +26,20 @@ from bezierplan.analysis.table_kinds import FunctionTable, Pivot, Table
 from bezierplan.figures import style
 from bezierplan.figures.figure import Figure as FigureOfStudy
 from bezierplan.figures.jobs import Figure, Latex
+from bezierplan.places import relative
 from bezierplan.planners import PLACE
 from bezierplan.running.chunk import Chunk
-from bezierplan.running.descriptions import Descriptions
 from bezierplan.running.inputs import Shows
 from bezierplan.schema.model import keys, one_or_list
 from bezierplan.study import alternatives
-from bezierplan.study.definition import Study, relative
+from bezierplan.study.definition import Study
+from bezierplan.study.experiments import problems_job
 
 Studies = dict[str, Study]
 
 
 # --------------------------------------------------------------------------------------------------
 # Problems, bounds and runs
-
-
-def problems_job(study: Study, experiment: str, scale: str) -> Descriptions:
-    """What the problems of an experiment depend on, except the content of map files."""
-    return descriptions(study, study.problems_of(experiment, scale))
-
-
-def descriptions(study: Study, problems: dict[str, dict]) -> Descriptions:
-    """What some problems depend on, except the content of map files, from their plain values."""
-    homes = sorted({problem["workspace"] for problem in problems.values()})
-    return Descriptions(
-        study.key,
-        {
-            name: {key: value for key, value in problem.items() if key != "settings"}
-            for name, problem in problems.items()
-        },
-        {name: study.described(name) for name in homes},
-    )
 
 
 def problems(study: Study, scale: str, experiment: str) -> Problems:

@@ -11,9 +11,10 @@ from typing import Any
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.table_kinds import Pivot
+from bezierplan.places import relative
 from bezierplan.schema.checked import Fault, check_all, check_known, text_of
 from bezierplan.schema.model import is_number
-from bezierplan.study.definition import Study, relative
+from bezierplan.study.definition import Study
 from bezierplan.study.design import Design
 
 COLUMNS = ("metric", "statistic", "n", "unit", "value")

@@ -9,14 +9,14 @@ from typing import Any
 
 from bezierplan.analysis import study_code
 from bezierplan.machine.modules import code_of
-from bezierplan.places import STUDIES, TREE
+from bezierplan.places import STUDIES, TREE, relative
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, check_known, closest
 from bezierplan.schema.model import parsed, sound_part
 from bezierplan.schema.words import told
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
-from bezierplan.study.definition import Study, relative
+from bezierplan.study.definition import Study
 from bezierplan.study.experiments import ExperimentsFile
 
 Folders = dict[Path, dict[str, Any]]
@@ -127,13 +127,7 @@ def _read(folder: Path, changes: Mapping[str, Any]) -> tuple[Study, list[str], l
         content["settings"][name] = (
             own | value if isinstance(own, dict) and isinstance(value, dict) else value
         )
-    for name in content["baselines"].keys() & content["methods"]:
-        raise Fault(
-            f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this name "
-            "already"
-        )
-    content["methods"] = content["methods"] | content["baselines"]
-    return Study.model_construct(key=key, folder=folder, **content), faults, invalid
+    return Study.of(folder, content), faults, invalid
 
 
 def check_names(studies: Mapping[str, Study], others: Iterable[str]) -> None:

@@ -1,5 +1,7 @@
 """One run again, from its name alone."""
 
+from collections.abc import Mapping
+
 import pandas as pd
 
 from bezierplan.analysis import results
@@ -7,11 +9,11 @@ from bezierplan.running import execution, worlds
 from bezierplan.running.chunk import Chunk, Condition
 from bezierplan.running.jobs.watchdog import PlannerFailure
 from bezierplan.schema.checked import Fault, check_known
-from bezierplan.study.definition import Study
-from bezierplan.study.jobs import job, problems_job
+from bezierplan.study.experiments import Experiments, problems_job
+from bezierplan.study.jobs import job
 
 
-def replay(name: str, studies: dict[str, Study]) -> results.Results:
+def replay(name: str, studies: Mapping[str, Experiments]) -> results.Results:
     """Reproduce the run named `study/experiment/condition/method/repeat`: one row, with its problem
     and bound.
 
@@ -42,7 +44,7 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
         raise Fault(str(error)) from None
 
 
-def _again(chunk: Chunk, condition: Condition, repeat: int, study: Study) -> results.Results:
+def _again(chunk: Chunk, condition: Condition, repeat: int, study: Experiments) -> results.Results:
     """A run, or a drive in a world that moves."""
     made, moving = worlds.build_all(problems_job(study, chunk.experiment, "full"), study.folder)
     name = condition.problem
