@@ -78,9 +78,9 @@ def write(folder: Path) -> None:
         "references": {entry["key"]: entry for entry in content.citations()},
         "numbers": reader.records(pd.read_csv(content.OUTCOME / "numbers.csv")),
         "names": [(heading, [*rows]) for heading, rows in names.listed([], [*names.NAMES])],
-        "scores": {
-            file.name.removesuffix("_scores.csv"): reader.records(reader.read(file))
-            for file in content.OUTCOME.glob("*_scores.csv")
+        "readings": {
+            file.name.removesuffix("_readings.csv"): reader.records(reader.read(file))
+            for file in content.OUTCOME.glob("*_readings.csv")
         },
         "table": table,
         "about": content.about,

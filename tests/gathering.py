@@ -209,7 +209,7 @@ def gathering(given: Studies) -> Iterator[Made]:
         "claims": [f"{folder}/{key}/claims.csv" for key in given],
         "baseline_comparison": baseline,
         "audits": [],
-        "calibrations": [],
+        "readings": [],
         "sources": [],
     }
     yield Made(summary, files, output)

@@ -44,7 +44,6 @@ NUMBERS[2]["why"] = "interval without an end on that side"
 
 CLAIM = {"study": "one", "variant": "metric=length", "primary": True, "finding": False}
 CLAIM |= {"own_criterion": False, "place": "IV, Table I", "holds": "1 of 2", "n": 10}
-CLAIM |= {"verdict_best_reading": "no effect"}
 CLAIM |= {"where_it_holds": "for a", "published": "2 of 2", "reason": HOSTILE, "artefact": "table1"}
 OTHER = {"variant": "metric=objective", "primary": False, "holds": "0 of 2"}
 CLAIMS = [

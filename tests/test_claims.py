@@ -302,19 +302,6 @@ def test_59_runs_without_an_example_are_enough(threshold, misses, n, expected):
     assert marks({"checks": [check]}, runs, repeats={"tried": 30}) == [expected]
 
 
-def test_a_claim_whose_readings_differ_depends_on_them():
-    runs = pd.concat(
-        [table(TIERS), table({"a": sample("a", 9), "b": sample("b")}, workspace="other")]
-    )
-    claim = {"checks": [LOWER], "variants": {"workspace": ["grid", "other"]}}
-    assert judge(claim, runs)[0]["verdict"].to_list() == ["supported", "contradicted"]
-    row = judge(claim | {"depends": "the map"}, runs)[0].iloc[0]
-    assert row["verdict"] == "depends"
-    assert row["reason"] == (
-        "on the map: supported with workspace=grid; contradicted with workspace=other"
-    )
-
-
 def test_a_chance_that_enough_runs_tell_is_not_undecided():
     check = LOWER | {"statistic": "min"}
     found = [
@@ -1141,25 +1128,3 @@ def test_few_runs_without_an_effect_are_seldom_taken_for_one():
     found = [judged(LOWER, normal_runs(trial, 10, 0.0))["verdict"] for trial in range(100)]
     assert found.count("supported") + found.count("contradicted") <= 5
     assert found.count("undecided") > 50
-
-
-def test_claims_depend_on_the_best_reading_if_its_score_tells_it_apart():
-    """C1 is open, and C3 rests on fewer comparisons there."""
-    assert judge({"checks": [LOWER]}, table(TIERS))[0]["verdict_best_reading"].dtype == object
-    claims = pd.DataFrame({"id": ["C1", "C2", "C2", "C3"], "primary": [True, True, False, True]})
-    claims = claims.assign(verdict="supported", verdict_best_reading=None, reason="why")
-    claims["holds"] = ["4 of 4", "4 of 4", None, "4 of 14"]
-    verdicts = pd.DataFrame({"id": ["C1", "C2", "C3"], "default": "supported", "reading": "O1=2"})
-    verdicts = verdicts.assign(best=["undecided", *2 * ["contradicted"]], holds="3 of 4")
-    for apart, verdict, reason in (
-        (True, "depends", "on the reading: supported by default, contradicted with O1=2; why"),
-        (
-            False,
-            "supported",
-            "contradicted with O1=2, which its score does not tell from the default; why",
-        ),
-    ):
-        found = judging.beside_reading(claims.copy(), verdicts.assign(apart=apart))
-        assert [*found["verdict"]] == ["supported", verdict, "supported", "supported"]
-        assert [*found["verdict_best_reading"]] == [None, "contradicted", None, None]
-        assert [*found["reason"]] == ["why", reason, "why", "why"]

@@ -302,13 +302,3 @@ def test_drawn_path_stays_within_its_tolerance(points, kind):
     exact = curves.sample_matrix(kind, len(points), 301) @ path.points
     # The straight steps from which points are left out are themselves within 0.01 of the curve.
     assert shapely.distance(shapely.points(exact), shapely.LineString(drawn)).max() <= 0.05 + 0.01
-
-
-def test_the_scores_of_readings_stand_with_what_the_paper_leaves_open(tmp_path, text):
-    assert 'id="one/readings"' not in text
-    place = tmp_path / "one/readings/specification.svg"
-    place.parent.mkdir(parents=True)
-    place.write_text(SVG)
-    shown = build.html(page(tmp_path), tmp_path)
-    assert shown.index('id="page-open/one"') < shown.index('id="one/readings"')
-    assert 'href="one/readings/specification.csv"' in shown

@@ -22,8 +22,8 @@ def kept():
     tables = {name: pd.read_csv(KEPT / file) for name, file in files.items()}
     audits = [pd.read_csv(KEPT / f"{study}_{outcome.AUDIT}") for study in studies_of()]
     tables["audit"] = pd.concat(audits)
-    files = KEPT.glob(f"*_{outcome.READINGS[1]}")
-    return tables | {"calibration": pd.concat(map(pd.read_csv, files))}
+    files = KEPT.glob(f"*_{outcome.READINGS}")
+    return tables | {"readings": pd.concat(map(pd.read_csv, files))}
 
 
 @pytest.mark.parametrize("study", ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"])
@@ -31,7 +31,7 @@ def test_sentences_follow_from_the_kept_outcome(kept, study):
     """A sentence whose condition fails has to be written anew."""
     template = verdict.read(TREE / f"config/studies/{study}/verdict.yaml")
     found = verdict.sentences(template, verdict.own_rows(kept, study))
-    assert 3 <= len(found) <= 5
+    assert 2 <= len(found) <= 5
     assert [each.fails for each in found] == [None] * len(found)
     text = (KEPT / "summary.md").read_text(encoding="utf-8")
     assert all(each.text in text for each in found)

@@ -8,7 +8,6 @@ rule claims:
         judgements=read(of(jobs.claims), f"{RESULTS}/runs/{{experiment}}/{{method}}/judgement.json"),
         problems=read(of(jobs.claims), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.claims), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        beside=lambda wildcards: of_readings(wildcards.scale, {wildcards.study}, "verdicts.csv"),
         sources=sources(of(jobs.claims)),
     output:
         claims=report(
@@ -56,17 +55,16 @@ rule audit:
         "../scripts/job.py"
 
 
-# Which readings of a paper make its printed numbers likely, and what a true one would get.
-rule calibration:
+# How well each reading of a paper fits its printed numbers.
+rule readings_of_study:
     input:
         problems=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.parquet"),
         bounds=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
         sources=sources(of(jobs.readings)),
     output:
-        scores=f"{RESULTS}/readings/scores.csv",
-        calibration=f"{RESULTS}/readings/calibration.csv",
+        f"{RESULTS}/readings.csv",
     log:
-        f"{RESULTS}/logs/calibration.log",
+        f"{RESULTS}/logs/readings.log",
     wildcard_constraints:
         study=one_of(READ),
     conda:
@@ -76,55 +74,5 @@ rule calibration:
         runtime=more(60),
     params:
         **params(jobs.readings),
-    script:
-        "../scripts/job.py"
-
-
-# The readings with their scores as a picture, and the claims under the best one.
-rule specification:
-    input:
-        scores=f"{RESULTS}/readings/scores.csv",
-        calibration=f"{RESULTS}/readings/calibration.csv",
-    output:
-        svg=report(
-            f"{RESULTS}/readings/specification.svg",
-            category="{study}",
-            labels={"item": "readings", "shows": "scores of the readings of the paper"},
-            caption="../report/claims.rst",
-        ),
-        png=f"{RESULTS}/readings/specification.png",
-        pdf=f"{RESULTS}/readings/specification.pdf",
-        data=f"{RESULTS}/readings/specification.csv",
-    log:
-        f"{RESULTS}/logs/specification.log",
-    wildcard_constraints:
-        study=one_of(READ),
-    conda:
-        "../envs/bezierplan.yaml"
-    params:
-        **params(jobs.readings, of=Specification),
-    script:
-        "../scripts/job.py"
-
-
-rule verdicts_of_readings:
-    input:
-        problems=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.parquet"),
-        bounds=read(of(jobs.readings), f"{RESULTS}/problems/{{experiment}}.bounds.parquet"),
-        scores=f"{RESULTS}/readings/scores.csv",
-        sources=sources(of(jobs.readings)),
-    output:
-        f"{RESULTS}/readings/verdicts.csv",
-    log:
-        f"{RESULTS}/logs/verdicts_of_readings.log",
-    wildcard_constraints:
-        study=one_of(READ),
-    conda:
-        "../envs/bezierplan.yaml"
-    resources:
-        mem_mb=more(2000),
-        runtime=more(20),
-    params:
-        **params(jobs.verdicts_of_readings),
     script:
         "../scripts/job.py"

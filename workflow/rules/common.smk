@@ -15,7 +15,6 @@ os.environ.update(
 )
 
 from bezierplan.analysis import markdown
-from bezierplan.figures.jobs import Specification
 from bezierplan.running.jobs import forks
 from bezierplan.running.inputs import tree
 from bezierplan.schema import checked
@@ -191,13 +190,12 @@ READ = [key for key, study in STUDIES.items() if study.votes]
 CLAIMED = [key for key, study in STUDIES.items() if study.claims]
 
 
-def of_readings(scale, studies, *files):
-    """Files of the readings of some studies, which take minutes: at scale extended alone."""
+def of_readings(scale, studies):
+    """The readings of some studies, which take minutes: at scale extended alone."""
     return [
-        f"results/{scale}/{key}/readings/{file}"
+        f"results/{scale}/{key}/readings.csv"
         for key in READ
         if scale == "extended" and key in studies
-        for file in files
     ]
 
 
@@ -222,7 +220,6 @@ def shown(wildcards):
         *artefacts,
         *summary,
         *verdicts,
-        *of_readings(wildcards.scale, READ, "specification.svg"),
         *(
             f"results/{wildcards.scale}/{key}/{name}.csv"
             for name, keys in named.items()

@@ -44,7 +44,7 @@ rule summary:
         claims=expand("results/{scale}/{study}/claims.csv", study=CLAIMED, allow_missing=True),
         baseline_comparison="results/{scale}/baseline_comparison.csv",
         audits=expand("results/{scale}/{study}/audit.csv", study=FOLLOWING, allow_missing=True),
-        calibrations=lambda wildcards: of_readings(wildcards.scale, READ, "calibration.csv"),
+        readings=lambda wildcards: of_readings(wildcards.scale, READ),
         sources=sources(of(jobs.summary)),
     output:
         numbers="results/{scale}/numbers.csv",
@@ -74,9 +74,7 @@ rule verdict:
             for name in ("numbers", "claims", "baseline_comparison", "wholes")
         ],
         audit=f"{RESULTS}/audit.csv",
-        calibrations=lambda wildcards: of_readings(
-            wildcards.scale, {wildcards.study}, "calibration.csv"
-        ),
+        readings=lambda wildcards: of_readings(wildcards.scale, {wildcards.study}),
         sources=sources(of(jobs.verdict)),
     output:
         report(
@@ -115,9 +113,7 @@ rule verified:
         ),
         shown=shown,
         summary=SUMMARY,
-        readings=lambda wildcards: of_readings(
-            wildcards.scale, READ, "scores.csv", "calibration.csv", "verdicts.csv"
-        ),
+        readings=lambda wildcards: of_readings(wildcards.scale, READ),
     output:
         "results/{scale}/verified.json",
     log:

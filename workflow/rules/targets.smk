@@ -39,7 +39,7 @@ rule extended:
 # `extended` makes them too.
 rule readings:
     input:
-        of_readings("extended", READ, "calibration.csv", "specification.svg", "verdicts.csv"),
+        of_readings("extended", READ),
 
 
 # What `make verify-outcome` compares with docs/outcome.

@@ -10,11 +10,11 @@ import hashlib
 import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis.choices import Choice, Experiment
+from bezierplan.analysis.assumptions import Assumption, Experiment
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.table_kinds import Pivot, Table
@@ -244,8 +244,6 @@ class Claims(Job):
 
     def run(self, input_files, output_files, threads):
         """Judge the claims."""
-        import pandas as pd
-
         from bezierplan.analysis import results, study_code
         from bezierplan.analysis.claims import judge
         from bezierplan.running import inputs
@@ -256,76 +254,38 @@ class Claims(Job):
             results.published_tables(input_files.sources),
             study_code.functions(self.code),
         )
-        for file in input_files.beside:
-            judged = judge.beside_reading(judged, pd.read_csv(file))
         self.write(judged, output_files.claims)
         self.write(checks, output_files.checks)
 
 
 @dataclass(frozen=True)
 class Readings(Job):
-    """The readings of a study, scored and calibrated."""
+    """The readings of a study, scored."""
 
     study: str
     tables: dict[str, Pivot]
     votes: dict[str, dict[str, dict]]
     """By table and metric, the printed numbers that score: column -> value or list of values."""
-    choices: list[Choice]
+    assumptions: list[Assumption]
     experiments: dict[str, Experiment]
     folder: str
 
     def modules(self):
         """Planners as well."""
-        chunks = [chunk for each in self.experiments.values() for chunk in each.scoring.values()]
+        chunks = [chunk for each in self.experiments.values() for chunk in each.chunks.values()]
         return [*self.code, *(module_of(chunk.planner) for chunk in chunks)]
 
     def run(self, input_files, output_files, threads):
         """Score the readings."""
-        from bezierplan.analysis import readings
-        from bezierplan.running import inputs
-
-        runner = self.runner(input_files)
-        voting = readings.quantities(self.tables, self.votes, inputs.by_table(input_files.sources))
-        for table, file in zip(readings.of_study(self.study, voting, runner), output_files):
-            table.to_csv(file, index=False, float_format="%.6g", lineterminator="\n")
-
-    def runner(self, input_files):
-        """What makes runs of readings, in the problems of files."""
         from bezierplan.analysis import readings, study_code
         from bezierplan.running import inputs
 
         study_code.functions(self.code)
+        voting = readings.quantities(self.tables, self.votes, inputs.by_table(input_files.sources))
         found = readings.read_problems(inputs.experiments(self.shows, input_files))
-        return readings.Runner(self.choices, self.experiments, Path(self.folder), found, {})
-
-
-@dataclass(frozen=True)
-class VerdictsOfReadings(Readings):
-    """The claims that rest on the experiments of readings, under the default and under the best
-    reading.
-    """
-
-    claims: Claims
-
-    def modules(self):
-        """Those of both."""
-        return [*super().modules(), *self.claims.modules()]
-
-    def run(self, input_files, output_files, threads):
-        """Judge the claims under both."""
-        import pandas as pd
-
-        from bezierplan.analysis import readings, results, study_code
-        from bezierplan.analysis.claims import judge
-
-        job = replace(self.claims, claims=judge.covered(self.claims.claims, self.experiments))
-        given = results.published_tables(input_files.sources), study_code.functions(job.code)
-        table = readings.verdicts(
-            self.runner(input_files),
-            pd.read_csv(input_files.scores),
-            lambda found: judge.judge(job, found, *given),
-        )
-        self.write(table, output_files[0])
+        runner = readings.Runner(self.assumptions, self.experiments, Path(self.folder), found, {})
+        table = readings.of_study(self.study, voting, runner)
+        table.to_csv(output_files[0], index=False, float_format="%.6g", lineterminator="\n")
 
 
 @dataclass(frozen=True)
@@ -398,7 +358,7 @@ class Summary(Job):
             input_files.baseline_comparison,
             dict(zip(self.verdicts, input_files.sources, strict=True)),
             list(input_files.audits),
-            list(input_files.calibrations),
+            list(input_files.readings),
             self.scale,
         )
         for table in ("numbers", "claims", "wholes"):
@@ -420,8 +380,8 @@ class Verdict(Job):
 
         tables = [pd.read_csv(file) for file in input_files.summary]
         files = {self.study: input_files.sources[0]}
-        calibrations = list(input_files.calibrations)
-        texts = summary.verdicts(*tables, files, [input_files.audit], calibrations)
+        readings = list(input_files.readings)
+        texts = summary.verdicts(*tables, files, [input_files.audit], readings)
         Path(output_files[0]).write_text(texts[self.study], encoding="utf-8")
 
 

@@ -18,7 +18,7 @@ RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 BLOCK = "outcome"
 # Of each study: what its printed numbers say alone; and its readings, if they are scored.
-AUDIT, READINGS = "audit.csv", ("scores.csv", "calibration.csv")
+AUDIT, READINGS = "audit.csv", "readings.csv"
 BASELINE_COMPARISON, WHOLES = "baseline_comparison.csv", "wholes.csv"
 TABLES = ("numbers.csv", "claims.csv", BASELINE_COMPARISON)
 SCALES = {
@@ -47,9 +47,8 @@ def write(
     shutil.copyfile(FULL / "numbers.csv", KEPT / "numbers_papers_size.csv")
     for key in titles:
         shutil.copyfile(RESULTS / key / AUDIT, KEPT / f"{key}_{AUDIT}")
-        for file in (RESULTS / key / "readings").glob("*"):
-            if file.suffix in (".csv", ".svg"):
-                shutil.copyfile(file, KEPT / f"{key}_{file.name}")
+        if (file := RESULTS / key / READINGS).exists():
+            shutil.copyfile(file, KEPT / f"{key}_{READINGS}")
     claims.to_csv(KEPT / "claims.csv", index=False)
     settings.to_csv(KEPT / "settings.csv", index=False)
     scored = benchmark.of_results(FULL, experiments)
@@ -66,8 +65,8 @@ def write(
 def following(folder: Path, verdicts: Mapping[str, str], *tables: pd.DataFrame) -> dict[str, str]:
     """By study, what follows, from tables of numbers, claims, measures, and a folder's others."""
     audits = [str(folder / f"{key}_{AUDIT}") for key in verdicts]
-    calibrations = sorted(map(str, folder.glob(f"*_{READINGS[1]}")))
-    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, calibrations)
+    readings = sorted(map(str, folder.glob(f"*_{READINGS}")))
+    return summary.verdicts(*tables, pd.read_csv(folder / WHOLES), verdicts, audits, readings)
 
 
 def table(folder: Path, titles: Mapping[str, str], verdicts: Mapping[str, str]) -> str:

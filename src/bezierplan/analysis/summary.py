@@ -36,19 +36,19 @@ def gathered(
     baseline_comparison_file: str,
     verdict_files: dict[str, str],
     audit_files: list[str],
-    calibration_files: list[str],
+    readings_files: list[str],
     scale: str,
 ) -> Summary:
     """The summary of all studies. comparison_files: by study and table. wholes_files: of the
     same tables. titles: of the studies. verdict_files: by study. audit_files: of the same studies.
-    calibration_files: of those whose readings were scored.
+    readings_files: of those whose readings were scored.
     """
     everything = numbers({name: pd.read_csv(file) for name, file in comparison_files.items()})
     claims = read_claims(claims_files)
     measured = pd.read_csv(baseline_comparison_file)
     whole = pd.concat(map(pd.read_csv, wholes_files), ignore_index=True)
     tables = (everything, claims, measured, whole)
-    follow = verdicts(*tables, verdict_files, audit_files, calibration_files)
+    follow = verdicts(*tables, verdict_files, audit_files, readings_files)
     text = report(*tables, titles, follow, scale)
     return Summary(everything, claims, whole, text)
 
@@ -60,15 +60,15 @@ def verdicts(
     whole: pd.DataFrame,
     files: dict[str, str],
     audit_files: list[str],
-    calibration_files: list[str],
+    readings_files: list[str],
 ) -> dict[str, str]:
     """By study, what follows. files: that of its sentences; the others as in `gathered`."""
     if not files:
         return {}
     audits = pd.concat([pd.read_csv(file) for file in audit_files], ignore_index=True)
     tables = {"numbers": numbers, "claims": claims, "baseline": measures, "audit": audits}
-    if calibration_files:
-        tables["calibration"] = pd.concat(map(pd.read_csv, calibration_files), ignore_index=True)
+    if readings_files:
+        tables["readings"] = pd.concat(map(pd.read_csv, readings_files), ignore_index=True)
     return verdict.of_studies(files, tables | {"wholes": whole})
 
 
@@ -168,12 +168,11 @@ def report(
         "A published number counts if it can be tested and is not derivable from other published "
         "numbers; our additional findings do not count as claims. `audit.csv` names the paths of "
         "identified numbers. `verdict_papers_size`: the verdict from as many runs as the paper "
-        "made. `verdict_best_reading`: where it differs, that under the reading of the paper with "
-        "the best score that no sentence excludes. "
+        "made. "
         "Comparisons of a claim are corrected by the procedure of Benjamini and Hochberg: "
         "it bounds the share of false discoveries, a weaker promise than Holm's, which bounds the "
         "chance of a single one. Margins, the smallest effects that count, are ours; no paper "
-        "gives one. Here each claim has its verdict under the default interpretation; "
+        "gives one. Here each claim has its verdict under the default reading; "
         "`claims.csv` has the others too.",
         *wholes.section(whole),
     ]
@@ -190,7 +189,7 @@ def report(
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, and on what these depend, as markdown; without empty columns."""
     columns = [
-        *("statement", "verdict", "verdict_papers_size", "verdict_best_reading"),
+        *("statement", "verdict", "verdict_papers_size"),
         *("holds", "where_it_holds", "published", "effect", "n"),
     ]
     filled = [name for name in columns if name in claims and claims[name].notna().any()]

@@ -25,7 +25,7 @@ TAKES = {
     "count": len,
     "only": pd.Series.item,
 }
-Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "calibration"]
+Source = Literal["numbers", "claims", "audit", "wholes", "baseline", "readings"]
 
 
 class Value(Model):

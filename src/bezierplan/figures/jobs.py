@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bezierplan.analysis.jobs import Job, Readings
+from bezierplan.analysis.jobs import Job
 from bezierplan.figures.page.page_job import ExperimentView, PageJob
 from bezierplan.figures.panels import Panel
 from bezierplan.machine.digest import module_of
@@ -107,22 +107,6 @@ class Figure(Job):
         )
         sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
         Path(output_files.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")
-
-
-@dataclass(frozen=True)
-class Specification(Readings):
-    """The readings of a study with their scores, as a figure."""
-
-    def run(self, input_files, output_files, threads):
-        """Draw the figure from its data, which are first written and read back."""
-        import pandas as pd
-
-        from bezierplan.figures import sheet, specification
-
-        tables = pd.read_csv(input_files.scores), pd.read_csv(input_files.calibration)
-        specification.data(*tables).to_csv(output_files.data, index=False, lineterminator="\n")
-        figure = specification.draw(pd.read_csv(output_files.data), self.choices)
-        sheet.save(figure, output_files.svg, output_files.png, output_files.pdf)
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
-"""Choices that a paper leaves open, and which methods they concern."""
+"""What a paper leaves open, and which methods it concerns."""
 
 import itertools
 from collections.abc import Iterable
 from typing import Any
 
-from bezierplan.analysis.choices import Choice
+from bezierplan.analysis import assumptions as plain
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Assumption
@@ -58,7 +58,7 @@ def experiments_of_claims(claims: list[Claim]) -> list[str]:
     return list(dict.fromkeys(named))
 
 
-def choices(study: Study, methods: Iterable[str]) -> list[Choice]:
+def assumptions(study: Study, methods: Iterable[str]) -> list[plain.Assumption]:
     """What the paper leaves open for some methods, for `analysis.readings`."""
     chosen = []
     for assumption in study.assumptions:
@@ -66,7 +66,7 @@ def choices(study: Study, methods: Iterable[str]) -> list[Choice]:
         along = {name: assumption.along.get(name, {}) for name in concern if assumption.setting}
         if assumption.alternatives and (along or assumption.workspace):
             chosen.append(
-                Choice(
+                plain.Assumption(
                     assumption.id,
                     assumption.alternatives,
                     assumption.setting,

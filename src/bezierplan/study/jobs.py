@@ -5,7 +5,7 @@ for each rule makes its job from a study, or all, and the rule's wildcards.
 from collections.abc import Iterable
 from pathlib import Path
 
-from bezierplan.analysis import choices
+from bezierplan.analysis import assumptions
 from bezierplan.analysis.claims.material import Display
 from bezierplan.analysis.jobs import (
     Audit,
@@ -20,7 +20,6 @@ from bezierplan.analysis.jobs import (
     TableOfRuns,
     TableWithoutRuns,
     Verdict,
-    VerdictsOfReadings,
 )
 from bezierplan.analysis.table_kinds import FunctionTable, Pivot, Table
 from bezierplan.figures import style
@@ -319,39 +318,31 @@ def _shown(artefact: Table | FigureOfStudy) -> list[Display]:
     ]
 
 
-def readings(study: Study, scale: str, of: type[Readings] = Readings, **more: object) -> Readings:
-    """The readings of a study, or another job on them."""
-    tables = {name: study.compared()[name] for name in study.votes}
-    if of is not VerdictsOfReadings:  # which need all methods
-        tables = choices.voting(tables, study.votes)
+def readings(study: Study, scale: str) -> Readings:
+    """The readings of a study."""
+    tables = assumptions.voting(study.compared(), study.votes)
     experiments = {}
     for name in dict.fromkeys(each.experiment for each in tables.values()):
         content = study.experiments[name]
-        experiments[name] = choices.experiment(
+        experiments[name] = assumptions.experiment(
             {method: job(study, name, method, scale, 0) for method in content.methods},
             [each for each in tables.values() if each.experiment == name],
             content.repeats["full"],
             problems_job(study, name, scale),
         )
-    methods = {method for each in experiments.values() for method in each.scoring}
+    methods = {method for each in experiments.values() for method in each.chunks}
     homes = {home for each in experiments.values() for home in each.descriptions.workspaces}
-    return of(
+    return Readings(
         study.key,
         tables,
         study.votes,
-        alternatives.choices(study, methods),
+        alternatives.assumptions(study, methods),
         experiments,
         relative(study.folder),
         sources=[*study.published_files(), *study.maps(homes)],
         code=study.code_for("metrics", "worlds"),
         shows={name: {} for name in experiments},
-        **more,
     )
-
-
-def verdicts_of_readings(study: Study, scale: str) -> VerdictsOfReadings:
-    """The claims of a study under its best reading."""
-    return readings(study, scale, VerdictsOfReadings, claims=claims(study, scale))
 
 
 def audit(study: Study, scale: str) -> Audit:

@@ -54,11 +54,6 @@ class Claim(Model):
         description="ours: the paper gives no number, and the threshold or margin that decides is "
         "ours; left out otherwise",
     )
-    depends: Line = Field(
-        None,
-        description="on what, where its variants have different verdicts, none of which the text "
-        "decides: the verdict is then `depends`",
-    )
     note: Line = Field(None, description="one line that is shown with the reason for the verdict")
     holds: Literal["all", "any", "together"] = Field(
         "all",
@@ -66,10 +61,10 @@ class Claim(Model):
         "`together`: all as one "
         "sentence, such as that one is the best, which a single comparison can refute",
     )
-    variants: dict[str, listed(Values, least=2)] = Field(
+    variants: dict[str, listed(Values)] = Field(
         {},
         description="column → list of values: the claim is judged with the first one, and once "
-        "more, in a row of its own, with each of the others in its place",
+        "more, in a row of its own, with each of the others, if any, in its place",
         min_length=1,
     )
     checks: list[Annotated[Check, one_of("test", kinds())]] = Field(

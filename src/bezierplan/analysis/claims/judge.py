@@ -24,7 +24,7 @@ support the claim; everything else follows from the family's marks:
 | contradicted | no +, and a - | every mark - on its own |
 | no effect | every mark 0 | no + and no ?, not all - |
 | undecided | otherwise: a ? prevents a verdict, or most marks are ? | a ? prevents a verdict |
-| depends | on the chance of one experiment, which our runs tell, or on the reading (`depends`) | |
+| depends | on the chance of one experiment, which our runs tell | |
 | untestable | the reason is given | likewise |
 
 If all have to hold together, as one sentence (`holds: together`): supported if every mark is + on
@@ -40,7 +40,7 @@ claim_checks.csv, one row per comparison.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,67 +102,15 @@ def judge(
     claim_rows, check_rows = [], []
     for claim in job.claims:
         first, *_ = assignments = variants(claim)
-        rows = []
         for assignment in assignments:
             row, details = _judge_variant(claim, first, assignment, job.study, material)
-            rows.append(row | {"primary": assignment is first})
+            claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
-        claim_rows += [rows[0] | _by_reading(claim, rows), *rows[1:]]
-    types = {"n": "Int64", "verdict_best_reading": object}
-    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype(types), pd.DataFrame(
-        check_rows, columns=CHECK_COLUMNS
-    )
-
-
-# Under another reading.
-
-
-def covered(claims: Sequence[Claim], experiments: Iterable[str]) -> list[Claim]:
-    """The claims that rest on the runs of some experiments alone, and on no times, each in its
-    primary variant.
-    """
-    return [
-        claim.in_primary_variant()
-        for claim in claims
-        if all(
-            check.experiments and {*check.experiments} <= {*experiments} and not _is_timed(check)
-            for check in claim.checks
-        )
-    ]
-
-
-def beside_reading(claims: pd.DataFrame, verdicts: pd.DataFrame) -> pd.DataFrame:
-    """Claims with their verdicts under the best reading where these differ from those under the
-    default, neither is open, and both rest on all comparisons of the claim. They depend on it if
-    its score tells it from the default. verdicts: as from `readings.verdicts`.
-    """
-    both = verdicts[["default", "best"]]
-    sure = ~both.isin(("undecided", "untestable", "depends")).any(axis=1)
-    for row in verdicts[sure & (both["default"] != both["best"])].itertuples():
-        here = claims["primary"] & (claims["id"] == row.id)
-        here &= claims["holds"].str.endswith(row.holds[row.holds.index(" of ") :], na=False)
-        words = f"{row.best} with {row.reading}, which its score does not tell from the default"
-        if row.apart:
-            words = f"on the reading: {row.default} by default, {row.best} with {row.reading}"
-            claims.loc[here, "verdict"] = "depends"
-        claims.loc[here, "verdict_best_reading"] = row.best
-        claims.loc[here, "reason"] = (f"{words}; " + claims["reason"]).str.removesuffix("; ")
-    return claims
+    claims = pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"})
+    return claims, pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
 
 
 # From comparisons to a verdict.
-
-
-def _by_reading(claim: Claim, rows: list[dict]) -> dict[str, str]:
-    """What changes in the primary row of a claim whose verdict depends on how it is read."""
-    readings: dict[str, list[str]] = {}
-    for row in rows:
-        if row["verdict"] not in ("undecided", "untestable"):
-            readings.setdefault(row["verdict"], []).append(row["variant"])
-    if claim.depends is None or len(readings) < 2:
-        return {}
-    words = "; ".join(f"{verdict} with {' or '.join(own)}" for verdict, own in readings.items())
-    return {"verdict": "depends", "reason": f"on {claim.depends}: {words}"}
 
 
 def _judge_variant(

@@ -77,18 +77,8 @@ def studies(
             gap=gap(own_tables),
             shown=[],
             verdict=verdict.read_text(encoding="utf-8") if verdict.is_file() else "",
-            readings=_readings(key, folder),
         )
     return pages
-
-
-def _readings(study: str, folder: Path) -> Row | None:
-    """The figure of the readings of a study, at a scale that has one."""
-    stem = f"{study}/readings/specification"
-    title = "Scores of the readings of the paper, the best first, and what each chooses"
-    row = {"name": "readings", "address": address(study, "readings"), "title": title, "stem": stem}
-    row |= dict.fromkeys(("runs", "extremes", "settings"), "")
-    return row if (folder / f"{stem}.svg").is_file() else None
 
 
 def with_corners(baseline: pd.DataFrame) -> list[Row]:

@@ -16,14 +16,14 @@ together, and in each no more than the paper's.
 """
 LAYOUTS, FEWER = 30, 10
 """Layouts that score a reading where a printed number is of one of them, and where it is a mean
-over several; the others print the numbers of hidden readings.
+over several.
 """
 
 Reading = dict[str, Any]
-"""Id of a choice -> its alternative; {} for the default."""
+"""Id of an assumption -> its value; {} for the default."""
 
 
-class Choice(NamedTuple):
+class Assumption(NamedTuple):
     """What a paper leaves open: the alternatives of a setting, or of a key of workspaces.
 
     along: by method whose setting it is, further settings that go with an alternative. problems:
@@ -41,14 +41,10 @@ class Choice(NamedTuple):
 
 
 class Experiment(NamedTuple):
-    """Chunks by method, those whose runs score a reading and those that print a hidden one's
-    numbers; descriptions of the problems; and whether a number is of one layout.
-    """
+    """The runs that score a reading: chunks by method, and descriptions of the problems."""
 
-    scoring: dict[str, Chunk]
-    printing: dict[str, Chunk]
+    chunks: dict[str, Chunk]
     descriptions: Descriptions
-    in_one_layout: bool
 
 
 def voting(
@@ -73,7 +69,7 @@ def experiment(
     chunks: dict[str, Chunk], tables: list[Pivot], size: int, descriptions: Descriptions
 ) -> Experiment:
     """The runs of an experiment by which readings are scored: the methods of tables, in the paper's
-    interpretation of the world.
+    world.
 
     chunks: the first of each method. size: repeats of the paper.
     """
@@ -84,9 +80,8 @@ def experiment(
             for table in tables
         )
 
-    in_one_layout = any(table.within for table in tables)
-    layouts = LAYOUTS if in_one_layout else FEWER
-    scoring, printing = {}, {}
+    layouts = LAYOUTS if any(table.within for table in tables) else FEWER
+    own_chunks = {}
     for method, chunk in chunks.items():
         if not shown("method", method):
             continue
@@ -97,9 +92,7 @@ def experiment(
             if shown("problem", name) and shown("workspace", place["workspace"])
         }
         first = {name: place for name, place in met.items() if place.get("layout", 0) < layouts}
-        others = {name: place for name, place in met.items() if name not in first} or met
         drawn = any("layout" in place for place in met.values())
         last = min(READ // LAYOUTS, size) if drawn else READ
-        scoring[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
-        printing[method] = chunk._replace(vary=vary, problems=others, repeats=[last, last + size])
-    return Experiment(scoring, printing, descriptions, in_one_layout)
+        own_chunks[method] = chunk._replace(vary=vary, problems=first, repeats=[0, last])
+    return Experiment(own_chunks, descriptions)
