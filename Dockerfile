@@ -20,6 +20,7 @@ RUN touch .venv/ready \
     && mkdir -p results .cache .snakemake \
     && chmod -R a+rwX results .cache .snakemake
 
-ENV PATH="/bezierplan/.venv/bin:$PATH" HOME=/tmp
+# Whoever runs it may be a user whom the image does not know, without a home and a name.
+ENV PATH="/bezierplan/.venv/bin:$PATH" HOME=/tmp LOGNAME=bezierplan
 ENTRYPOINT ["python", "-m", "snakemake"]
 CMD ["--help"]

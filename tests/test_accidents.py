@@ -50,7 +50,10 @@ def test_write_without_space_ends_a_job_with_one_line_and_leaves_no_part(job, nu
     def write_a_part():
         with log.job(job) as parts:
             Path(parts.one).write_text("a part")
-            raise OSError(number, os.strerror(number))
+            try:
+                raise OSError(number, os.strerror(number))
+            finally:  # as a library does that closes its file
+                raise AttributeError("pos")
 
     with pytest.raises(SystemExit, match=r"^1$"):
         write_a_part()
@@ -178,3 +181,20 @@ def test_reason_of_a_failed_job_is_the_last_line_and_a_lock_is_explained_in_one(
     locked = starts.snakemake(tmp_path, *OF_DEFAULT)
     (line,) = [line for line in locked.stderr.splitlines() if "LockException" in line]
     assert "`snakemake --unlock`" in line
+
+
+def test_a_job_that_succeeds_when_tried_again_has_not_failed(tmp_path):
+    (tmp_path / "Snakefile").write_text(FAILS.replace("results/", "results/full/one/"))
+    (tmp_path / "fails.py").write_text(
+        "from pathlib import Path\n"
+        "if not Path('once').exists():\n"
+        "    Path('once').touch()\n"
+        "    open(snakemake.log[0], 'w').write('2026 CRITICAL first attempt')\n"
+        "    raise SystemExit(1)\n"
+        "open(snakemake.output[0], 'w').write('whole')\n"
+    )
+    done = starts.snakemake(tmp_path, *OF_DEFAULT, "--retries", "1")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.strip().splitlines()[-1].startswith("Time: ")
+    assert "1 of 1 jobs done" in done.stderr
+    assert "first attempt" not in done.stderr

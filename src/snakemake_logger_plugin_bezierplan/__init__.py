@@ -38,18 +38,23 @@ class LogHandler(RichHandler):
         self.progress.speed_estimate_period = 24 * 3600  # the usual 30 s are shorter than a job
         self.started = self.last_line = time.monotonic()
         self.outputs: set[Path] = set()
-        self.reasons: list[str] = []
+        # By job, for one that succeeds when it is tried again has not failed; None: of no job.
+        self.reasons: dict[int | None, str] = {}
 
     def emit(self, record: LogRecord) -> None:
         event, message = getattr(record, "event", None), record.getMessage()
+        job = getattr(record, "jobid", None) if event == LogEvent.JOB_ERROR else None
         fault = getattr(record, "exception", None) if event == LogEvent.ERROR else None
         reason = LOCKED.format(Path.cwd()) if fault == "LockException" else ""
         if fault == "MissingRuleException":
             reason = unknown_target(message)
         elif event == LogEvent.JOB_ERROR:
-            reason = self.reason_of(record.jobid)
+            reason = self.reason_of(job)
+            # If it is tried again, it is not another job.
+            if info := self.event_handler.jobs_info.get(job):
+                self.event_handler.rule_counts[info["rule"]]["started"] -= 1
         if reason:
-            self.reasons.append(reason)
+            self.reasons[job] = reason
             return
         # A job's own log says why it failed, and where the rest of its account stands.
         if fault == "RuleException" or (event is None and message.startswith("Elapsed time: ")):
@@ -59,8 +64,10 @@ class LogHandler(RichHandler):
             self.outputs.update(map(Path, record.output or []))
             if self.common_settings.dryrun:
                 self.say(" ".join([record.rule_name, *(record.wildcards or {}).values()]))
-        elif event == LogEvent.JOB_FINISHED and not self.console.is_terminal:
-            self.show_progress()
+        elif event == LogEvent.JOB_FINISHED:
+            self.reasons.pop(record.job_id, None)
+            if not self.console.is_terminal:
+                self.show_progress()
         elif (
             "Complete log" in message
             and self.event_handler.completed == self.event_handler.total_jobs
@@ -72,17 +79,18 @@ class LogHandler(RichHandler):
             self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def reason_of(self, job: int) -> str:
-        """Why a job failed, as the last line of its log says; empty if it does not."""
-        for log in map(Path, self.event_handler.jobs_info.get(job, {}).get("log") or []):
+        """Why a job failed, as the last line of its log says; if it does not, where the log is."""
+        logs = self.event_handler.jobs_info.get(job, {}).get("log") or []
+        for log in map(Path, logs):
             lines = log.read_text("utf-8", "replace").splitlines() if log.is_file() else []
             if lines and REASON in lines[-1]:
                 return lines[-1].partition(REASON)[2]
-        return ""
+        return f"job {job} failed, and its log does not say why (log: {', '.join(logs)})"
 
     def close(self) -> None:
         """End, and repeat last what matters most: why jobs failed."""
         super().close()
-        self.say(*self.reasons)
+        self.say(*self.reasons.values())
         self.reasons.clear()
 
     def show_progress(self) -> None:

@@ -2,6 +2,7 @@
 files, report a failure in one line.
 """
 
+import errno
 import glob
 import logging
 import os
@@ -34,6 +35,7 @@ def job(snakemake: Any) -> Iterator[Any]:
     """
     log = snakemake.log[0]
     end_with_parent()
+    logging.raiseExceptions = False  # the disk of the log may be full
     logging.basicConfig(
         filename=log,
         filemode="w",
@@ -44,9 +46,8 @@ def job(snakemake: Any) -> Iterator[Any]:
         with whole_files(snakemake.output) as output:
             yield output
     except Exception as error:
-        logging.raiseExceptions = False  # the disk of the log may be full
         logging.error("failed\n%s", account(error))
-        said = str(error) if isinstance(error, PlannerFailure) else told(error)
+        said = str(error) if isinstance(error, PlannerFailure) else told(full_disk(error) or error)
         line = f"{said} (full account: {log})"
         logging.critical(line)
         # With its end, or what another job says could stand on its line.
@@ -60,6 +61,15 @@ def report(log: str, line: str) -> None:
     with suppress(OSError), open(log, "a", encoding="utf-8") as file:
         file.write(f"{LAST}{line}\n")
     print(f"{line}\n", end="", file=sys.stderr, flush=True)
+
+
+def full_disk(error: BaseException | None) -> BaseException | None:
+    """The exception of a full disk that led to another one: libraries fail once more when they
+    close a file that they could not write.
+    """
+    while error and getattr(error, "errno", None) not in (errno.ENOSPC, errno.EDQUOT):
+        error = error.__cause__ or error.__context__
+    return error
 
 
 def account(error: BaseException) -> str:
