@@ -12,14 +12,8 @@ from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
-# A graph has an entry for every pair of nodes; with more nodes than this, a search that stores no
-# pairs is used instead.
-MOST_NODES = 5000
-
-# On a map with more cells the lines of sight of such a graph are long, and most of them are never
-# needed: then the same holds for so many.
-_MANY_CELLS = 1_000_000
-_FEW_NODES = 500
+# A graph of cell centres has an entry for every pair of nodes; it may have this many.
+_MOST_NODES = 5000
 
 # Start and target are put on a lattice of at most this many points per cell, so that visibility is
 # decided with integers.
@@ -36,7 +30,7 @@ _CENTRE_TOLERANCE = 1e-9
 
 
 def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
-    """The visibility graph of start, target and the corners at which a shortest path can turn.
+    """The shortest path along start, target and the corners at which it can turn.
 
     Those are the vertices with exactly one occupied cell around them, and contacts, at which two
     occupied cells share only a corner.
@@ -45,32 +39,24 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion) -> Bound:
     corners, slopes = _grid_corners(cells)
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
-    lattice = np.concatenate(
-        [np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale]
+    lattice = np.rint(ends / blocked.cell * scale).astype(np.int64)
+    if not _joined(cells, lattice[0], lattice[1], scale):
+        return no_path()
+    direct = bool((lattice[0] == lattice[1]).all()) or _sees(lattice[0], lattice[1], cells, scale)
+    nodes = shadows.search(
+        shadows.scene(cells, corners, slopes, scale),
+        lattice,
+        np.concatenate([ends / blocked.cell, corners]),
+        direct,
     )
-    most = _FEW_NODES if cells.size > _MANY_CELLS else MOST_NODES
-    if len(lattice) > most:
-        if not _joined(cells, lattice[0], lattice[1], scale):
-            return no_path()
-        direct = bool((lattice[0] == lattice[1]).all()) or _sees(
-            lattice[0], lattice[1], cells, scale
-        )
-        points = np.concatenate([ends / blocked.cell, corners])
-        nodes = shadows.search(
-            shadows.scene(cells, corners, slopes, scale), lattice[:2], points, direct
-        )
-        return moved(along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
-    visible = _visible_on_grid(lattice, np.concatenate([[0, 0], slopes]), cells, scale)
-    return moved(
-        shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin
-    )
+    return moved(along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
 
 
 def centre_path(problem: Problem) -> Bound:
     """The shortest polyline through centres of free cells of a grid, in the problem's unit.
 
     Raises ValueError if start or target is not the centre of a cell, within 1e-9 of a cell's side,
-    and for more than `MOST_NODES` free cells.
+    and for more than `_MOST_NODES` free cells.
     """
     grid = problem.workspace
     assert isinstance(grid, Grid)
@@ -81,11 +67,10 @@ def centre_path(problem: Problem) -> Bound:
     if any(grid.occupied[row, column] for row, column in nodes):
         return no_path()
     cells = np.concatenate([nodes, np.argwhere(~grid.occupied)])
-    if len(cells) > MOST_NODES:
-        raise ValueError(f"a graph of {len(cells)} nodes; expected at most {MOST_NODES}")
+    if len(cells) > _MOST_NODES:
+        raise ValueError(f"a graph of {len(cells)} nodes; expected at most {_MOST_NODES}")
     lattice = 2 * cells[:, ::-1] + 1
-    any_slope = np.zeros(len(cells), dtype=np.int64)
-    visible = _visible_on_grid(lattice, any_slope, walled(grid.occupied), 2)
+    visible = _visible_centres(lattice, walled(grid.occupied))
     return moved(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
 
 
@@ -147,24 +132,16 @@ def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int
 
 
 @compiled
-def _visible_on_grid(
-    nodes: np.ndarray,
-    slopes: np.ndarray,
-    cells: np.ndarray,
-    scale: int,
-) -> np.ndarray:
-    """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
+def _visible_centres(nodes: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Which pairs i < j of cell centres see each other: bool (n, n).
 
-    nodes: (n, 2) integers, `scale` per cell. cells: occupied cells with a ring around them.
+    nodes: (n, 2) integers, two for each cell. cells: occupied cells with a ring around them.
     """
     visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
     for i in range(len(nodes)):
         for j in range(i + 1, len(nodes)):
-            dx = nodes[j, 0] - nodes[i, 0]
-            dy = nodes[j, 1] - nodes[i, 1]
-            if slopes[i] * dx * dy < 0 or slopes[j] * dx * dy < 0:
-                continue
-            visible[i, j] = (dx == 0 and dy == 0) or _sees(nodes[i], nodes[j], cells, scale)
+            same = nodes[i, 0] == nodes[j, 0] and nodes[i, 1] == nodes[j, 1]
+            visible[i, j] = same or _sees(nodes[i], nodes[j], cells, 2)
     return visible
 
 

@@ -8,16 +8,13 @@ import numpy as np
 from bezierplan.geometry.bins import Bins, columns_between, rows_between
 from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import PolygonRegion
-from bezierplan.geometry.shortest_paths.graph import Bound, along, shortest_in_graph, way_back
+from bezierplan.geometry.shortest_paths.graph import Bound, along, way_back
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.problem import Problem
 
-# With more nodes than this, a search that tests pairs only when needed replaces the full graph.
-MOST_POLYGON_NODES = 500
-
 
 def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
-    """The visibility graph of start, target, the convex corners of the blocked region, and the
+    """The shortest path along start, target, the convex corners of the blocked region, and the
     points at which its corners meet.
     """
     begin = blocked.edges[:, :2]
@@ -27,42 +24,19 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
-    bins = blocked.bins
-    if len(nodes) > MOST_POLYGON_NODES:
-        return along(nodes, _search_polygons(nodes, before, after, blocked, bins))
-    return shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked, bins))
+    return along(nodes, _search(nodes, before, after, blocked, blocked.bins))
 
 
 @compiled
-def _visible_among_polygons(
-    nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins
-) -> np.ndarray:
-    """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
-
-    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a
-    path may turn in any direction.
-    """
-    visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
-    segment = np.empty((1, 2, 2))
-    for i in range(len(nodes)):
-        for j in range(i + 1, len(nodes)):
-            if not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
-                continue
-            for axis in range(2):
-                segment[0, 0, axis] = nodes[i, axis]
-                segment[0, 1, axis] = nodes[j, axis]
-            crosses = _crosses_any(nodes[i], nodes[j], region.edges, bins)
-            visible[i, j] = not crosses and first_collision(segment, region)[0] == math.inf
-    return visible
-
-
-@compiled
-def _search_polygons(
+def _search(
     nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins
 ) -> np.ndarray:
     """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no
     path; pairs are tested only when needed: the edges from a node to all others wait in a heap, and
     each is tested once it is the most promising.
+
+    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a
+    path may turn in any direction.
     """
     came_by = np.full(len(nodes), -1)
     settled = np.zeros(len(nodes), dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Shortest paths on large grids: the corners that a node sees are found by casting shadows, and
+"""Shortest paths on grids: the corners that a node sees are found by casting shadows, and
 only when a search reaches the node.
 
 A graph of all pairs would need memory for each of them. Here a node looks up and down, row of cells
