@@ -242,7 +242,6 @@ def _gathering_one(given: Studies, key: str) -> Iterator[Made]:
                 ("table", "csv"),
                 ("comparison", "comparison.csv"),
                 ("published", "published.csv"),
-                ("marks", "marks.csv"),
                 ("wholes", "wholes.csv"),
             )
         }

@@ -49,16 +49,20 @@ def test_a_wide_table_is_scaled_to_the_page():
 
 
 def test_printed_number_stands_above_ours_with_its_mark():
-    ours, printed, marks = (
-        pd.DataFrame({"method": ["GA", "PRM"], "length": cells, "time": times})
-        for cells, times in (
-            (["1.52", "2.10"], ["0.01", "0.02"]),
-            (["1.5", "3"], ["4", ""]),
-            (["agrees", "disagrees"], ["", ""]),
-        )
-    )
-    text = latex.document(latex.laid_over(ours, printed, marks), "", "", [latex.LEGEND])
+    times = ["0.01", "0.02"]
+    ours = pd.DataFrame({"method": ["GA", "PRM"], "length": ["1.52", "2.10"], "time": times})
+    columns = ["table_row", "table_column", "as_printed", "verdict", "identified"]
+    numbers = [
+        ("0", "0", "1.5", "agrees", "cells 1 2"),
+        ("1", "0", "3", "disagrees", ""),
+        ("0", "1", "4", "", ""),
+    ]
+    over = latex.laid_over(ours, pd.DataFrame(numbers, columns=columns), 1)
+    text = latex.document(over, "", "", [latex.LEGEND])
     assert r"\begin{tabular}{lrr}" in text
-    assert r"GA & \shortstack[r]{1.5 \\ 1.52 +} & \shortstack[r]{4 \\ 0.01} \\" in text
+    assert r"GA & \shortstack[r]{1.5 = \\ 1.52 +} & \shortstack[r]{4 \\ 0.01} \\" in text
     assert r"PRM & \shortstack[r]{3 \\ 2.10 x} & \shortstack[r]{- \\ 0.02} \\" in text
-    assert r"\footnotesize Above: printed. Below: ours; + agrees, x disagrees" in text
+    assert (
+        r"\footnotesize Above: printed; = a length of paths that we can name. Below: ours; + agrees"
+        in text
+    )

@@ -124,12 +124,88 @@ def test_a_table_in_the_papers_form_shows_small_numbers_and_the_printed_ones_in_
     table = pivot(ours, spec, LABELS)
     assert list(table) == list(pivot(ours, SPEC, LABELS))[:-1], "no counts of runs"
     assert table["length: fast"].str.fullmatch(r"0\.0+[1-9]\d\d").all()
-    rows = published().astype(str).assign(value=["10", "10.00", "1000"])
-    laid = tables.alike(rows, pivot_of(spec), LABELS, table)
+    laid = in_cells(ours, spec, LABELS, published().assign(as_printed=["10", "10.00", "1000"]))
     assert laid.index.equals(table.index)
     assert list(laid) == list(table)
     assert laid.loc["the long one"].to_list() == ["", "1000", "10", "10.00"]
     assert laid.loc["brief"].to_list() == [""] * 4
+
+
+def in_cells(
+    ours: Results, spec: dict, labels: dict[str, str], printed: pd.DataFrame
+) -> pd.DataFrame:
+    """Printed numbers in the cells of their table."""
+    table, placed = (
+        pivot(ours, spec, labels),
+        beside(ours, spec, printed).dropna(subset="as_printed"),
+    )
+    return tables.laid(placed, placed["as_printed"], table.index, table.columns)
+
+
+@pytest.mark.parametrize(
+    ("labels", "titles"),
+    [
+        ({"length": "way", "evaluations": "work", "median": "middle"}, ("length", "evaluations")),
+        ({"length: median": "way", "way": "length"}, ("way", "length")),
+        (dict.fromkeys(["long", "brief", "plain", "fast"], "one"), ("value", "statistic")),
+    ],
+)
+def test_labels_lose_no_printed_number(labels, titles):
+    """Not those of the study, nor those of a table's values, whatever names they collide with; two
+    values may be of one metric.
+    """
+    values = [
+        {"metric": "length", "statistic": ["median", "min"], "label": titles[0], "decimals": 2},
+        {"metric": "evaluations", "statistic": "median", "label": titles[1], "decimals": 0},
+        {"metric": "length", "statistic": "max", "label": "most", "decimals": 2},
+    ]
+    numbers = pd.DataFrame(
+        [
+            (
+                problem,
+                method,
+                metric,
+                statistic,
+                20,
+                "m",
+                10 + n,
+                f"{problem} {method} {metric} {statistic}",
+            )
+            for problem in ("long", "brief")
+            for method in ("plain", "fast")
+            for n, (metric, statistic) in enumerate(
+                [
+                    ("length", "unstated"),
+                    ("length", "min"),
+                    ("evaluations", "median"),
+                    ("length", "max"),
+                ]
+            )
+        ],
+        columns=[*PUBLISHED.partition("\n")[0].split(","), "as_printed"],
+    )
+    for index, columns in (
+        (["problem"], ["value", "method"]),
+        (["method"], ["problem", "value", "statistic"]),
+        (["value", "problem"], ["method"]),
+    ):
+        spec = SPEC | {"published": "table1.csv", "values": values}
+        spec |= {"index": index, "columns": columns}
+        laid = in_cells(results(), spec, labels, numbers).to_numpy()
+        assert sorted(laid[laid != ""]) == sorted(numbers["as_printed"])
+        without = in_cells(results(), spec, {}, numbers).to_numpy()
+        assert laid.tolist() == without.tolist()
+
+
+def test_a_printed_number_that_no_cell_takes_is_an_error():
+    ours = results()
+    spec = SPEC | {"published": "table1.csv"}
+    ours = ours._replace(runs=ours.runs[ours.runs["method"] != "fast"])
+    printed = published().assign(as_printed="10.00")
+    with pytest.raises(ValueError, match=r"2 printed numbers .* 10.00 .*method fast, metric"):
+        beside(ours, spec, printed)
+    alone = spec | {"where": {"method": ["plain"]}}
+    assert len(beside(ours, alone, printed)) == 6, "others are not of this table"
 
 
 def test_a_deterministic_method_has_one_run_under_each_condition():

@@ -99,7 +99,7 @@ def files_of(scale, study, name):
     endings = ["svg", "png", "pdf", "csv", "txt"] if name in study.figures else ["csv", "tex"]
     endings += ["comparison.csv"] if name in study.compared() else []
     if name in study.with_published():
-        endings += ["published.csv", "marks.csv", "wholes.csv"]
+        endings += ["published.csv", "wholes.csv"]
     return [f"results/{scale}/{study.key}/{tree(name)}/{name}.{ending}" for ending in endings]
 
 

@@ -1,5 +1,5 @@
 # Tables in the paper's form; published.csv holds the printed numbers in the same rows and columns,
-# marks.csv the verdicts, comparison.csv each printed number next to ours, wholes.csv each column.
+# comparison.csv each printed number next to ours, with its verdict and place, wholes.csv each column.
 
 
 rule table:
@@ -21,7 +21,6 @@ rule table:
             caption="../report/artefact.rst",
         ),
         published=f"{RESULTS}/{{tree}}/{{table}}.published.csv",
-        marks=f"{RESULTS}/{{tree}}/{{table}}.marks.csv",
         wholes=f"{RESULTS}/{{tree}}/{{table}}.wholes.csv",
         comparison=report(
             f"{RESULTS}/{{tree}}/{{table}}.comparison.csv",
@@ -100,11 +99,11 @@ rule listing:
 rule latex:
     input:
         table=f"{RESULTS}/{{tree}}/{{table}}.csv",
-        beside=lambda wildcards: [
-            f"{RESULTS}/{{tree}}/{{table}}.{kind}.csv"
-            for kind in ("published", "marks")
+        beside=lambda wildcards: (
+            [f"{RESULTS}/{{tree}}/{{table}}.comparison.csv"]
             if wildcards.table in STUDIES[wildcards.study].with_published()
-        ],
+            else []
+        ),
     output:
         f"{RESULTS}/{{tree}}/{{table}}.tex",
     log:

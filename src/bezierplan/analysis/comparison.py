@@ -30,7 +30,7 @@ number. Columns:
   would have been rejected instead of the published one
 - identified: cells or moves of the paths whose length the published number is (`identified`), and
   the chance of a match
-- verdict: identified; disagrees; inconclusive; agrees
+- verdict: on ours: disagrees; inconclusive; agrees
 - why: why it is inconclusive: not defined by the paper, on a map that it does not print, or the
   interval has no end there, or contains most of the numbers that matter
 - possible: whether the metric can have the published value, and ranks add up. A length below the
@@ -71,6 +71,11 @@ LEAST_RIVALS = 2
 is all or nothing.
 """
 
+PLACES = ["table_row", "table_column", "as_printed"]
+"""Columns beside those of a comparison, for a table of the paper's form: the place of the number in
+the table's file, counted from 0 below its head and right of the names of rows, and its text.
+"""
+
 VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
 
 NO_END = "interval without an end on that side"
@@ -98,14 +103,14 @@ COLUMNS = [
 
 
 def read_published(file: str | None, spec: Pivot) -> pd.DataFrame:
-    """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a
-    file, empty, with the table's keys.
+    """The published numbers of a table: key columns, metric, statistic, n, unit, value, as_printed
+    (the value's text). Without a file, empty, with the table's keys.
     """
     if file is None:
-        return pd.DataFrame(
-            columns=[*spec.key_columns, "metric", "statistic", "n", "unit", "value"]
-        )
-    return as_read(published_table(file), spec.reads)
+        columns = ("metric", "statistic", "n", "unit", "value", "as_printed")
+        return pd.DataFrame(columns=[*spec.key_columns, *columns])
+    texts = pd.read_csv(file, dtype=str, keep_default_na=False)["value"]
+    return as_read(published_table(file).assign(as_printed=texts), spec.reads)
 
 
 def as_read(published: pd.DataFrame, reads: dict[str, str]) -> pd.DataFrame:
@@ -138,6 +143,7 @@ def compare(
     beside = _beside(methods, variant_of, baselines) if "method" in keys else []
     spec = spec.but(where=spec.where | {"method": methods + beside}) if beside else spec
     ours = tables.cells(results, spec, keys, beside)
+    ours = tables.placed(ours, spec, list(results.problems))
     marked = published.assign(impossible=impossible_ranks(published, spec))
     both = _side_by_side(ours, marked, key_columns, variant_of)
     order = (
@@ -147,6 +153,8 @@ def compare(
     )
     both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
+    if spec.printed:
+        _refuse_lost(both, spec, name)
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
     printed = {
         column: published[column].to_numpy()
@@ -157,27 +165,59 @@ def compare(
         for row in both.to_dict("records")
     ]
     described = pd.DataFrame(rows, index=both.index)
-    table = both.join(described).reindex(columns=keys + COLUMNS)
+    table = both.join(described).reindex(columns=keys + COLUMNS + PLACES * spec.printed)
     table.loc[both["impossible"].eq(True), "possible"] = False
     table["identified"] = pd.Series(
         [_identified(row, spec.identify, results.problems) for row in both.to_dict("records")],
         dtype=object,
     )
-    named = table["identified"].notna()
-    table["verdict"] = table["verdict"].astype(object).mask(named, "identified")
-    table["why"] = table["why"].astype(object).mask(named, "")
     vague = {entry.metric for entry in spec.values if not entry.defined}
     for reason, whose in (
-        (ONE_DRAW, both["draws"].eq(1) & ~named),
-        (NO_MAP, ~named & reconstructed),
+        (ONE_DRAW, both["draws"].eq(1)),
+        (NO_MAP, pd.Series(reconstructed, table.index)),
         (UNDEFINED, both["metric"].isin(vague)),
     ):
         whose &= table["in_range"].notna()
         table["verdict"] = table["verdict"].mask(whose, "inconclusive")
         table["why"] = table["why"].mask(whose, reason)
     table["primary"] = _is_primary(table, spec.primary, variant_of)
-    whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "possible")
+    whole = ["n_published", "n_ours", "n_asked", *PLACES[:2] * spec.printed]
+    marks = ("in_range", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
+
+
+def counted_as(numbers: pd.DataFrame) -> pd.Series:
+    """The verdict by which each printed number counts: that a path has its length is a statement on
+    that number alone, and goes before the verdict on ours.
+    """
+    return numbers["verdict"].mask(numbers["identified"].notna(), "identified")
+
+
+def _tested(statistic: str) -> str:
+    """The statistic with which a printed one is compared: the median with one that the paper does
+    not state.
+    """
+    return "median" if statistic == "unstated" else statistic
+
+
+def _refuse_lost(both: pd.DataFrame, spec: Pivot, name: str) -> None:
+    """Raise ValueError if a printed number that belongs into a table of the paper's form has no
+    cell there.
+    """
+    shown = {(entry.metric, _tested(each)) for entry in spec.values for each in entry.statistics}
+    where = {column: values for column, values in spec.where.items() if column in both}
+    own = select(both[both["value_published"].notna() & both["table_row"].isna()], where)
+    quantities = zip(own["metric"], map(_tested, own["statistic"]))
+    lost = own[[quantity in shown for quantity in quantities]]
+    if len(lost):
+        first = lost.iloc[0]
+        place = ", ".join(
+            f"{key} {first[key]}" for key in [*spec.key_columns, "metric", "statistic"]
+        )
+        raise ValueError(
+            f"{name}: {len(lost)} printed numbers have no cell in the table, such as "
+            f"{first['as_printed']} ({place})"
+        )
 
 
 def _is_primary(
@@ -234,11 +274,10 @@ def _side_by_side(
     theirs = published.rename(
         columns={"n": "n_published", "value": "value_published", "statistic": "printed"}
     ).drop(columns="unit")
-    # An unstated statistic is compared with the median.
     theirs = theirs.astype({key: ours[key].dtype for key in key_columns}).assign(
-        statistic=theirs["printed"].replace("unstated", "median")
+        statistic=theirs["printed"].map(_tested)
     )
-    ours = ours.assign(statistic=ours["statistic"].replace("unstated", "median"))
+    ours = ours.assign(statistic=ours["statistic"].map(_tested))
     if "method" in key_columns:
         ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
     both = ours.merge(

@@ -170,8 +170,6 @@ class TableOfRuns(Job):
 
     def run(self, input_files, output_files, threads):
         """Make the table and its comparison."""
-        import pandas as pd
-
         from bezierplan.analysis import comparison, results, study_code, tables, wholes
         from bezierplan.running import inputs
 
@@ -193,11 +191,9 @@ class TableOfRuns(Job):
         table.to_csv(output_files.table, lineterminator="\n")
         if self.spec.printed:
             compared = compared[compared["value_published"].notna()]
-            numbers = pd.read_csv(file, dtype=str, keep_default_na=False)
-            verdicts = compared.assign(value=compared["verdict"].fillna(""))
-            for rows, laid in ((numbers, output_files.published), (verdicts, output_files.marks)):
-                laid_out = tables.alike(rows, self.spec, self.labels, like=table)
-                laid_out.to_csv(laid, lineterminator="\n")
+            placed = compared.dropna(subset="table_row")
+            printed = tables.laid(placed, placed["as_printed"], table.index, table.columns)
+            printed.to_csv(output_files.published, lineterminator="\n")
             columns = wholes.of_table(runs, self.spec, compared, self.name, self.paired)
             self.write(columns, output_files.wholes)
         self.write(compared, output_files.comparison)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import headline, verdict, wholes
+from bezierplan.analysis import comparison, headline, verdict, wholes
 from bezierplan.analysis.claims.columns import CLAIM_COLUMNS
 from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
@@ -90,14 +90,18 @@ def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
     comparisons, key columns first.
     """
     frames = [
-        frame[frame["value_published"].notna()].assign(study=study, table=table)
+        frame[frame["value_published"].notna()]
+        .drop(columns=comparison.PLACES, errors="ignore")
+        .assign(study=study, table=table)
         for (study, table), frame in comparisons.items()
     ]
     everything = pd.concat(frames, ignore_index=True)
     first = ["study", "table", "primary"]
     last = everything.columns[everything.columns.get_loc("metric") :].difference(first, sort=False)
     keys = list(everything.columns.difference([*first, *last], sort=False))
-    everything = everything.assign(counted=_counted(everything, keys))
+    everything["counted"] = _counted(everything, keys)
+    everything["verdict"] = comparison.counted_as(everything)
+    everything["why"] = everything["why"].mask(everything["identified"].notna())
     return everything[[*first, "counted", *keys, *last]]
 
 

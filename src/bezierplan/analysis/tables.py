@@ -7,6 +7,7 @@ is needed to distinguish numbers but not named as index or column becomes a leve
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -151,6 +152,30 @@ def _measured(
     return metrics.values(counted, metric, results.problems).reindex(runs.index)
 
 
+def placed(found: pd.DataFrame, spec: Pivot, problems: Sequence[str]) -> pd.DataFrame:
+    """Cells as from `cells`, each with its place in the table, from 0. Added: table_row,
+    table_column.
+    """
+    order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
+    ordered = in_order(found, spec, problems)
+    ordered["statistic"] = pd.Categorical(found["statistic"], categories=list(order), ordered=True)
+    rows, columns = (
+        ordered.groupby(levels, dropna=False, observed=True).ngroup() for levels in _levels(spec)
+    )
+    return found.assign(table_row=rows, table_column=columns)
+
+
+def laid(
+    places: pd.DataFrame, values: Sequence, rows: pd.Index, columns: pd.Index, empty: Any = ""
+) -> pd.DataFrame:
+    """A table of values, each at its place (`placed`), with these heads."""
+    table = np.full((len(rows), len(columns)), empty, dtype=object)
+    table[places["table_row"].to_numpy(dtype=int), places["table_column"].to_numpy(dtype=int)] = (
+        values
+    )
+    return pd.DataFrame(table, rows, columns)
+
+
 def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame:
     """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
@@ -159,66 +184,33 @@ def pivot(results: Results, spec: Pivot, labels: dict[str, str]) -> pd.DataFrame
     `SIGNIFICANT` digits, except for counts; in any other, where some runs have no value, a column
     beside the values says how many have one (`_with_counts`).
     """
-    index, columns = _levels(spec)
-    table = in_order(cells(results, spec, spec.key_columns), spec, list(results.problems))
-    order = dict.fromkeys(name for entry in spec.values for name in entry.statistics)
-    table["statistic"] = pd.Categorical(table["statistic"], categories=list(order), ordered=True)
-    numbers_behind = zip(table["statistic"], table["numbers"], table["decimals"])
-    table["text"] = [
+    table = placed(cells(results, spec, spec.key_columns), spec, list(results.problems))
+    texts = [
         _printed(
             statistics.statistic(name, numbers),
             decimals,
             SIGNIFICANT if spec.printed and name != "count" else 0,
         )
-        for name, numbers, decimals in numbers_behind
+        for name, numbers, decimals in zip(table["statistic"], table["numbers"], table["decimals"])
     ]
-    rows, heads = (
-        table[levels].drop_duplicates().sort_values(levels) for levels in (index, columns)
-    )
-    table["counted"] = [len(numbers) for numbers in table["numbers"]]
-    cells_by_place = table.set_index(index + columns)
-    wide, counted, asked = (
-        cells_by_place[name].unstack(columns).reindex(index=_index(rows), columns=_index(heads))
-        for name in ("text", "counted", "asked")
-    )
-    wide = wide.fillna("")
     titles = [entry.label for entry in spec.values]
     rows, heads = (
-        levels.apply(_labelled, labels=labels, titles=titles) for levels in (rows, heads)
+        table.drop_duplicates(place)
+        .sort_values(place)[levels]
+        .apply(_labelled, labels=labels, titles=titles)
+        for place, levels in zip(("table_row", "table_column"), _levels(spec))
     )
-    stems = [
-        ": ".join(levels)
-        for levels in heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
-    ]
-    wide.columns = [": ".join(levels) for levels in heads.itertuples(index=False)]
-    if not spec.printed:
-        wide = _with_counts(wide, counted, asked, stems)
-    wide.index = _index(rows.rename(columns=labels))
-    return wide
-
-
-def alike(
-    rows: pd.DataFrame, spec: Pivot, labels: dict[str, str], like: pd.DataFrame
-) -> pd.DataFrame:
-    """Texts in the rows and columns of their table, empty where there is none.
-
-    rows: the columns of a file of published numbers, or of a comparison with them, and the text of
-    each as `value`. like: the table, as from `pivot`.
-    """
-    numbers = rows.astype(str)
-    titles = {entry.metric: entry.label for entry in reversed(spec.values)}
-    numbers = numbers.rename(columns={"value": "number"}).assign(
-        value=[titles.get(spec.reads.get(name, name), name) for name in numbers["metric"]]
+    index = _index(rows.rename(columns=labels))
+    columns = pd.Index([": ".join(levels) for levels in heads.itertuples(index=False)])
+    wide = laid(table, texts, index, columns)
+    if spec.printed:
+        return wide
+    counted, asked = (
+        laid(table, numbers, index, columns, math.nan)
+        for numbers in (table["numbers"].map(len), table["asked"])
     )
-    index, columns = ([name for name in levels if name in numbers] for levels in _levels(spec))
-    for key in {*index, *columns}:
-        numbers[key] = [labels.get(name, name) for name in numbers[key]]
-    wide = numbers.pivot_table(
-        values="number", index=index, columns=columns, aggfunc="first", sort=False
-    )
-    wide.columns = [": ".join([name] if isinstance(name, str) else name) for name in wide.columns]
-    placed = wide.reindex(index=like.index, columns=like.columns)
-    return placed.astype(object).fillna("")
+    stems = heads.drop(columns="statistic", errors="ignore").itertuples(index=False)
+    return _with_counts(wide, counted, asked, [": ".join(levels) for levels in stems])
 
 
 def _with_counts(

@@ -23,6 +23,8 @@ class Latex(Job):
     label: str
     caption: str
     note: str | None
+    heads: int = 0
+    """How many columns name the rows of a table of the paper's form."""
 
     def run(self, input_files, output_files, threads):
         """Set the table."""
@@ -36,7 +38,7 @@ class Latex(Job):
         )
         notes = [self.note] if self.note else []
         if beside:
-            table, notes = latex.laid_over(table, *beside), [latex.LEGEND, *notes]
+            table, notes = latex.laid_over(table, *beside, self.heads), [latex.LEGEND, *notes]
         text = latex.document(table, self.caption, f"tab:{self.label}", notes)
         Path(output_files[0]).write_text(text, encoding="utf-8")
 

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Sequence
 
+import numpy as np
 import pandas as pd
 
 _SIGNS = {
@@ -22,21 +23,27 @@ _MOST_COLUMNS = 7
 _LEVEL = ": "
 
 
-MARKS = {"agrees": "+", "disagrees": "x", "inconclusive": "?", "identified": "="}
-LEGEND = "Above: printed. Below: ours; " + ", ".join(
-    f"{mark} {verdict}" for verdict, mark in MARKS.items()
+MARKS = {"agrees": "+", "disagrees": "x", "inconclusive": "?"}
+IDENTIFIED = " ="
+LEGEND = (
+    f"Above: printed;{IDENTIFIED} a length of paths that we can name. Below: ours; "
+    + ", ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
 )
 
 
-def laid_over(ours: pd.DataFrame, printed: pd.DataFrame, marks: pd.DataFrame) -> pd.DataFrame:
-    """Two tables of the same shape as one: in each cell the printed number, below it ours with the
-    mark of its verdict. Heads of rows stay.
+def laid_over(ours: pd.DataFrame, numbers: pd.DataFrame, heads: int) -> pd.DataFrame:
+    """A table with the printed number above ours in each cell, both with their marks.
+
+    numbers: its comparison, all text. heads: how many columns name the rows.
     """
-    over = ours.copy()
-    for column in ours.columns[(ours != printed).any() | (marks != printed).any()]:
-        below = ours[column] + " " + marks[column].map(MARKS).fillna("")
-        over[column] = printed[column].replace("", "-") + "\n" + below.str.strip()
-    return over
+    cells = ours.iloc[:, heads:].to_numpy()
+    over = np.where(cells == "", "-\n", "-\n" + cells)
+    for number in numbers[numbers["table_row"] != ""].to_dict("records"):
+        place = int(number["table_row"]), int(number["table_column"])
+        above = number["as_printed"] + (IDENTIFIED if number["identified"] else "")
+        below = f"{cells[place]} {MARKS.get(number['verdict'], '')}".strip()
+        over[place] = f"{above}\n{below}"
+    return ours.iloc[:, :heads].join(pd.DataFrame(over, ours.index, ours.columns[heads:]))
 
 
 def document(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str] = ()) -> str:
@@ -62,7 +69,10 @@ def document(table: pd.DataFrame, caption: str, label: str, notes: Sequence[str]
     <BLANKLINE>
     """
     sides = "".join(
-        "r" if _is_number(table[column].str.split("\n").str[0]) else "l" for column in table
+        "r"
+        if _is_number(table[column].str.split("\n").str[0].str.removesuffix(IDENTIFIED))
+        else "l"
+        for column in table
     )
     cells = map(_row, table.itertuples(index=False))
     rows = ["\\toprule", *_heads(list(table.columns)), "\\midrule", *cells, "\\bottomrule"]

@@ -227,7 +227,9 @@ def table_without_runs(study: Study, scale: str, table: str) -> TableWithoutRuns
 
 def latex(study: Study, scale: str, table: str) -> Latex:
     """The table of a name."""
-    return Latex(f"{study.key}-{table}", caption(study, table, scale), study.tables[table].note)
+    spec, printed = study.tables[table], study.with_published().get(table)
+    heads = len(printed.index) if printed else 0
+    return Latex(f"{study.key}-{table}", caption(study, table, scale), spec.note, heads)
 
 
 def figure(study: Study, scale: str, figure: str) -> Figure:

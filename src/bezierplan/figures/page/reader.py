@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import planners
-from bezierplan.analysis import comparison, tables, wholes
+from bezierplan.analysis import comparison, wholes
 from bezierplan.analysis.table_kinds import Pivot
 from bezierplan.figures import style
 from bezierplan.figures.page import why
@@ -27,7 +27,8 @@ NEAR = 0.1
 
 def read(file: str | Path) -> pd.DataFrame:
     """A csv file in which only an empty cell is a missing value."""
-    return pd.read_csv(file, keep_default_na=False, na_values=[""], low_memory=False)
+    texts = {"as_printed": str}
+    return pd.read_csv(file, dtype=texts, keep_default_na=False, na_values=[""], low_memory=False)
 
 
 def records(table: pd.DataFrame) -> list[Row]:
@@ -155,29 +156,25 @@ def _table(
     if not spec.printed:
         return row | {"numbers": cells, "laid": None}
     whole = wholes.in_words(read(folder / f"{row['stem']}.wholes.csv"))
-    laid = _laid(folder / row["stem"], table, artefact, cells)
+    laid = _laid(folder / f"{row['stem']}.csv", spec, cells)
     return row | {"numbers": cells, "laid": laid, "whole": whole}
 
 
-def _laid(stem: Path, numbers: pd.DataFrame, artefact: TableView, cells: list[Row]) -> Row:
+def _laid(file: Path, spec: Pivot, cells: list[Row]) -> Row:
     """A table as the paper prints it. head: of its columns. rows: the names of each, and its cells:
     printed, ours, and the number (None where there is none).
     """
-    ours, printed = (
-        pd.read_csv(f"{stem}{ending}.csv", dtype=str, keep_default_na=False)
-        for ending in ("", ".published")
-    )
-    names = list(ours.columns[: len(artefact.spec.index)])
-    ours, printed = ours.set_index(names), printed.set_index(names)
-    numbered = numbers.assign(value=np.arange(len(numbers)))
-    which = tables.alike(numbered, artefact.spec, artefact.labels, like=ours)
-    rows = [
-        [(text, own, cells[int(n)] if n else None) for text, own, n in zip(*row, strict=True)]
-        for row in zip(printed.to_numpy(), ours.to_numpy(), which.to_numpy(), strict=True)
-    ]
-    firsts = ours.reset_index()[names].to_numpy().tolist()
-    head = [*names, *ours.columns]
-    return {"head": head, "rows": list(zip(firsts, rows, strict=True)), "note": artefact.spec.note}
+    ours = pd.read_csv(file, dtype=str, keep_default_na=False)
+    heads = len(spec.index)
+    numbers = {(cell["table_row"], cell["table_column"]): cell for cell in cells}
+    rows = []
+    for row, (names, texts) in enumerate(
+        zip(ours.iloc[:, :heads].to_numpy(), ours.iloc[:, heads:].to_numpy(), strict=True)
+    ):
+        own = [numbers.get((row, column)) for column in range(len(texts))]
+        printed = [cell["as_printed"] if cell else "" for cell in own]
+        rows.append((names.tolist(), list(zip(printed, texts, own, strict=True))))
+    return {"head": list(ours), "rows": rows, "note": spec.note}
 
 
 def _numbers(
@@ -191,7 +188,7 @@ def _numbers(
     """The cells of a table: those with a published number, and what other methods have in the same
     column. Added: keys, row, column (as printed), address, beside (ours as the paper's number of
     runs would print it), apart (relative to the published number), near, stored (the row of the
-    README's outcome).
+    README's outcome), own (the verdict on ours; verdict: by which it counts).
     """
     keys = list(comparison.columns[: comparison.columns.get_loc("metric")])
     what = ["metric", "statistic"]
@@ -213,6 +210,8 @@ def _numbers(
             "column": _heading(cell["metric"], cell["statistic"], spec, labels),
             "address": name,
             "stored": others.get(address(*position.values())),
+            "own": cell["verdict"],
+            "verdict": "identified" if cell["identified"] else cell["verdict"],
             **nearness(cell),
         }
     return cells
